@@ -1,0 +1,50 @@
+# Everything from a fresh clone: make demo, make test. Needs Python >= 3.11, make and git.
+PYTHON ?= python3
+BIN := .venv/bin
+PACKAGES := kernel nodes fabrication viewer interfaces
+# The editable install links files, so it is made anew when the list of files or pyproject.toml changes.
+STATE := $(shell { find $(PACKAGES) -name '*.py' | LC_ALL=C sort; cat pyproject.toml; } | cksum | cut -d' ' -f1)
+INSTALLED := .venv/installed-$(STATE)
+
+.PHONY: demo test lint bench install system clean
+
+demo: system
+	$(BIN)/spheremesh panel -o out/demo --moulds 8 --thickness 0.02
+
+test: lint
+	$(BIN)/python -m pytest -q -n 2 --dist loadfile
+	$(BIN)/python -m pytest -q -p no:cacheprovider --doctest-modules $(PACKAGES)
+
+lint: system
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/pyright
+	$(BIN)/lint-imports
+	$(BIN)/numpydoc lint $$(git ls-files $(addsuffix /*.py,$(PACKAGES)))
+	$(BIN)/vulture
+	$(BIN)/deptry .
+
+bench: system
+	$(BIN)/python benchmarks/run.py
+
+install: $(INSTALLED)
+
+$(INSTALLED):
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "spheremesh needs Python 3.11 or newer: make PYTHON=python3.12 ...")'
+	test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install -q --upgrade pip setuptools
+	$(BIN)/python -m pip install -q -e . --group dev
+	rm -f .venv/installed-*
+	touch $@
+
+# OCP (the STEP kernel) needs two system libraries on Linux that slim images lack.
+system: install
+	@$(BIN)/python -c 'import OCP.gp' 2>/dev/null || { \
+	  if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	    apt-get update -q && apt-get install -q -y libgl1 libx11-6; \
+	  else \
+	    echo 'STEP files need libGL.so.1 and libX11.so.6: install the packages libgl1 and libx11-6 (Debian, Ubuntu) or mesa-libGL and libX11 (Fedora).' >&2; \
+	  fi; }
+
+clean:
+	rm -rf .venv build out spheremesh.egg-info

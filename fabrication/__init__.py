@@ -1,0 +1,1 @@
+"""Exact geometry in the files that fabricators open."""

@@ -1,0 +1,1 @@
+"""Pure functions on arrays and frozen records: the mathematics."""

@@ -1,0 +1,104 @@
+"""Array types and the few operations on rows of vectors that NumPy has no short name for."""
+
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray: TypeAlias = NDArray[np.float64]
+IntArray: TypeAlias = NDArray[np.int64]
+BoolArray: TypeAlias = NDArray[np.bool_]
+
+
+def dot(a: FloatArray, b: FloatArray) -> FloatArray:
+    """
+    Scalar product along the last axis.
+
+    Parameters
+    ----------
+    a, b : (..., n) float array
+        Vectors, broadcast against each other.
+
+    Returns
+    -------
+    (...) float array
+        Sum of the products of the components.
+    """
+    return np.einsum("...i,...i->...", a, b)
+
+
+def norm(a: FloatArray) -> FloatArray:
+    """
+    Euclidean length along the last axis.
+
+    Parameters
+    ----------
+    a : (..., n) float array
+        Vectors.
+
+    Returns
+    -------
+    (...) float array
+        Lengths.
+    """
+    return np.sqrt(dot(a, a))
+
+
+def unit(a: FloatArray) -> FloatArray:
+    """
+    Vectors divided by their length; the zero vector stays zero.
+
+    Parameters
+    ----------
+    a : (..., n) float array
+        Vectors.
+
+    Returns
+    -------
+    (..., n) float array
+        Unit vectors.
+    """
+    length = norm(a)[..., None]
+    return np.divide(a, length, out=np.zeros_like(a), where=length > 0)
+
+
+def sum_by(ids: IntArray, values: FloatArray, size: int) -> FloatArray:
+    """
+    Sum of the rows that share an id.
+
+    Parameters
+    ----------
+    ids : (n,) int array
+        Group of each row, in ``[0, size)``.
+    values : (n,) or (n, m) float array
+        Rows to add up.
+    size : int
+        Number of groups.
+
+    Returns
+    -------
+    (size,) or (size, m) float array
+        Sums; zero for a group without rows.
+    """
+    if values.ndim == 1:
+        return np.bincount(ids, values, size)
+    columns = [np.bincount(ids, column, size) for column in values.T]
+    return np.stack(columns, axis=1)
+
+
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
+    """
+    The same array, closed for writing.
+
+    Parameters
+    ----------
+    array : array
+        Array that nobody else writes to.
+
+    Returns
+    -------
+    array
+        `array` itself.
+    """
+    array.flags.writeable = False
+    return array

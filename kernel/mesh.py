@@ -1,0 +1,214 @@
+"""The mesh: vertices, and faces of mixed degree stored in compressed rows."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .arrays import FloatArray, IntArray, norm, read_only, sum_by, unit
+from .errors import InputError, name_ids
+from .topology import Topology, build_topology
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Mesh:
+    """
+    An orientable manifold mesh with boundary, faces of mixed degree.
+
+    Parameters
+    ----------
+    vertices : (V, 3) array_like of float
+        Points, in model units.
+    faces : sequence of sequences of int, or (F, k) int array
+        Vertex ids of each face, counter-clockwise seen from the side of the normal.
+
+    Attributes
+    ----------
+    vertices : (V, 3) float array
+        Points; read-only.
+    corners : (H,) int array
+        Vertex of each corner, face after face; read-only.
+    offsets : (F + 1,) int array
+        First corner of each face, and H; read-only.
+    topology : Topology
+        Half-edges, edges and boundary.
+
+    Raises
+    ------
+    InputError
+        If a coordinate is not finite, an index out of range, a corner repeated within a face,
+        or the faces are no orientable manifold; the message names the elements.
+
+    Examples
+    --------
+    >>> mesh = Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    >>> mesh.n_faces, [face.tolist() for face in mesh.faces]
+    (2, [[0, 1, 2], [0, 2, 3]])
+    """
+
+    vertices: FloatArray
+    corners: IntArray
+    offsets: IntArray
+    topology: Topology = field(repr=False)
+
+    def __init__(
+        self, vertices: ArrayLike, faces: Sequence[Sequence[int]] | Iterable[ArrayLike]
+    ) -> None:
+        if isinstance(faces, np.ndarray) and faces.ndim == 2:
+            count, degree = faces.shape
+            corners = np.array(faces, np.int64).ravel()
+            degrees = np.full(count, degree)
+        else:
+            rows = [np.asarray(face, np.int64).ravel() for face in faces]
+            corners = np.concatenate(rows) if rows else np.zeros(0, np.int64)
+            degrees = np.array([len(row) for row in rows], np.int64)
+        offsets = np.concatenate([[0], np.cumsum(degrees)]).astype(np.int64)
+        points = np.array(vertices, np.float64)
+        _check_elements(points, corners, offsets)
+        topology = build_topology(corners, offsets, len(points))
+        object.__setattr__(self, "vertices", read_only(points))
+        object.__setattr__(self, "corners", read_only(corners))
+        object.__setattr__(self, "offsets", read_only(offsets))
+        object.__setattr__(self, "topology", topology)
+
+    @property
+    def faces(self) -> tuple[IntArray, ...]:
+        """Vertex ids of each face."""
+        return tuple(np.split(self.corners, self.offsets[1:-1]))
+
+    @property
+    def n_vertices(self) -> int:
+        """Number of vertices."""
+        return len(self.vertices)
+
+    @property
+    def n_faces(self) -> int:
+        """Number of faces."""
+        return len(self.offsets) - 1
+
+    @property
+    def degrees(self) -> IntArray:
+        """Number of corners of each face, (F,)."""
+        return np.diff(self.offsets)
+
+
+def _check_elements(points: FloatArray, corners: IntArray, offsets: IntArray) -> None:
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise InputError(f"vertices must have shape (V, 3), not {points.shape}")
+    if len(offsets) < 2:
+        raise InputError("the mesh has no faces")
+    bad_vertices = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(bad_vertices):
+        raise InputError(
+            f"vertices {name_ids(bad_vertices.tolist())} have coordinates that are not finite"
+        )
+    degrees = np.diff(offsets)
+    corner_faces = np.repeat(np.arange(len(degrees)), degrees)
+    if (degrees < 3).any():
+        bad = name_ids(np.flatnonzero(degrees < 3).tolist())
+        raise InputError(f"faces {bad} have fewer than 3 corners")
+    outside = (corners < 0) | (corners >= len(points))
+    if outside.any():
+        bad = name_ids(np.unique(corner_faces[outside]).tolist())
+        raise InputError(
+            f"faces {bad} refer to vertices out of range: the mesh has {len(points)} vertices"
+        )
+    order = np.lexsort((corners, corner_faces))
+    repeated = (np.diff(corners[order]) == 0) & (np.diff(corner_faces[order]) == 0)
+    if repeated.any():
+        bad = name_ids(np.unique(corner_faces[order][1:][repeated]).tolist())
+        raise InputError(f"faces {bad} have a repeated corner; remove the duplicate")
+
+
+def face_centroids(mesh: Mesh) -> FloatArray:
+    """
+    Mean of the corners of each face: the origin of the coordinates local to the face.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Returns
+    -------
+    (F, 3) float array
+        Centroids.
+    """
+    # The mean of differences to the first corner keeps its digits far from the origin.
+    first = mesh.vertices[mesh.corners[mesh.offsets[:-1]]]
+    corner_faces = mesh.topology.corner_faces
+    relative = mesh.vertices[mesh.corners] - first[corner_faces]
+    return first + sum_by(corner_faces, relative, mesh.n_faces) / mesh.degrees[:, None]
+
+
+def local_corners(mesh: Mesh) -> FloatArray:
+    """
+    Corners in the coordinates local to their face.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Returns
+    -------
+    (H, 3) float array
+        Corner minus centroid of its face.
+    """
+    return mesh.vertices[mesh.corners] - face_centroids(mesh)[mesh.topology.corner_faces]
+
+
+def face_vector_areas(mesh: Mesh) -> FloatArray:
+    """
+    Vector area of each face: half the sum of the cross products along its boundary.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Returns
+    -------
+    (F, 3) float array
+        For a planar face its area times its normal.
+    """
+    corners = local_corners(mesh)
+    following = corners[mesh.topology.next_corners]
+    crosses = np.cross(corners, following)
+    return sum_by(mesh.topology.corner_faces, crosses, mesh.n_faces) / 2
+
+
+def face_normals(mesh: Mesh) -> FloatArray:
+    """
+    Unit normal of each face, along its vector area.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Returns
+    -------
+    (F, 3) float array
+        Unit vectors.
+    """
+    return unit(face_vector_areas(mesh))
+
+
+def mean_edge_length(mesh: Mesh) -> float:
+    """
+    Mean length of the sides of the faces: the unit in which tolerances are stated.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Returns
+    -------
+    float
+        Mean over all half-edges, in model units.
+    """
+    ends = mesh.vertices[mesh.corners[mesh.topology.next_corners]]
+    return float(norm(ends - mesh.vertices[mesh.corners]).mean())

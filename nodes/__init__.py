@@ -1,0 +1,1 @@
+"""Typed functions as nodes, and the lazy graph that runs them."""
