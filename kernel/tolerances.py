@@ -30,3 +30,9 @@ CAP_ANGLE: Final = 1.3962634015954636
 
 GRADIENT: Final = 1e-11
 """An angle minimisation has converged when the largest torque per face falls below this."""
+
+PARALLEL_PLANES: Final = 1e-6
+"""Cutting planes that meet at a smaller angle (radians) are in line."""
+
+CROSSING: Final = 1e-9
+"""How far from their ends, relative to the half chord, two arcs must meet to cross."""
