@@ -37,7 +37,8 @@ def torus_net(n_around: int, n_across: int, major_radius: float, minor_radius: f
     _check_counts(around=(n_around, 3), across=(n_across, 3))
     if not 0 < minor_radius < major_radius:
         raise InputError(
-            f"a torus needs 0 < minor radius < major radius, not {minor_radius} and {major_radius}"
+            "a torus needs 0 < minor radius < major radius, "
+            f"not {minor_radius} and {major_radius}"
         )
     tube = 2 * np.pi * np.arange(n_across) / n_across
     radii = major_radius + minor_radius * np.cos(tube)
@@ -175,7 +176,7 @@ def enneper_net(n: int, size: float) -> Mesh:
     grid = np.linspace(-size, size, n + 1)
     u, v = np.meshgrid(grid, grid, indexing="ij")
     square = u**2 + v**2
-    gauss = np.stack([2 * u, 2 * v, square - 1], -1) / (square + 1)[..., None]
+    gauss = np.stack([2 * u, 2 * v, 1 - square], -1) / (square + 1)[..., None]
     first, second = np.diff(gauss, axis=0), np.diff(gauss, axis=1)
     first /= dot(first, first)[..., None]
     second /= dot(second, second)[..., None]
@@ -183,7 +184,8 @@ def enneper_net(n: int, size: float) -> Mesh:
     points[1:, 0] = np.cumsum(first[:, 0], axis=0)
     points[:, 1:] = points[:, :1] - np.cumsum(second, axis=1)
     step = 2 * size / n
-    return _grid_mesh((points - points.mean((0, 1))) * step**2)
+    # Rows and columns swapped: the normal points up.
+    return _grid_mesh(((points - points.mean((0, 1))) * step**2).transpose(1, 0, 2))
 
 
 def roof_net(n_around: int, n_across: int, length: float) -> Mesh:
