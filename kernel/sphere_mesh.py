@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from .arrays import FloatArray, dot, read_only, sum_by
 from .errors import InputError, name_ids
 from .mesh import Mesh, face_centroids, local_corners
-from .spheres import evaluate, minkowski, recenter, signed_distance
+from .spheres import angle, evaluate, minkowski, recenter, signed_distance
 from .tolerances import EPSILON
 
 
@@ -141,3 +141,32 @@ def vertex_error(sphere_mesh: SphereMesh) -> FloatArray:
     result = np.zeros(mesh.n_vertices)
     np.maximum.at(result, mesh.corners, distances)
     return result
+
+
+def intersection_angles(sphere_mesh: SphereMesh) -> FloatArray:
+    """
+    Oriented angle at which the spheres of neighbouring faces meet.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+
+    Returns
+    -------
+    (E,) float array
+        Angles over the interior edges, in radians from 0 (smooth) to π (a spike).
+
+    References
+    ----------
+    Meshes with Spherical Faces, eq. (5), in its oriented form.
+    """
+    mesh, topology = sphere_mesh.mesh, sphere_mesh.mesh.topology
+    starts = local_corners(mesh)
+    middles = (starts + starts[topology.next_corners]) / 2
+    first, second = topology.edge_corners, topology.twins[topology.edge_corners]
+    left, right = topology.edge_faces.T
+    return angle(
+        recenter(sphere_mesh.local_spheres[left], middles[first]),
+        recenter(sphere_mesh.local_spheres[right], middles[second]),
+    )

@@ -28,11 +28,23 @@ SAME_PLANE: Final = 1e-6
 CAP_ANGLE: Final = 1.3962634015954636
 """Half opening (80 degrees) beyond which a spherical cap is refused by CAD kernels."""
 
-GRADIENT: Final = 1e-11
-"""An angle minimisation has converged when the largest torque per face falls below this."""
+ANGLE_STEP: Final = 1e-9
+"""An angle minimisation has converged when no unknown moves by more (radians)."""
+
+DAMPING: Final = 1e-12
+"""Least damping of a Newton step; its inverse is the largest before a descent is given up."""
+
+ENERGY_ROUNDING: Final = 1e-13
+"""Relative rounding of a sum of energies: a rise below it is no rise."""
+
+LINEAR_SOLVE: Final = 1e-6
+"""Relative residual to which the linear system of a Newton step is solved."""
 
 PARALLEL_PLANES: Final = 1e-6
 """Cutting planes that meet at a smaller angle (radians) are in line."""
 
 CROSSING: Final = 1e-9
 """How far from their ends, relative to the half chord, two arcs must meet to cross."""
+
+SAME_CURVATURE: Final = 1e-9
+"""Curvatures that differ by less, relative to the sharpest, share a mould without a choice."""

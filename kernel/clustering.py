@@ -1,0 +1,119 @@
+"""
+Few moulds: the radii of a sphere mesh gathered into clusters.
+
+Curvatures are clustered, not radii: the radius of a nearly flat panel is arbitrarily large and
+would decide alone. The side to which a panel curves is no property of the mould; it is kept.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .arrays import BoolArray, FloatArray, IntArray
+from .circles import circle_pencils, face_circles, pencil_spheres
+from .errors import InputError
+from .pencil import pencil_angles
+from .sphere_mesh import SphereMesh
+from .tolerances import SAME_CURVATURE
+
+
+@dataclass(frozen=True)
+class RadiusClusters:
+    """
+    Moulds and the panels that are made on them.
+
+    Attributes
+    ----------
+    labels : (F,) int array
+        Mould of each face, 0 the sharpest.
+    radii : (k,) float array
+        Radius of each mould, ascending; infinite for a flat one.
+    counts : (k,) int array
+        Number of faces per mould.
+    reassigned : (F,) bool array
+        Faces whose own mould would be smaller than their circle, moved to a larger one.
+    """
+
+    labels: IntArray
+    radii: FloatArray
+    counts: IntArray
+    reassigned: BoolArray
+
+
+def cluster_radii(
+    sphere_mesh: SphereMesh, k: int, seed: int = 0
+) -> tuple[SphereMesh, RadiusClusters]:
+    """
+    Replace the radii of all panels by at most k, vertices fixed.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+    k : int
+        Number of moulds, at least 1; fewer come out where fewer curvatures differ.
+    seed : int
+        Seed of the k-means starts.
+
+    Returns
+    -------
+    sphere_mesh : SphereMesh
+        Spheres through the same circles with the radius of their mould, curved to the same
+        side: ``t = asin(ρ / R)``.
+    clusters : RadiusClusters
+        The moulds.
+
+    Raises
+    ------
+    InputError
+        If k is below 1.
+
+    Notes
+    -----
+    k-means with 10 starts on ``|κ|``, in the unit of the sharpest. A panel cannot lie on a
+    sphere smaller than its circle (R < ρ): such a face goes to the sharpest mould on which it
+    lies, and the flattest mould grows, where necessary, to carry all of its faces.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Sec. 4.3.
+    """
+    if k < 1:
+        raise InputError(f"the number of moulds must be at least 1, not {k}")
+    circles, _ = face_circles(sphere_mesh.mesh)
+    radii = np.sqrt(circles.radii_squared)
+    angles = pencil_angles(sphere_mesh, circles)
+    curvatures = np.abs(np.sin(angles)) / radii
+    side = np.where(angles < 0, -1.0, 1.0)
+
+    centers = _centers(curvatures, k, seed)
+    centers[0] = min(centers[0], 1 / radii.max())
+    fits = centers[None, :] * radii[:, None] <= 1
+    distance = np.abs(centers[None, :] - curvatures[:, None])
+    nearest = np.argmin(distance, axis=1)
+    chosen = np.argmin(np.where(fits, distance, np.inf), axis=1)
+    used, labels = np.unique(-centers[chosen], return_inverse=True)
+    moulds = -used
+    clustered = side * np.arcsin(np.minimum(radii * moulds[labels], 1.0))
+    planes, great_spheres = circle_pencils(circles)
+    rows = pencil_spheres(planes, great_spheres, clustered)
+    with np.errstate(divide="ignore"):
+        clusters = RadiusClusters(
+            labels.astype(np.int64), 1 / moulds, np.bincount(labels), chosen != nearest
+        )
+    return SphereMesh.from_local(sphere_mesh.mesh, rows), clusters
+
+
+def _centers(curvatures: FloatArray, k: int, seed: int) -> FloatArray:
+    """Ascending cluster centres of the curvatures, at most k."""
+    from sklearn.cluster import KMeans
+
+    scale = curvatures.max()
+    if scale == 0:
+        return np.zeros(1)
+    distinct = np.unique(np.round(curvatures / scale / SAME_CURVATURE))
+    if len(distinct) <= k:
+        groups = np.searchsorted(distinct, np.round(curvatures / scale / SAME_CURVATURE))
+        return np.bincount(groups, curvatures) / np.bincount(groups)
+    means = KMeans(k, n_init=10, random_state=seed).fit((curvatures / scale)[:, None])
+    return np.sort(means.cluster_centers_[:, 0]) * scale
