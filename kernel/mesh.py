@@ -53,17 +53,9 @@ class Mesh:
     topology: Topology = field(repr=False)
 
     def __init__(
-        self, vertices: ArrayLike, faces: Sequence[Sequence[int]] | Iterable[ArrayLike]
+        self, vertices: ArrayLike, faces: IntArray | Iterable[Sequence[int] | IntArray]
     ) -> None:
-        if isinstance(faces, np.ndarray) and faces.ndim == 2:
-            count, degree = faces.shape
-            corners = np.array(faces, np.int64).ravel()
-            degrees = np.full(count, degree)
-        else:
-            rows = [np.asarray(face, np.int64).ravel() for face in faces]
-            corners = np.concatenate(rows) if rows else np.zeros(0, np.int64)
-            degrees = np.array([len(row) for row in rows], np.int64)
-        offsets = np.concatenate([[0], np.cumsum(degrees)]).astype(np.int64)
+        corners, offsets = _compress(faces)
         points = np.array(vertices, np.float64)
         _check_elements(points, corners, offsets)
         topology = build_topology(corners, offsets, len(points))
@@ -74,23 +66,66 @@ class Mesh:
 
     @property
     def faces(self) -> tuple[IntArray, ...]:
-        """Vertex ids of each face."""
+        """
+        Vertex ids of each face.
+
+        Returns
+        -------
+        tuple of F int arrays
+            In the order of the corners.
+        """
         return tuple(np.split(self.corners, self.offsets[1:-1]))
 
     @property
     def n_vertices(self) -> int:
-        """Number of vertices."""
+        """
+        Number of vertices.
+
+        Returns
+        -------
+        int
+            V.
+        """
         return len(self.vertices)
 
     @property
     def n_faces(self) -> int:
-        """Number of faces."""
+        """
+        Number of faces.
+
+        Returns
+        -------
+        int
+            F.
+        """
         return len(self.offsets) - 1
 
     @property
     def degrees(self) -> IntArray:
-        """Number of corners of each face, (F,)."""
+        """
+        Number of corners of each face, (F,).
+
+        Returns
+        -------
+        (F,) int array
+            Number of corners of each face, (F,).
+        """
         return np.diff(self.offsets)
+
+
+def _compress(
+    faces: IntArray | Iterable[Sequence[int] | IntArray],
+) -> tuple[IntArray, IntArray]:
+    """Corners and offsets of faces; a plain (F, k) array is not split into rows."""
+    if isinstance(faces, np.ndarray) and faces.ndim == 2:
+        table = np.array(faces, np.int64)
+        corners = table.ravel()
+        degrees = np.full(len(table), len(corners) // max(len(table), 1), np.int64)
+    else:
+        rows = [np.asarray(face, np.int64).ravel() for face in faces]
+        corners = np.concatenate(rows) if rows else np.zeros(0, np.int64)
+        degrees = np.array([len(row) for row in rows], np.int64)
+    return corners, np.concatenate([np.zeros(1, np.int64), np.cumsum(degrees)])
 
 
 def _check_elements(points: FloatArray, corners: IntArray, offsets: IntArray) -> None:

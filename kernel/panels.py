@@ -78,22 +78,50 @@ class Panels:
 
     @property
     def n_panels(self) -> int:
-        """Number of panels."""
+        """
+        Number of panels.
+
+        Returns
+        -------
+        int
+            P.
+        """
         return len(self.face_ids)
 
     @property
     def degrees(self) -> IntArray:
-        """Number of corners of each panel, (P,)."""
+        """
+        Number of corners of each panel, (P,).
+
+        Returns
+        -------
+        (P,) int array
+            Number of corners of each panel, (P,).
+        """
         return np.diff(self.offsets)
 
     @property
     def corner_panels(self) -> IntArray:
-        """Panel of each corner, (H,)."""
+        """
+        Panel of each corner, (H,).
+
+        Returns
+        -------
+        (H,) int array
+            Panel of each corner, (H,).
+        """
         return np.repeat(np.arange(self.n_panels), self.degrees)
 
     @property
     def next_corners(self) -> IntArray:
-        """Following corner in the same panel, (H,)."""
+        """
+        Following corner in the same panel, (H,).
+
+        Returns
+        -------
+        (H,) int array
+            Following corner in the same panel, (H,).
+        """
         return _following(self.offsets)
 
 

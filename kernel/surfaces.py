@@ -250,8 +250,8 @@ def _revolve(radii: FloatArray, heights: FloatArray, turns: FloatArray) -> Float
 def _grid_mesh(
     points: FloatArray, *, closed_around: bool = False, closed_across: bool = False
 ) -> Mesh:
-    rows, columns = points.shape[:2]
-    ids: IntArray = np.arange(rows * columns).reshape(rows, columns)
+    rows, columns = len(points), len(points[0])
+    ids: IntArray = np.arange(rows * columns).reshape((rows, columns))
     if closed_around:
         ids = np.concatenate([ids, ids[:1]], axis=0)
     if closed_across:
