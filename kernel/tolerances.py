@@ -48,3 +48,9 @@ CROSSING: Final = 1e-9
 
 SAME_CURVATURE: Final = 1e-9
 """Curvatures that differ by less, relative to the sharpest, share a mould without a choice."""
+
+VERTEX_MISS: Final = 0.01
+"""Vertices farther from their sphere than this share of the mean edge are worth a warning."""
+
+LITTLE_GAIN: Final = 0.05
+"""A relative gain of spheres over planes that is worth saying to be small."""
