@@ -30,3 +30,6 @@ CAP_ANGLE: Final = 1.3962634015954636
 
 GRADIENT: Final = 1e-11
 """An angle minimisation has converged when the largest torque per face falls below this."""
+
+COINCIDENT: Final = 1e-6
+"""Vertices of separate meshes closer than this, in mean edges, are one (1 µm per m)."""
