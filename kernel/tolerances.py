@@ -54,3 +54,8 @@ VERTEX_MISS: Final = 0.01
 
 LITTLE_GAIN: Final = 0.05
 """A relative gain of spheres over planes that is worth saying to be small."""
+GRADIENT: Final = 1e-11
+"""An angle minimisation has converged when the largest torque per face falls below this."""
+
+COINCIDENT: Final = 1e-6
+"""Vertices of separate meshes closer than this, in mean edges, are one (1 µm per m)."""
