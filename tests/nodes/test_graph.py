@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 import spheremesh as sm
 from spheremesh.nodes import (
-    Node,
     NodeError,
     NodeWarning,
     ReadPath,
