@@ -101,18 +101,24 @@ def write_mesh(mesh: Mesh, path: str | os.PathLike[str]) -> Path:
     holds triangles with float32 corners, so other faces are cut into triangles.
     """
     target = Path(path)
-    suffix = _suffix(target, "write")
-    with replacing(target) as temporary:
-        try:
-            if suffix == ".3dm":
-                write_3dm(mesh, temporary)
-            else:
-                temporary.write_bytes(_FORMATTERS[suffix](mesh))
-        except InputError as error:
-            raise InputError(f"cannot write {target}: {error}") from error
-        except OSError as error:
-            raise InputError(f"cannot write {target}: {error.strerror}") from error
+    _suffix(target, "write")
+    try:
+        with replacing(target) as temporary:
+            _write(mesh, temporary, target)
+    except OSError as error:
+        raise InputError(f"cannot write {target}: {error.strerror}; check the disk") from error
     return target
+
+
+def _write(mesh: Mesh, temporary: Path, target: Path) -> None:
+    suffix = target.suffix.lower()
+    try:
+        if suffix == ".3dm":
+            write_3dm(mesh, temporary)
+        else:
+            temporary.write_bytes(_FORMATTERS[suffix](mesh))
+    except InputError as error:
+        raise InputError(f"cannot write {target}: {error}") from error
 
 
 def _suffix(path: Path, verb: str) -> str:

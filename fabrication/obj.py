@@ -6,15 +6,8 @@ import numpy as np
 
 from ..kernel.errors import InputError
 from ..kernel.mesh import Mesh
-from .polygons import (
-    Polygons,
-    decode,
-    drop_unused,
-    face_words,
-    numbered_words,
-    to_floats,
-    to_integers,
-)
+from .polygons import Polygons, drop_unused
+from .text import decode, face_words, numbered_words, to_floats, to_integers
 
 
 def read_obj(data: bytes, layer: str = "") -> Polygons:

@@ -1,12 +1,15 @@
 """Object File Format (OFF): polygons of any degree, vertices counted from 0."""
 
 import re
+from collections.abc import Iterator
+from itertools import islice
 
 import numpy as np
 
 from ..kernel.errors import InputError
 from ..kernel.mesh import Mesh
-from .polygons import Polygons, decode, face_words, numbered_words, to_floats, to_integers
+from .polygons import Polygons
+from .text import decode, face_words, numbered_words, to_count, to_floats, to_integers
 
 _KEYWORD = re.compile(r"(ST)?C?N?OFF")
 """Texture coordinates, colours and normals follow the point on its line and are ignored."""
@@ -32,52 +35,59 @@ def read_off(data: bytes) -> Polygons:
     InputError
         If a line cannot be read or lines are missing; the message names the line.
     """
-    rows = list(numbered_words(decode(data)))
-    if not rows:
-        raise InputError("the file is blank; export the mesh again")
-    number, words = rows[0]
-    if _KEYWORD.fullmatch(words[0]):
-        rows[:1] = [(number, words[1:])] if words[1:] else []
-    elif not words[0].isdigit():
-        raise InputError(f"line {number}: expected OFF, not {words[0]!r}; save as ascii 3D OFF")
-    n_vertices, n_faces = _read_counts(rows, number)
-    vertex_rows = rows[1 : 1 + n_vertices]
-    face_rows = rows[1 + n_vertices : 1 + n_vertices + n_faces]
-    if len(face_rows) < n_faces:
-        raise InputError(
-            f"line {rows[-1][0]}: the file ends after {len(rows) - 1} of {n_vertices} vertices "
-            f"and {n_faces} faces; export the mesh again"
-        )
-    for number, words in vertex_rows:
+    rows = numbered_words(decode(data))
+    n_vertices, n_faces = _read_counts(rows)
+    coordinates: list[str] = []
+    vertex_lines: list[int] = []
+    for number, words in islice(rows, n_vertices):
         if len(words) < 3:
             raise InputError(f"line {number}: a vertex needs three coordinates")
-    vertex_lines = [number for number, _ in vertex_rows]
-    face_lines = [number for number, _ in face_rows]
-    coordinates = [word for _, words in vertex_rows for word in words[:3]]
-    first_words = [words[0] for _, words in face_rows]
-    degrees = to_integers(first_words, face_lines, np.ones(n_faces, np.int64))
+        coordinates += words[:3]
+        vertex_lines.append(number)
     corner_words: list[str] = []
-    for degree, (number, words) in zip(degrees.tolist(), face_rows, strict=True):
+    degrees: list[int] = []
+    face_lines: list[int] = []
+    for number, words in islice(rows, n_faces):
+        degree = to_count(words[0])
         if not 0 <= degree < len(words):
             raise InputError(
-                f"line {number}: the face announces {degree} corners and lists {len(words) - 1}"
-                "; export the mesh again"
+                f"line {number}: a face is its number of corners and so many vertices, not "
+                f"{' '.join(words)!r}; export the mesh again"
             )
         corner_words += words[1 : 1 + degree]
+        degrees.append(degree)
+        face_lines.append(number)
+    if len(vertex_lines) + len(face_lines) < n_vertices + n_faces:
+        raise InputError(
+            f"line {[1, *vertex_lines, *face_lines][-1]}: the file ends after "
+            f"{len(vertex_lines)} of {n_vertices} vertices and {len(face_lines)} of {n_faces} "
+            "faces; export the mesh again"
+        )
     return Polygons(
         to_floats(coordinates, vertex_lines, 3),
         to_integers(corner_words, face_lines, degrees),
-        degrees,
+        np.array(degrees, np.int64),
         vertex_lines,
         face_lines,
     )
 
 
-def _read_counts(rows: list[tuple[int, list[str]]], line: int) -> tuple[int, int]:
-    number, words = rows[0] if rows else (line, [])
-    if len(words) < 2 or not all(word.isdigit() for word in words[:2]):
-        raise InputError(f"line {number}: expected the numbers of vertices, faces and edges")
-    return int(words[0]), int(words[1])
+def _read_counts(rows: Iterator[tuple[int, list[str]]]) -> tuple[int, int]:
+    """Numbers of vertices and faces, behind the keyword or on the line below it."""
+    number, words = next(rows, (1, [""]))
+    if _KEYWORD.fullmatch(words[0]):
+        words = words[1:]
+        if not words:
+            number, words = next(rows, (number, words))
+    elif to_count(words[0]) < 0:
+        raise InputError(f"line {number}: expected OFF, not {words[0]!r}; save as ascii OFF")
+    counts = [to_count(word) for word in words[:2]]
+    if len(counts) < 2 or min(counts) < 0:
+        raise InputError(
+            f"line {number}: expected the numbers of vertices, faces and edges, not "
+            f"{' '.join(words)!r}; save as ascii OFF"
+        )
+    return counts[0], counts[1]
 
 
 def format_off(mesh: Mesh) -> bytes:

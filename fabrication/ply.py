@@ -2,15 +2,17 @@
 
 import struct
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernel.arrays import FloatArray, IntArray
+from ..kernel.arrays import IntArray
 from ..kernel.errors import InputError
 from ..kernel.mesh import Mesh
-from .polygons import Polygons, decode, numbered_words, to_floats, to_integers
+from .polygons import Polygons
+from .text import decode, numbered_words, to_count, to_floats, to_integers
 
 _AGAIN = "export the mesh again"
 _ORDERS: Final = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
@@ -21,6 +23,7 @@ _CODES: Final = {
     "float": "f", "float32": "f", "double": "d", "float64": "d",
 }  # fmt: skip
 _FACE_LISTS: Final = ("vertex_indices", "vertex_index")
+_NO_FACE_LIST: Final = f"the faces have no list {' or '.join(_FACE_LISTS)}; {_AGAIN}"
 
 
 @dataclass(frozen=True)
@@ -83,8 +86,8 @@ def _read_header(data: bytes) -> _Header:
         match line.split():
             case ["format", name, "1.0"] if name in _ORDERS:
                 order = _ORDERS[name]
-            case ["element", name, count] if count.isdigit():
-                elements.append(_Element(name, int(count), ()))
+            case ["element", name, count] if to_count(count) >= 0:
+                elements.append(_Element(name, to_count(count), ()))
             case ["property", *words] if elements and (new := _read_property(words)):
                 last = elements[-1]
                 elements[-1] = _Element(last.name, last.count, (*last.properties, new))
@@ -115,41 +118,37 @@ def _coordinate_columns(element: _Element) -> list[int]:
 
 
 def _read_ascii(body: bytes, header: _Header) -> Polygons:
-    rows = list(numbered_words(decode(body), header.n_lines + 1))
-    vertices, corners = np.zeros((0, 3)), np.zeros(0, np.int64)
-    vertex_lines: list[int] = []
-    face_lines: list[int] = []
+    rows = numbered_words(decode(body), header.n_lines + 1)
+    coordinates: list[str] = []
+    corner_words: list[str] = []
     degrees: list[int] = []
-    start = 0
+    lines: dict[str, list[int]] = {"vertex": [], "face": []}
+    last = header.n_lines
     for element in header.elements:
-        block = rows[start : start + element.count]
-        start += element.count
-        if len(block) < element.count:
-            line = rows[-1][0] if rows else header.n_lines
+        columns = _coordinate_columns(element) if element.name == "vertex" else []
+        n_read = 0
+        for n_read, (last, words) in enumerate(islice(rows, element.count), 1):  # noqa: B007
+            if element.name == "vertex":
+                if len(words) <= max(columns):
+                    raise InputError(f"line {last}: a vertex needs three coordinates")
+                coordinates += [words[column] for column in columns]
+            elif element.name == "face":
+                corners = _ascii_corners(last, words, element)
+                corner_words += corners
+                degrees.append(len(corners))
+            lines.setdefault(element.name, []).append(last)
+        if n_read < element.count:
             raise InputError(
-                f"line {line}: the file ends after {len(block)} of {element.count} rows of "
-                f"element {element.name}; {_AGAIN}"
+                f"line {last}: the file ends after {n_read} of {element.count} rows of element "
+                f"{element.name}; {_AGAIN}"
             )
-        if element.name == "vertex":
-            vertex_lines = [number for number, _ in block]
-            vertices = _ascii_vertices(block, _coordinate_columns(element))
-        elif element.name == "face":
-            face_lines = [number for number, _ in block]
-            lists = [_ascii_corners(number, words, element) for number, words in block]
-            degrees = [len(words) for words in lists]
-            corners = to_integers(
-                [word for words in lists for word in words], face_lines, degrees
-            )
-    return Polygons(vertices, corners, np.array(degrees, np.int64), vertex_lines, face_lines)
-
-
-def _ascii_vertices(block: list[tuple[int, list[str]]], columns: list[int]) -> FloatArray:
-    x, y, z = columns
-    for number, words in block:
-        if len(words) <= max(columns):
-            raise InputError(f"line {number}: a vertex needs three coordinates")
-    words = [word for _, row in block for word in (row[x], row[y], row[z])]
-    return to_floats(words, [number for number, _ in block], 3)
+    return Polygons(
+        to_floats(coordinates, lines["vertex"], 3),
+        to_integers(corner_words, lines["face"], degrees),
+        np.array(degrees, np.int64),
+        lines["vertex"],
+        lines["face"],
+    )
 
 
 def _ascii_corners(number: int, words: list[str], element: _Element) -> list[str]:
@@ -158,13 +157,13 @@ def _ascii_corners(number: int, words: list[str], element: _Element) -> list[str
         if not each.count_code:
             start += 1
             continue
-        count = int(words[start]) if start < len(words) and words[start].isdigit() else -1
+        count = to_count(words[start]) if start < len(words) else -1
         start += 1 + count
         if count < 0 or start > len(words):
             raise InputError(f"line {number}: the list {each.name} is not complete; {_AGAIN}")
         if each.name in _FACE_LISTS:
             return words[start - count : start]
-    raise InputError(f"the faces have no list {' or '.join(_FACE_LISTS)}; {_AGAIN}")
+    raise InputError(_NO_FACE_LIST)
 
 
 def _read_binary(body: bytes, header: _Header) -> Polygons:
@@ -184,7 +183,8 @@ def _read_binary(body: bytes, header: _Header) -> Polygons:
         if element.name == "vertex":
             names = [f"f{column}" for column in _coordinate_columns(element)]
             table = np.frombuffer(body, record, element.count, start)
-            vertices = np.stack([table[name].astype(np.float64) for name in names], axis=1)
+            with np.errstate(invalid="ignore"):  # a signalling NaN; Mesh refuses it
+                vertices = np.stack([table[name].astype(np.float64) for name in names], axis=1)
         start += element.count * record.itemsize
     return Polygons(vertices, corners, degrees)
 
@@ -224,7 +224,9 @@ def _binary_lists(
         raise _cut_short(element)
     degrees = np.array(counts, np.int64)
     codes = [each.code for each in element.properties if each.name in _FACE_LISTS]
-    if element.name != "face" or not codes:
+    if element.name == "face" and not codes:
+        raise InputError(_NO_FACE_LIST)
+    if not codes:
         return np.zeros(0, np.int64), np.zeros(0, np.int64), at
     item = np.dtype(order + codes[0])
     # Where each corner stands in the file: the start of its list, and so many items on.

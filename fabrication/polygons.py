@@ -1,8 +1,6 @@
 """What a mesh file says: polygons, before they are known to be a mesh."""
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -69,7 +67,7 @@ def to_mesh(polygons: Polygons) -> Mesh:
 
 def _faces(polygons: Polygons) -> IntArray | list[IntArray]:
     degrees = polygons.degrees
-    if (degrees == degrees[0]).all():
+    if (degrees == max(degrees[0], 1)).all():
         return polygons.corners.reshape(-1, int(degrees[0]))
     return np.split(polygons.corners, np.cumsum(degrees)[:-1])
 
@@ -206,141 +204,3 @@ def mean_side(polygons: Polygons) -> float:
     following[ends - 1] = ends - polygons.degrees
     points = polygons.vertices[polygons.corners]
     return float(norm(points[following] - points).mean())
-
-
-def decode(data: bytes) -> str:
-    """
-    The text of a file; bytes that are not UTF-8 (old comments, names) do no harm.
-
-    Parameters
-    ----------
-    data : bytes
-        Content of the file, with or without a byte order mark, with any line ends.
-
-    Returns
-    -------
-    str
-        Text with plain newlines.
-    """
-    text = data.decode("utf-8-sig", errors="replace")
-    return text.replace("\r\n", "\n").replace("\r", "\n")
-
-
-def numbered_words(text: str, first: int = 1) -> Iterator[tuple[int, list[str]]]:
-    """
-    The words of each line that is not blank, without its comment.
-
-    Parameters
-    ----------
-    text : str
-        Lines; ``#`` at the start of a line or of a word starts a comment.
-    first : int
-        Number of the first line.
-
-    Yields
-    ------
-    tuple of int and list of str
-        Line number and words.
-    """
-    for number, line in enumerate(text.split("\n"), first):
-        words = line.split()
-        if "#" in line:
-            words = words[: next((i for i, word in enumerate(words) if word[0] == "#"), None)]
-        if words:
-            yield number, words
-
-
-def face_words(mesh: Mesh, first: int) -> list[str]:
-    """
-    The vertex numbers of each face, as words separated by blanks.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        The mesh.
-    first : int
-        Number of the first vertex.
-
-    Returns
-    -------
-    list of str
-        One text per face.
-    """
-    words = list(map(str, (mesh.corners + first).tolist()))
-    return [" ".join(words[start:end]) for start, end in pairwise(mesh.offsets.tolist())]
-
-
-def to_floats(words: Sequence[str], lines: Sequence[int], per_line: int) -> FloatArray:
-    """
-    Words of a text file as numbers.
-
-    Parameters
-    ----------
-    words : sequence of str
-        Numbers as written, the same count from every line.
-    lines : sequence of int
-        Line of each group of words.
-    per_line : int
-        Words in a group.
-
-    Returns
-    -------
-    (N, per_line) float array
-        The numbers.
-
-    Raises
-    ------
-    InputError
-        If a word is not a number; the message names its line.
-    """
-    try:
-        return np.array(list(map(float, words)), np.float64).reshape(-1, per_line)
-    except ValueError:
-        index = next(i for i, word in enumerate(words) if not _is_number(word, float))
-        raise InputError(_not_a_number(lines[index // per_line], words[index])) from None
-
-
-def to_integers(words: Sequence[str], lines: ArrayLike, counts: ArrayLike) -> IntArray:
-    """
-    Words of a text file as integers.
-
-    Parameters
-    ----------
-    words : sequence of str
-        Integers as written.
-    lines : (F,) array_like of int
-        Line of each group of words.
-    counts : (F,) array_like of int
-        Number of words in each group.
-
-    Returns
-    -------
-    (N,) int array
-        The integers.
-
-    Raises
-    ------
-    InputError
-        If a word is not an integer; the message names its line.
-    """
-    try:
-        return np.array(list(map(int, words)), np.int64)
-    except (ValueError, OverflowError):
-        index = next(i for i, word in enumerate(words) if not _is_number(word, np.int64))
-        line = int(np.repeat(np.asarray(lines), np.asarray(counts))[index])
-        raise InputError(_not_a_number(line, words[index])) from None
-
-
-def _is_number(word: str, kind: type[float | np.int64]) -> bool:
-    try:
-        kind(word)
-    except (ValueError, OverflowError):
-        return False
-    return True
-
-
-def _not_a_number(line: int, word: str) -> str:
-    return (
-        f"line {line}: {word!r} is not a usable number; write coordinates with a decimal "
-        "point and vertex numbers as integers"
-    )

@@ -4,9 +4,11 @@ import base64
 import struct
 import zlib
 from collections import Counter
+from collections.abc import Iterator
 from io import SEEK_CUR, BytesIO
+from itertools import chain, islice
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 
@@ -16,6 +18,9 @@ from ..kernel.mesh import Mesh
 from ..kernel.tolerances import COINCIDENT
 from .polygons import Polygons, drop_unused, mean_side, weld
 from .triangles import fan_triangles
+
+RhinoObject: TypeAlias = Any
+"""An object of rhino3dm, whose stubs lack iteration and half of the methods."""
 
 _CHUNK = struct.Struct("<Iq")
 _CLASS, _CLASS_DATA, _ANONYMOUS = 0x00027FFA, 0x0002FFFC, 0x40008000
@@ -53,7 +58,7 @@ def read_3dm(data: bytes, layer: str = "") -> Polygons:
     if model is None:
         raise InputError("Rhino cannot read the file: it is damaged or no .3dm; save it again")
     objects = _objects_on(model, layer)
-    meshes = [each for each in objects if isinstance(each, rhino.Mesh)]
+    meshes = [each for each in objects if isinstance(each, rhino.Mesh) and each.Faces.Count]
     if not meshes:
         kinds = Counter(type(each).__name__ for each in objects)
         held = ", ".join(f"{count} {kind}" for kind, count in kinds.items()) or "no objects"
@@ -62,28 +67,29 @@ def read_3dm(data: bytes, layer: str = "") -> Polygons:
             f"{where} holds no meshes, but {held}; mesh them in Rhino (Mesh, QuadRemesh or "
             "ExtractRenderMesh) and save"
         )
-    return _join([_read_mesh(_class_data(each)) for each in meshes])
+    return _join(
+        [_read_mesh(_class_data(base64.b64decode(each.Encode()["data"]))) for each in meshes]
+    )
 
 
-def _rhino3dm() -> Any:  # noqa: ANN401 - the stubs lack iteration and half of the methods
+def _rhino3dm() -> RhinoObject:
     import rhino3dm
 
-    return cast("Any", rhino3dm)
+    return cast("RhinoObject", rhino3dm)
 
 
-def _objects_on(model: Any, layer: str) -> list[Any]:  # noqa: ANN401
-    paths: list[str] = [each.FullPath for each in model.Layers]
-    objects: list[Any] = []
+def _objects_on(model: RhinoObject, layer: str) -> list[RhinoObject]:
+    paths: dict[int, str] = {each.Index: each.FullPath for each in model.Layers}
+    objects: list[RhinoObject] = []
     for each in model.Objects:
-        index: int = each.Attributes.LayerIndex
-        path: str = paths[index] if 0 <= index < len(paths) else ""
+        path = paths.get(each.Attributes.LayerIndex, "")
         is_on_layer = not layer or path == layer or path.startswith(f"{layer}::")
         if is_on_layer and not each.Attributes.IsInstanceDefinitionObject:
             objects.append(each.Geometry)
     if layer and not objects:
         raise InputError(
             f"nothing is on layer {layer!r}; the file has layers "
-            + (", ".join(map(repr, paths)) or "none")
+            + (", ".join(map(repr, paths.values())) or "none")
         )
     return objects
 
@@ -96,18 +102,17 @@ def _join(parts: list[Polygons]) -> Polygons:
         np.concatenate([part.degrees for part in parts]),
     )
     joined = drop_unused(joined)
-    if not np.isfinite(joined.vertices).all() or not len(joined.corners):
+    if joined.corners.max() >= len(joined.vertices) or not np.isfinite(joined.vertices).all():
         return joined
     vertices, ids = weld(joined.vertices, COINCIDENT * mean_side(joined))
     return Polygons(vertices, ids[joined.corners], joined.degrees)
 
 
-def _class_data(mesh: Any) -> bytes:  # noqa: ANN401
+def _class_data(encoded: bytes) -> bytes:
     """What ON_Mesh::Write wrote: rhino3dm gives no other access to ngons."""
-    stream = base64.b64decode(mesh.Encode()["data"])
-    _, size = _CHUNK.unpack_from(stream, _CLASS_DATA_START)
+    _, size = _CHUNK.unpack_from(encoded, _CLASS_DATA_START)
     start = _CLASS_DATA_START + _CHUNK.size
-    return stream[start : start + size - 4]
+    return encoded[start : start + size - 4]
 
 
 def _read_mesh(data: bytes) -> Polygons:
@@ -229,43 +234,42 @@ def write_3dm(mesh: Mesh, path: Path) -> None:
         raise InputError("rhino3dm cannot write the file; check the disk")
 
 
-def _to_rhino(rhino: Any, mesh: Mesh) -> Any:  # noqa: ANN401
+def _to_rhino(rhino: RhinoObject, mesh: Mesh) -> RhinoObject:
     plain = rhino.Mesh()
+    add_vertex, add_face = plain.Vertices.AddPoint3d, plain.Faces.AddFace
     for x, y, z in mesh.vertices.tolist():
-        plain.Vertices.AddPoint3d(x, y, z)
-    is_ngon = mesh.degrees > 4
-    n_parts = np.where(is_ngon, mesh.degrees - 2, 1)
+        add_vertex(x, y, z)
     triangles, owners = fan_triangles(mesh)
-    fans = iter(triangles[is_ngon[owners]].tolist())
-    for face, n_triangles in zip(mesh.faces, n_parts.tolist(), strict=True):
-        parts = [face.tolist()] if len(face) <= 4 else [next(fans) for _ in range(n_triangles)]
+    fans: Iterator[list[int]] = iter(triangles[mesh.degrees[owners] > 4].tolist())
+    ngons: list[list[int]] = []
+    n_parts = 0
+    for face in np.split(mesh.corners, mesh.offsets[1:-1]):
+        corners: list[int] = face.tolist()
+        parts = [corners] if len(corners) <= 4 else list(islice(fans, len(corners) - 2))
         for part in parts:
-            plain.Faces.AddFace(*part)
-    if not is_ngon.any():
-        return plain
-    first_parts = np.cumsum(n_parts) - n_parts
-    blocks = [
-        np.concatenate([[len(face), count], face, np.arange(first, first + count)])
-        for face, count, first in zip(mesh.faces, n_parts, first_parts, strict=True)
-        if len(face) > 4
-    ]
-    head = np.array([1, 0, len(blocks)])
-    return _with_ngons(rhino, plain, np.concatenate([head, *blocks]).astype("<i4").tobytes())
+            add_face(*part)
+        if len(corners) > 4:
+            members = range(n_parts, n_parts + len(parts))
+            ngons.append([len(corners), len(parts), *corners, *members])
+        n_parts += len(parts)
+    return _with_ngons(rhino, plain, ngons) if ngons else plain
 
 
-def _with_ngons(rhino: Any, mesh: Any, ngons: bytes) -> Any:  # noqa: ANN401
-    encoded = mesh.Encode()
-    stream = base64.b64decode(encoded["data"])
-    data = _class_data(mesh)
-    cursor = BytesIO(data)
-    _read_to_ngons(cursor)
-    flag = cursor.tell()
-    data = data[:flag] + b"\x01" + _chunk(_ANONYMOUS, ngons) + data[flag + 1 :]
-    _, old_size = _CHUNK.unpack_from(stream, _CLASS_DATA_START)
+def _with_ngons(rhino: RhinoObject, mesh: RhinoObject, ngons: list[list[int]]) -> RhinoObject:
+    """Follow ON_Mesh::Write: a flag, and a chunk with version 1.0, the count and the ngons."""
+    fields: dict[str, Any] = mesh.Encode()
+    encoded = base64.b64decode(fields["data"])
+    data = _class_data(encoded)
+    before = BytesIO(data)
+    _read_to_ngons(before)
+    flag = before.tell()
+    block = np.array([1, 0, len(ngons), *chain.from_iterable(ngons)], "<i4").tobytes()
+    data = data[:flag] + b"\x01" + _chunk(_ANONYMOUS, block) + data[flag + 1 :]
+    _, old_size = _CHUNK.unpack_from(encoded, _CLASS_DATA_START)
     end = _CLASS_DATA_START + _CHUNK.size + old_size
-    body = stream[_CHUNK.size : _CLASS_DATA_START] + _chunk(_CLASS_DATA, data) + stream[end:]
-    stream = _CHUNK.pack(_CLASS, len(body)) + body
-    return rhino.CommonObject.Decode({**encoded, "data": base64.b64encode(stream).decode()})
+    body = encoded[_CHUNK.size : _CLASS_DATA_START] + _chunk(_CLASS_DATA, data) + encoded[end:]
+    encoded = _CHUNK.pack(_CLASS, len(body)) + body
+    return rhino.CommonObject.Decode({**fields, "data": base64.b64encode(encoded).decode()})
 
 
 def _chunk(code: int, data: bytes) -> bytes:

@@ -4,9 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kernel.arrays import FloatArray, IntArray, norm
-from ..kernel.errors import InputError
+from ..kernel.errors import InputError, name_ids
 from ..kernel.mesh import Mesh
-from .polygons import Polygons, decode, numbered_words, to_floats, weld
+from .polygons import Polygons, weld
+from .text import decode, numbered_words, to_floats
 from .triangles import fan_triangles
 
 _AGAIN = "export the mesh again"
@@ -46,7 +47,13 @@ def read_stl(data: bytes) -> Polygons:
             f"{_AGAIN}"
         )
     records = np.frombuffer(data, _RECORD, count, _HEADER + 4)
-    return _joined(records["corners"].reshape(-1, 3).astype(np.float64), np.zeros(0, np.int64))
+    with np.errstate(invalid="ignore"):  # a signalling NaN; refused below
+        points = records["corners"].reshape(-1, 3).astype(np.float64)
+    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(bad):
+        faces = name_ids(np.unique(bad // 3).tolist())
+        raise InputError(f"faces {faces} have coordinates that are not finite; {_AGAIN}")
+    return _joined(points, np.zeros(0, np.int64))
 
 
 def _read_ascii(data: bytes) -> Polygons:
