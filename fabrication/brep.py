@@ -2,8 +2,9 @@
 Panels as shapes of the CAD kernel OpenCASCADE: spheres, planes, circles and lines, all exact.
 
 Vertices, edges and faces are built directly and shared, so nothing is intersected or sewn.
-Every shape is built about the origin of its panel and placed by a translation: a model keeps
-its digits wherever it stands on the site.
+Every shape is built about the origin of its panel and placed by a translation, wherever the
+model stands on the site. The translations are rounded to few enough digits for the text of a
+STEP file (OpenCASCADE writes 13), and the remainders go into the shapes: no digit is lost.
 
 The sphere of a face has its parameters turned so that the panel lies about u = π, v = 0, away
 from the seam and the poles.
@@ -42,12 +43,18 @@ from OCP.TopoDS import (
 
 from ..kernel.arcs import ArcCircles, Arcs, arc_circles
 from ..kernel.arrays import FloatArray, IntArray, dot, norm, unit
-from ..kernel.panels import Panels, inner_panel_arcs, panel_arcs, scale_panels
+from ..kernel.panels import (
+    Panels,
+    inner_panel_arcs,
+    move_origins,
+    panel_arcs,
+    scale_panels,
+)
 from ..kernel.spheres import center_radius, signed_distance
 from ..kernel.tolerances import EPSILON
 
 CONFUSION = 1e-7
-"""Distance below which OpenCASCADE takes points for one, in its unit (we give it millimetres)."""
+"""Distance below which OpenCASCADE takes points for one; meant for millimetres."""
 
 _BUILDER = BRep_Builder()
 
@@ -58,7 +65,7 @@ class _Layer:
 
     vertices: list[TopoDS_Vertex]
     edges: list[TopoDS_Edge]
-    faces: list[TopoDS_Face]
+    faces: list[TopoDS_Shape]
 
 
 def panel_shapes(
@@ -89,12 +96,13 @@ def panel_shapes(
     of a panel of n edges takes 0.1 n ms with, half of it without curves in parameters.
     """
     panels = scale_panels(panels, scale)
+    panels = move_origins(panels, _rounded(panels.origins))
     tolerances = _tolerances(panels)
-    outer = _layer(panels, panels.spheres, panel_arcs(panels), tolerances, pcurves)
+    outer = _layer(panels, panels.spheres, panel_arcs(panels), tolerances, pcurves=pcurves)
     shapes: Iterable[TopoDS_Shape] = outer.faces
     if panels.thickness > 0:
         arcs = inner_panel_arcs(panels)
-        inner = _layer(panels, panels.inner_spheres, arcs, tolerances, pcurves)
+        inner = _layer(panels, panels.inner_spheres, arcs, tolerances, pcurves=pcurves)
         walls = _walls(panels, outer, inner, tolerances)
         bounds = panels.offsets.tolist()
         shapes = [
@@ -105,6 +113,13 @@ def panel_shapes(
         ]
     places = panels.origins.tolist()
     return [shape.Located(_place(x)) for shape, x in zip(shapes, places, strict=True)]
+
+
+def _rounded(origins: FloatArray) -> FloatArray:
+    """Origins with the decimals that leave the farthest ten digits."""
+    farthest = float(np.abs(origins).max(initial=0.0))
+    decimals = 10 - int(np.ceil(np.log10(farthest))) if farthest > 0 else 0
+    return np.round(origins, decimals)
 
 
 def _place(origin: list[float]) -> TopLoc_Location:
@@ -135,7 +150,7 @@ def _tolerances(panels: Panels) -> FloatArray:
 
 
 def _layer(
-    panels: Panels, rows: FloatArray, arcs: Arcs, tolerances: FloatArray, pcurves: bool
+    panels: Panels, rows: FloatArray, arcs: Arcs, tolerances: FloatArray, *, pcurves: bool
 ) -> _Layer:
     owners = panels.corner_panels
     corner_tolerances = tolerances[owners].tolist()
@@ -145,20 +160,19 @@ def _layer(
         _vertex(point, tolerance)
         for point, tolerance in zip(arcs.starts.tolist(), corner_tolerances, strict=True)
     ]
+    following: list[int] = panels.next_corners.tolist()
+    ends = [vertices[corner] for corner in following]
     curves, lengths = _curves(arcs, circles)
     edges = [
-        _edge(curve, vertices[first], vertices[second], length, tolerance)
-        for curve, first, second, length, tolerance in zip(
-            curves, range(len(curves)), panels.next_corners.tolist(), lengths,
-            corner_tolerances, strict=True,
-        )
-    ]  # fmt: skip
+        _edge(*parts)
+        for parts in zip(curves, vertices, ends, lengths, corner_tolerances, strict=True)
+    ]
     surfaces = _surfaces(rows, frames)
     curves_2d: list[Geom2d_BSplineCurve | None] = [None] * len(edges)
     if pcurves:
         curves_2d = _parameter_curves(rows[owners], frames[owners], arcs, circles)
     bounds, is_inward = panels.offsets.tolist(), (rows[:, 0] > 0).tolist()
-    faces: list[TopoDS_Face] = []
+    faces: list[TopoDS_Shape] = []
     for panel, surface in enumerate(surfaces):
         ring = slice(bounds[panel], bounds[panel + 1])
         tolerance = corner_tolerances[bounds[panel]]
@@ -244,20 +258,16 @@ def _walls(
             inner.vertices, outer.vertices, corner_tolerances, strict=True,
         )
     ]  # fmt: skip
-    walls: list[TopoDS_Face] = []
+    following: list[int] = panels.next_corners.tolist()
+    next_posts = [posts[corner] for corner in following]
     chords = panels.corners[panels.next_corners] - panels.corners
-    for edge, (following, corner, normal, chord, tolerance) in enumerate(
-        zip(
-            panels.next_corners.tolist(), panels.corners.tolist(),
-            (-panels.plane_normals).tolist(), chords.tolist(), corner_tolerances, strict=True,
-        )
+    walls: list[TopoDS_Face] = []
+    for corner, normal, chord, low, right, high, left, tolerance in zip(
+        panels.corners.tolist(), (-panels.plane_normals).tolist(), chords.tolist(),
+        inner.edges, next_posts, outer.edges, posts, corner_tolerances, strict=True,
     ):  # fmt: skip
         plane = Geom_Plane(gp_Ax3(gp_Pnt(*corner), gp_Dir(*normal), gp_Dir(*chord)))
-        ring = (
-            inner.edges[edge], posts[following],
-            outer.edges[edge].Reversed(), posts[edge].Reversed(),
-        )  # fmt: skip
-        walls.append(_face(plane, ring, tolerance))
+        walls.append(_face(plane, (low, right, high.Reversed(), left.Reversed()), tolerance))
     return walls
 
 
@@ -278,15 +288,13 @@ def _edge(
     return edge
 
 
-def _face(
-    surface: Geom_Surface, ring: Iterable[TopoDS_Shape], tolerance: float
-) -> TopoDS_Face:
+def _face(surface: Geom_Surface, ring: Iterable[TopoDS_Shape], tolerance: float) -> TopoDS_Face:
     """Face to the left of a closed chain of oriented edges."""
     wire = TopoDS_Wire()
     _BUILDER.MakeWire(wire)
     for edge in ring:
         _BUILDER.Add(wire, edge)
-    wire.Closed(True)
+    wire.Closed(theIsClosed=True)
     face = TopoDS_Face()
     _BUILDER.MakeFace(face, surface, tolerance)
     _BUILDER.Add(face, wire)
@@ -300,12 +308,10 @@ def _patch(
     tolerance: float,
     *,
     is_inward: bool,
-) -> TopoDS_Face:
-    """Face along N; the kernel's own normal of a sphere points outwards, N maybe inwards."""
-    if not is_inward:
-        face = _face(surface, edges, tolerance)
-    else:
-        face = _face(surface, [edge.Reversed() for edge in reversed(edges)], tolerance)
+) -> TopoDS_Shape:
+    """Face along N; is_inward: N points to the centre, unlike the surface's own normal."""
+    ring = [edge.Reversed() for edge in reversed(edges)] if is_inward else edges
+    face = _face(surface, ring, tolerance)
     for edge, curve in zip(edges, curves_2d, strict=True):
         if curve is not None:
             _BUILDER.UpdateEdge(edge, curve, face, tolerance)
@@ -317,7 +323,7 @@ def _solid(faces: Iterable[TopoDS_Shape]) -> TopoDS_Solid:
     _BUILDER.MakeShell(shell)
     for face in faces:
         _BUILDER.Add(shell, face)
-    shell.Closed(True)
+    shell.Closed(theIsClosed=True)
     solid = TopoDS_Solid()
     _BUILDER.MakeSolid(solid)
     _BUILDER.Add(solid, shell)
@@ -391,17 +397,15 @@ def _sphere_parameters(motion: FloatArray, angles: FloatArray) -> FloatArray:
     v = np.arctan2(pz, equator)
     v1 = qz / equator
     v2 = rz / equator - qz * half_rate / (square * equator)
-    return np.stack(
-        [np.stack([u, v], -1), np.stack([u1, v1], -1), np.stack([u2, v2], -1)]
-    )
+    return np.stack([np.stack([u, v], -1), np.stack([u1, v1], -1), np.stack([u2, v2], -1)])
 
 
 def _quintic_poles(nodes: FloatArray, steps: FloatArray) -> FloatArray:
     """
-    Poles (H, 3n + 3, 2) of quintic splines with simple-to-continue triple knots.
+    Poles (H, 3n + 3, 2) of quintic splines with triple inner knots, through n + 1 nodes.
 
-    Each inner node gives the three poles ``b4``-line of its neighbours: with Bézier points
-    b₃, b₄ before the node and b₂ after it, the poles are b₃, 2 b₄ - b₃, b₂.
+    With the Bézier points b₃, b₄ before an inner node and b₂ after it, the three poles of its
+    knot are b₃, 2 b₄ - b₃, b₂. The first and last three poles are Bézier points.
     """
     value, rate, bend = nodes
     rate = rate * steps[:, None, None]

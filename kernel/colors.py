@@ -1,4 +1,4 @@
-"""Colours of moulds: the same in every file, picture and viewer."""
+"""Names and colours of moulds: the same in every file, picture and viewer."""
 
 import math
 from typing import TypeAlias
@@ -10,6 +10,35 @@ UNLABELLED: Color = (178, 182, 187)
 
 _LIGHTNESSES = (0.74, 0.52)
 _CHROMA = 0.15
+
+
+def mould_name(label: int, count: int) -> str:
+    """
+    Name of a mould, for layers and schedules.
+
+    Parameters
+    ----------
+    label : int
+        Mould, from 0; -1 for a panel without mould.
+    count : int
+        Number of moulds.
+
+    Returns
+    -------
+    str
+        ``Mould 01`` for the first; ``Panels`` for panels without mould.
+
+    Examples
+    --------
+    >>> mould_name(0, 8)
+    'Mould 01'
+    >>> mould_name(8, 120)
+    'Mould 009'
+    """
+    if label < 0:
+        return "Panels"
+    width = max(2, len(str(count)))
+    return f"Mould {label + 1:0{width}d}"
 
 
 def mould_color(label: int, count: int) -> Color:

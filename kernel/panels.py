@@ -469,6 +469,35 @@ def scale_panels(panels: Panels, factor: float) -> Panels:
     )
 
 
+def move_origins(panels: Panels, origins: FloatArray) -> Panels:
+    """
+    The same panels in coordinates local to other points.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+    origins : (P, 3) float array
+        New origins, in model coordinates, near the old ones.
+
+    Returns
+    -------
+    Panels
+        Panels at the same place.
+    """
+    shifts = origins - panels.origins
+    corner_shifts = shifts[panels.corner_panels]
+    return replace(
+        panels,
+        origins=origins,
+        spheres=recenter(panels.spheres, shifts),
+        inner_spheres=recenter(panels.inner_spheres, shifts),
+        plane_offsets=panels.plane_offsets - dot(panels.plane_normals, corner_shifts),
+        corners=panels.corners - corner_shifts,
+        inner_corners=panels.inner_corners - corner_shifts,
+    )
+
+
 def panel_arcs(panels: Panels) -> Arcs:
     """
     Edges of the outer faces, in local coordinates.
