@@ -2,9 +2,10 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from .arrays import FloatArray, IntArray, norm, read_only, sum_by, unit
 from .errors import InputError, name_ids
@@ -57,11 +58,11 @@ class Mesh:
     ) -> None:
         if isinstance(faces, np.ndarray) and faces.ndim == 2:
             count, degree = faces.shape
-            corners = np.array(faces, np.int64).ravel()
+            corners = _whole_numbers(faces.ravel())
             degrees = np.full(count, degree)
         else:
-            rows = [np.asarray(face, np.int64).ravel() for face in faces]
-            corners = np.concatenate(rows) if rows else np.zeros(0, np.int64)
+            rows = [np.asarray(face).ravel() for face in faces]
+            corners = _whole_numbers(np.concatenate(rows) if rows else np.zeros(0))
             degrees = np.array([len(row) for row in rows], np.int64)
         offsets = np.concatenate([[0], np.cumsum(degrees)]).astype(np.int64)
         points = np.array(vertices, np.float64)
@@ -91,6 +92,14 @@ class Mesh:
     def degrees(self) -> IntArray:
         """Number of corners of each face, (F,)."""
         return np.diff(self.offsets)
+
+
+def _whole_numbers(indices: NDArray[Any]) -> IntArray:
+    if indices.dtype.kind not in "iu":
+        is_whole = np.isfinite(indices) & (indices == np.floor(indices))
+        if not is_whole.all():
+            raise InputError("faces must refer to vertices by whole numbers")
+    return indices.astype(np.int64)
 
 
 def _check_elements(points: FloatArray, corners: IntArray, offsets: IntArray) -> None:
