@@ -2,16 +2,22 @@
 
 import os
 from collections.abc import Callable, Iterable, Mapping
+from contextvars import ContextVar
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
 
 from .cache import Cache, Entry, digest, file_state, lock_arrays, own_containers
 from .errors import GraphError, NodeError
-from .node import collected_messages
+from .node import collected_messages, warn
 from .ports import Port, Value, check_value, convert
 from .wires import Each, Param, Step, Wire, parents, sources
 
 OnStep = Callable[[str, str], None]
+
+_running: ContextVar[Callable[[], str] | None] = ContextVar("running", default=None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +38,8 @@ class Run:
     on_step : callable
         Called with the name of a step and ``"running"``, ``"done"``, ``"cached"`` or
         ``"failed"``.
+    to_json : callable
+        Gives the graph as JSON.
     keys : dict of str to bytes
         Keys found so far.
     entries : dict of str to Entry
@@ -43,6 +51,7 @@ class Run:
     units: str
     cache: Cache
     on_step: OnStep
+    to_json: Callable[[], str]
     keys: dict[str, bytes] = field(default_factory=dict[str, bytes])
     entries: dict[str, Entry] = field(default_factory=dict[str, Entry])
 
@@ -100,6 +109,24 @@ def output(run: Run, source: Step | Wire | Param) -> Value:
     return own_containers(value)
 
 
+def running_graph() -> str:
+    """
+    The graph that the calling node is part of, for writers that keep it in their file.
+
+    Returns
+    -------
+    str
+        JSON; empty outside of a graph. A graph whose values have no form in JSON gives a
+        warning, and an empty text.
+    """
+    to_json = _running.get()
+    try:
+        return to_json() if to_json else ""
+    except GraphError as error:
+        warn(f"the file does not carry the graph that made it: {error}")
+        return ""
+
+
 def _ancestors(run: Run, targets: Iterable[str]) -> list[Step]:
     names, pending = set[str](), list(targets)
     while pending:
@@ -146,6 +173,10 @@ def _resolve(run: Run, value: Value) -> Value:
         return output(run, value)
     if any(True for _ in sources(value)):
         return [_resolve(run, item) for item in value]
+    if isinstance(value, np.ndarray):
+        # the caller may still write to its array, and the node may return it
+        value = cast("NDArray[Any]", value).copy()
+        lock_arrays(value)
     return own_containers(value)
 
 
@@ -175,6 +206,7 @@ def _key(run: Run, step: Step) -> bytes:
 
 def _execute(run: Run, step: Step) -> Entry:
     run.on_step(step.name, "running")
+    token = _running.set(run.to_json)
     with collected_messages() as messages:
         try:
             arguments = {
@@ -188,6 +220,8 @@ def _execute(run: Run, step: Step) -> Entry:
             what = f"step {step.name!r}" + (f" (node {name})" if name != step.name else "")
             text = str(error) or type(error).__name__
             raise NodeError(f"{what} failed: {text}", step.name, name, error) from error
+        finally:
+            _running.reset(token)
     lock_arrays(value)
     written = [
         path

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 import spheremesh as sm
 from spheremesh.nodes import (
-    Node,
     NodeError,
     NodeWarning,
     ReadPath,
@@ -378,3 +377,27 @@ def test_a_writer_before_a_cached_target_restores_its_file(tmp_path: Path) -> No
     assert calls["write_number"] == 2
     path.write_text("somebody else's")
     assert g.run(again) == 7
+
+
+def test_the_caller_keeps_its_arrays() -> None:
+    @node
+    def same(values: NDArray[np.float64]) -> NDArray[np.float64]:
+        return values
+
+    g = sm.Graph()
+    mine = np.zeros(2)
+    result = g.run(g.add(same, values=mine))
+    mine[0] = 1
+    assert result[0] == 0
+
+
+def test_messages_of_steps_before_a_cached_one() -> None:
+    g = sm.Graph()
+    k = g.param("k", 20.0)
+    step = g.add("add", a=g.add("fussy", value=k))
+    with pytest.warns(NodeWarning):
+        g.run(step)
+    for value, messages in ((1.0, {}), (20.0, {"fussy": ("20.0 is large",)})):
+        g.set(k=value)
+        g.run(step)
+        assert g.messages == messages
