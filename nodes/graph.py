@@ -249,7 +249,6 @@ class Graph:
             units=self.units,
             cache=self._cache,
             on_step=on_step or _silent,
-            to_json=self.to_json,
         )
         try:
             run_steps(run, names)

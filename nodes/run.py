@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Callable, Iterable, Mapping
-from contextvars import ContextVar
 from dataclasses import dataclass, field
 from typing import Any, cast
 
@@ -11,13 +10,12 @@ from numpy.typing import NDArray
 
 from .cache import Cache, Entry, digest, file_state, lock_arrays, own_containers
 from .errors import GraphError, NodeError
-from .node import collected_messages, warn
+from .node import collected_messages
 from .ports import Port, Value, check_value, convert
 from .wires import Each, Param, Step, Wire, parents, sources
 
 OnStep = Callable[[str, str], None]
 
-_running: ContextVar[Callable[[], str] | None] = ContextVar("running", default=None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +36,6 @@ class Run:
     on_step : callable
         Called with the name of a step and ``"running"``, ``"done"``, ``"cached"`` or
         ``"failed"``.
-    to_json : callable
-        Gives the graph as JSON.
     keys : dict of str to bytes
         Keys found so far.
     entries : dict of str to Entry
@@ -51,7 +47,6 @@ class Run:
     units: str
     cache: Cache
     on_step: OnStep
-    to_json: Callable[[], str]
     keys: dict[str, bytes] = field(default_factory=dict[str, bytes])
     entries: dict[str, Entry] = field(default_factory=dict[str, Entry])
 
@@ -107,24 +102,6 @@ def output(run: Run, source: Step | Wire | Param) -> Value:
     if isinstance(source, Wire) and step.node.has_fields:
         value = getattr(value, source.port.name)
     return own_containers(value)
-
-
-def running_graph() -> str:
-    """
-    The graph that the calling node is part of, for writers that keep it in their file.
-
-    Returns
-    -------
-    str
-        JSON; empty outside of a graph. A graph whose values have no form in JSON gives a
-        warning, and an empty text.
-    """
-    to_json = _running.get()
-    try:
-        return to_json() if to_json else ""
-    except GraphError as error:
-        warn(f"the file does not carry the graph that made it: {error}")
-        return ""
 
 
 def _ancestors(run: Run, targets: Iterable[str]) -> list[Step]:
@@ -206,7 +183,6 @@ def _key(run: Run, step: Step) -> bytes:
 
 def _execute(run: Run, step: Step) -> Entry:
     run.on_step(step.name, "running")
-    token = _running.set(run.to_json)
     with collected_messages() as messages:
         try:
             arguments = {
@@ -220,8 +196,6 @@ def _execute(run: Run, step: Step) -> Entry:
             what = f"step {step.name!r}" + (f" (node {name})" if name != step.name else "")
             text = str(error) or type(error).__name__
             raise NodeError(f"{what} failed: {text}", step.name, name, error) from error
-        finally:
-            _running.reset(token)
     lock_arrays(value)
     written = [
         path
