@@ -17,7 +17,7 @@ from .arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from .errors import InputError
 from .mesh import face_centroids, local_corners, mean_edge_length
 from .sphere_mesh import SphereMesh
-from .spheres import angle, evaluate, normals, offset, recenter
+from .spheres import angle, evaluate, normals, offset, recenter, rescale
 from .tolerances import CAP_ANGLE, CROSSING, PARALLEL_PLANES, PLANE_SAGITTA, SAME_PLANE
 
 EdgeMode = Literal["bisector", "intersection"]
@@ -465,6 +465,64 @@ def select_panels(panels: Panels, keep: BoolArray) -> Panels:
         corners=panels.corners[corner_keep],
         inner_corners=panels.inner_corners[corner_keep],
         neighbors=panels.neighbors[corner_keep],
+    )
+
+
+def scale_panels(panels: Panels, factor: float) -> Panels:
+    """
+    Panels in another unit of length.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+    factor : float
+        Positive number of new units in an old one.
+
+    Returns
+    -------
+    Panels
+        The same panels; every length is multiplied by the factor.
+    """
+    return replace(
+        panels,
+        origins=panels.origins * factor,
+        spheres=rescale(panels.spheres, factor),
+        inner_spheres=rescale(panels.inner_spheres, factor),
+        plane_offsets=panels.plane_offsets * factor,
+        corners=panels.corners * factor,
+        inner_corners=panels.inner_corners * factor,
+        thickness=panels.thickness * factor,
+        joint_gap=panels.joint_gap * factor,
+    )
+
+
+def move_origins(panels: Panels, origins: FloatArray) -> Panels:
+    """
+    The same panels in coordinates local to other points.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+    origins : (P, 3) float array
+        New origins, in model coordinates, near the old ones.
+
+    Returns
+    -------
+    Panels
+        Panels at the same place.
+    """
+    shifts = origins - panels.origins
+    corner_shifts = shifts[panels.corner_panels]
+    return replace(
+        panels,
+        origins=origins,
+        spheres=recenter(panels.spheres, shifts),
+        inner_spheres=recenter(panels.inner_spheres, shifts),
+        plane_offsets=panels.plane_offsets - dot(panels.plane_normals, corner_shifts),
+        corners=panels.corners - corner_shifts,
+        inner_corners=panels.inner_corners - corner_shifts,
     )
 
 

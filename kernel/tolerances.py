@@ -13,9 +13,6 @@ EPSILON: Final = 2.220446049250313e-16
 DEGENERATE: Final = 1e-10
 """A face of less than this area, relative to its squared perimeter, has no plane."""
 
-UNIT_ROW: Final = 1e-9
-"""How far a row's norm may be from 1 and still count as unit."""
-
 PLANE_SAGITTA: Final = 1e-6
 """A panel whose bulge is below this share of its size is built as a plane (1 µm per m)."""
 
@@ -54,3 +51,6 @@ VERTEX_MISS: Final = 0.01
 
 LITTLE_GAIN: Final = 0.05
 """A relative gain of spheres over planes that is worth saying to be small."""
+
+COINCIDENT: Final = 1e-6
+"""Vertices of separate meshes closer than this, in mean edges, are one (1 µm per m)."""

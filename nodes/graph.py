@@ -14,7 +14,7 @@ from .cache import Cache, digest
 from .errors import GraphError, nearest
 from .graph_file import decode, decode_graph, encode_graph, write_graph
 from .mermaid import mermaid_text
-from .node import find_node
+from .node import find_node, known_graph
 from .ports import UNITS, Port, Value, check_range
 from .run import OnStep, Run, output, run_steps
 from .wires import Param, Step, Target, Wire, parents, sources
@@ -251,7 +251,8 @@ class Graph:
             on_step=on_step or _silent,
         )
         try:
-            run_steps(run, names)
+            with known_graph(self.to_json):
+                run_steps(run, names)
             values = tuple(output(run, target) for target in wanted)
         finally:
             for name, key in run.keys.items():

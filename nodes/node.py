@@ -83,6 +83,7 @@ class Node:
 REGISTRY: dict[str, Node] = {}
 
 _messages: ContextVar[list[str] | None] = ContextVar("messages", default=None)
+_graph_text: ContextVar[Callable[[], str] | None] = ContextVar("graph_text", default=None)
 
 
 @overload
@@ -182,6 +183,44 @@ def warn(text: str) -> None:
     if messages is not None:
         messages.append(text)
     warnings.warn(text, NodeWarning, stacklevel=2)
+
+
+def running_graph() -> str:
+    """
+    The graph that is running, for files that carry how they were made.
+
+    Returns
+    -------
+    str
+        Its JSON; empty outside of a graph, or where it has values that JSON cannot hold.
+    """
+    text = _graph_text.get()
+    try:
+        return "" if text is None else text()
+    except GraphError:
+        return ""
+
+
+@contextmanager
+def known_graph(text: Callable[[], str]) -> Generator[None]:
+    """
+    Let nodes ask for the graph that runs them.
+
+    Parameters
+    ----------
+    text : callable
+        Gives the graph as JSON.
+
+    Yields
+    ------
+    None
+        While the block runs, `running_graph` answers.
+    """
+    token = _graph_text.set(text)
+    try:
+        yield
+    finally:
+        _graph_text.reset(token)
 
 
 @contextmanager

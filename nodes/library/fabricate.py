@@ -9,9 +9,8 @@ from ...kernel.arrays import IntArray
 from ...kernel.errors import name_ids
 from ...kernel.panels import Panels
 from ...kernel.sphere_mesh import SphereMesh
-from ..node import node, warn
+from ..node import node, running_graph, warn
 from ..ports import Port, Units, WritePath
-from ..run import running_graph
 
 Length = Annotated[float, Port(min=0)]
 
