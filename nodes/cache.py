@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, is_dataclass
 from functools import singledispatch
 from pathlib import Path
 from threading import Lock
-from typing import Any, Protocol, cast
+from typing import Any, cast
 
 import numpy as np
 import xxhash
@@ -16,10 +16,6 @@ from numpy.typing import NDArray
 from .ports import Value
 
 FileState = tuple[int, int] | None
-
-
-class _Digest(Protocol):
-    def update(self, data: Any, /) -> None: ...  # noqa: ANN401, any buffer
 
 
 def digest(value: object) -> bytes:
@@ -52,12 +48,12 @@ def digest(value: object) -> bytes:
     return state.digest()
 
 
-def _tag(state: _Digest, text: str) -> None:
+def _tag(state: xxhash.xxh3_128, text: str) -> None:
     state.update(f"{len(text)}:{text}".encode())
 
 
 @singledispatch
-def _feed(value: Value, state: _Digest) -> None:
+def _feed(value: Value, state: xxhash.xxh3_128) -> None:
     kind = cast("type[Any]", type(value))
     if hasattr(value, "content_key"):
         _tag(state, f"key {kind.__module__}.{kind.__qualname__}")
@@ -80,51 +76,51 @@ def _feed(value: Value, state: _Digest) -> None:
 @_feed.register(float)
 @_feed.register(complex)
 @_feed.register(str)
-def _(value: object, state: _Digest) -> None:
+def _(value: object, state: xxhash.xxh3_128) -> None:
     _tag(state, f"{type(value).__name__} {value!r}")
 
 
 @_feed.register
-def _(value: bytes, state: _Digest) -> None:
+def _(value: bytes, state: xxhash.xxh3_128) -> None:
     _tag(state, f"bytes {len(value)}")
     state.update(value)
 
 
 @_feed.register
-def _(value: os.PathLike, state: _Digest) -> None:  # pyright: ignore[reportMissingTypeArgument, reportUnknownParameterType]
+def _(value: os.PathLike, state: xxhash.xxh3_128) -> None:  # pyright: ignore[reportMissingTypeArgument, reportUnknownParameterType]
     _feed(os.fspath(cast("os.PathLike[str]", value)), state)
 
 
 @_feed.register
-def _(value: np.generic, state: _Digest) -> None:
+def _(value: np.generic, state: xxhash.xxh3_128) -> None:
     _feed(value.item(), state)
 
 
 @_feed.register(np.ndarray)
-def _(value: NDArray[Any], state: _Digest) -> None:
+def _(value: NDArray[Any], state: xxhash.xxh3_128) -> None:
     if value.dtype.hasobject:
         raise TypeError("an array of objects cannot be told from another by its content")
     _tag(state, f"array {value.dtype.str} {value.shape}")
-    state.update(np.ascontiguousarray(value).reshape(-1).view(np.uint8))
+    state.update(np.ascontiguousarray(value).reshape(-1).view(np.uint8).data)
 
 
 @_feed.register(list)
 @_feed.register(tuple)
-def _(value: list[Any] | tuple[Any, ...], state: _Digest) -> None:
+def _(value: list[Any] | tuple[Any, ...], state: xxhash.xxh3_128) -> None:
     _tag(state, f"list {len(value)}")
     for item in value:
         _feed(item, state)
 
 
 @_feed.register(Mapping)
-def _(value: Mapping[Any, Any], state: _Digest) -> None:
+def _(value: Mapping[Any, Any], state: xxhash.xxh3_128) -> None:
     _tag(state, f"mapping {len(value)}")
     for pair in sorted(digest(key) + digest(item) for key, item in value.items()):
         state.update(pair)
 
 
 @_feed.register(Set)
-def _(value: Set[Any], state: _Digest) -> None:
+def _(value: Set[Any], state: xxhash.xxh3_128) -> None:
     _tag(state, f"set {len(value)}")
     for item in sorted(map(digest, value)):
         state.update(item)
@@ -184,6 +180,7 @@ class Cache:
     def __init__(self, max_entries: int = 256) -> None:
         self.max_entries = max_entries
         self._entries: OrderedDict[bytes, Entry] = OrderedDict()
+        self._messages: dict[bytes, tuple[str, ...]] = {}
         self._writers: dict[str, bytes] = {}
         self._lock = Lock()
 
@@ -229,6 +226,24 @@ class Cache:
             self._entries[key] = entry
             self._entries.move_to_end(key)
             self._writers.update((path, key) for path, _ in entry.files)
+            if entry.messages:
+                self._messages[key] = entry.messages
+
+    def messages(self, key: bytes) -> tuple[str, ...]:
+        """
+        What a step warned about; remembered when its result is forgotten.
+
+        Parameters
+        ----------
+        key : bytes
+            Key of the step.
+
+        Returns
+        -------
+        tuple of str
+            Empty if it did not.
+        """
+        return self._messages.get(key, ())
 
     def trim(self, at_least: int = 0) -> None:
         """

@@ -12,7 +12,7 @@ import numpy as np
 
 from .cache import Cache, digest
 from .errors import GraphError, nearest
-from .graph_file import decode, decode_graph, encode_graph, write_text
+from .graph_file import decode, decode_graph, encode_graph, write_graph
 from .mermaid import mermaid_text
 from .node import find_node, known_graph
 from .ports import UNITS, Port, Value, check_range
@@ -81,7 +81,7 @@ class Graph:
 
     @property
     def messages(self) -> Mapping[str, tuple[str, ...]]:  # numpydoc ignore=RT01
-        """What each step that was last run or found in the cache warned about."""
+        """What the steps warned about when they, or steps after them, were last asked for."""
         return MappingProxyType(self._messages)
 
     def param(
@@ -243,16 +243,22 @@ class Graph:
             for w in wanted
             if not isinstance(w, Param)
         ]
-        run = Run(self._steps, self._values, self.units, self._cache, on_step or _silent)
+        run = Run(
+            steps=self._steps,
+            values=self._values,
+            units=self.units,
+            cache=self._cache,
+            on_step=on_step or _silent,
+        )
         try:
             with known_graph(self.to_json):
                 run_steps(run, names)
             values = tuple(output(run, target) for target in wanted)
         finally:
-            for name, entry in run.entries.items():
+            for name, key in run.keys.items():
                 self._messages.pop(name, None)
-                if entry.messages:
-                    self._messages[name] = entry.messages
+                if messages := self._cache.messages(key):
+                    self._messages[name] = messages
             self._cache.trim(2 * len(self._steps))
         return values[0] if len(values) == 1 else values
 
@@ -380,7 +386,7 @@ class Graph:
         path : path
             The file; an old one is replaced only when the new one is complete.
         """
-        write_text(path, self.to_json())
+        write_graph(path, self.to_json())
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> "Graph":
@@ -404,7 +410,13 @@ class Graph:
         """
         try:
             return cls.from_json(Path(path).read_text(encoding="utf-8"))
-        except (GraphError, UnicodeDecodeError) as error:
+        except OSError as error:
+            raise GraphError(f"{os.fspath(path)}: {error.strerror}") from error
+        except UnicodeDecodeError as error:
+            raise GraphError(f"{os.fspath(path)}: not UTF-8 text") from error
+        except RecursionError as error:
+            raise GraphError(f"{os.fspath(path)}: nested too deeply") from error
+        except GraphError as error:
             raise GraphError(f"{os.fspath(path)}: {error}") from error
 
     def mermaid(self) -> str:

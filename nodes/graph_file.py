@@ -3,16 +3,15 @@
 import json
 import math
 import os
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from functools import singledispatch
 from graphlib import CycleError, TopologicalSorter
-from pathlib import Path
 from typing import Any, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..fabrication.files import replacing
 from .errors import GraphError, nearest
 from .ports import Value
 from .wires import Each, Param, Step, Wire
@@ -273,9 +272,9 @@ _DECODERS: dict[str, Callable[[dict[str, Value], _Names], Value]] = {
 }
 
 
-def write_text(path: str | os.PathLike[str], text: str) -> None:
+def write_graph(path: str | os.PathLike[str], text: str) -> None:
     """
-    Write a text file beside its place and rename it: never half a file.
+    Write a graph file: the whole or nothing.
 
     Parameters
     ----------
@@ -284,24 +283,8 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
     text : str
         Its content.
     """
-    target = Path(path)
-    handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent, text=True)
-    beside = Path(name)
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
-        mode = target.stat().st_mode if target.exists() else 0o666 & ~_umask()
-        beside.chmod(mode & 0o777)
-        beside.replace(target)
-    except BaseException:
-        beside.unlink(missing_ok=True)
-        raise
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8", newline="\n")
 
 
 def _in_order(steps: dict[str, Any]) -> dict[str, Any]:

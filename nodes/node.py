@@ -10,11 +10,21 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
 from functools import cache
-from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints, overload
+from types import UnionType
+from typing import (
+    Annotated,
+    Any,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+    overload,
+)
 
 from .cache import digest
 from .errors import GraphError, nearest
-from .ports import Hint, Port, check_value
+from .ports import Hint, Port, Value, check_value
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -282,9 +292,16 @@ def _inputs(
         )
         if parameter.default is not parameter.empty:
             check_value(port, parameter.default, f"default of {where}")
-            digest(parameter.default)
+            _check_content(parameter.default, where)
         ports[name] = port
     return ports
+
+
+def _check_content(default: Value, where: str) -> None:
+    try:
+        digest(default)
+    except TypeError as error:
+        raise GraphError(f"default of {where}: {error}") from error
 
 
 def _outputs(node_name: str, result: Hint, texts: Mapping[str, str]) -> dict[str, Port]:
@@ -305,11 +322,13 @@ def _outputs(node_name: str, result: Hint, texts: Mapping[str, str]) -> dict[str
 
 
 def _split(hint: Hint) -> tuple[Hint, Port]:
-    """An annotation as its type and its facts."""
-    if get_origin(hint) is not Annotated:
-        return hint, Port()
-    kind, *facts = get_args(hint)
-    return kind, next((fact for fact in facts if isinstance(fact, Port)), Port())
+    """An annotation as its type and its facts, also those of an alternative to None."""
+    if get_origin(hint) is Annotated:
+        kind, *facts = get_args(hint)
+        return kind, next((fact for fact in facts if isinstance(fact, Port)), Port())
+    options = get_args(hint) if get_origin(hint) in (Union, UnionType) else ()
+    facts = [_split(option)[1] for option in options if get_origin(option) is Annotated]
+    return hint, next(iter(facts), Port())
 
 
 def _is_named_tuple(kind: Hint) -> bool:

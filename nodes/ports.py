@@ -2,7 +2,7 @@
 
 import inspect
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from numbers import Complex, Integral, Real
 from pathlib import Path
@@ -156,6 +156,8 @@ def convert(port: Port, value: Value) -> Value:
     kinds = [get_origin(member) or member for member in _members(port.type)]
     if any(isinstance(kind, type) and _is_instance(value, kind) for kind in kinds):
         return value
+    if isinstance(value, list) and tuple in kinds:
+        return tuple(cast("Sequence[Value]", value))
     if isinstance(value, list | tuple) and np.ndarray in kinds:
         return np.asarray(cast("Sequence[Value]", value), _array_dtype(port.type))
     if isinstance(value, str) and Path in kinds:
@@ -263,8 +265,8 @@ def element_type(kind: Hint) -> Hint:
     """
     for member in _members(kind):
         origin, arguments = get_origin(member), set(get_args(member)) - {...}
-        is_list = isinstance(origin, type) and issubclass(origin, Iterable)
-        if is_list and origin is not np.ndarray and len(arguments) == 1:
+        is_list = _is_subclass(origin, Iterable) and origin not in (None, np.ndarray)
+        if is_list and not _is_subclass(origin, Mapping) and len(arguments) == 1:
             return arguments.pop()
     return Any
 
@@ -304,6 +306,8 @@ def _member_name(member: Hint) -> str:
         return "path"
     name = getattr(origin, "__name__", str(origin))
     element = element_type(member)
+    if origin is tuple and ... not in get_args(member) and get_args(member):
+        return f"{name} of {len(get_args(member))}"
     return name if element is Any else f"{name} of {type_name(element)}"
 
 
@@ -356,6 +360,21 @@ def _is_numeric_type(kind: Hint) -> bool:
     )
 
 
+def _is_tuple(kind: Hint, value: Value) -> bool:
+    """Lists will do: JSON knows nothing else."""
+    if not isinstance(value, list | tuple):
+        return False
+    items, elements = cast("Sequence[Value]", value), get_args(kind)
+    if not elements or elements[-1] is ...:
+        return all(accepts(element_type(kind), item) for item in items)
+    return len(items) == len(elements) and all(map(accepts, elements, items))
+
+
+def _fits_tuple(source: Hint, target: Hint) -> bool:
+    is_list = _is_subclass(get_origin(source) or source, Sequence) and source is not str
+    return is_list and fits(element_type(source), element_type(target))
+
+
 def _kind_of(*kinds: type) -> Callable[[Hint, Value], bool]:
     """The rule that a source is one of some classes; bool is no number."""
     return lambda source, _: (
@@ -373,6 +392,7 @@ _ACCEPTS: dict[Hint, Callable[[Hint, Value], bool]] = {
     float: lambda _, value: isinstance(value, Real) and not _is_bool(value),
     complex: lambda _, value: isinstance(value, Complex) and not _is_bool(value),
     np.ndarray: lambda _, value: _is_numeric(value),
+    tuple: _is_tuple,
     Path: lambda _, value: isinstance(value, str | os.PathLike),
     str: lambda _, value: isinstance(value, str | os.PathLike),
 }
@@ -385,6 +405,7 @@ _FITS: dict[Hint, Callable[[Hint, Hint], bool]] = {
     float: _kind_of(int, float, np.integer, np.floating),
     complex: _kind_of(int, float, complex, np.number),
     np.ndarray: lambda source, _: _is_numeric_type(source),
+    tuple: _fits_tuple,
     Path: lambda source, _: (
         source is str or _is_subclass(get_origin(source) or source, os.PathLike)
     ),

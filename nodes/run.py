@@ -3,7 +3,10 @@
 import os
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
 
 from .cache import Cache, Entry, digest, file_state, lock_arrays, own_containers
 from .errors import GraphError, NodeError
@@ -12,6 +15,7 @@ from .ports import Port, Value, check_value, convert
 from .wires import Each, Param, Step, Wire, parents, sources
 
 OnStep = Callable[[str, str], None]
+
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,6 +150,10 @@ def _resolve(run: Run, value: Value) -> Value:
         return output(run, value)
     if any(True for _ in sources(value)):
         return [_resolve(run, item) for item in value]
+    if isinstance(value, np.ndarray):
+        # the caller may still write to its array, and the node may return it
+        value = cast("NDArray[Any]", value).copy()
+        lock_arrays(value)
     return own_containers(value)
 
 

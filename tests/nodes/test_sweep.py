@@ -67,6 +67,8 @@ def test_each_of_a_wire_and_of_a_slider() -> None:
     assert g.run(step.plus) == [1, 3, 4]
     g.set(sizes=[5.0])
     assert g.run(step.plus) == [5, 6, 7]
+    with pytest.raises(GraphError, match=r"both\.b\[1\] = 'x': must be float"):
+        g.set(sizes=[5.0, "x"])
     doubled = g.add("double", a=sm.each(step.plus))
     assert g.run(doubled) == [10, 12, 14]
     mixed = g.add("double", "mixed", a=sm.each([g.add("total", values=n), 4]))
