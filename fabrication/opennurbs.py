@@ -7,8 +7,9 @@ layout is that of openNURBS, which is public (`opennurbs_3dm.h` for type codes,
 `opennurbs_linecurve.cpp`, `opennurbs_nurbscurve.cpp`, `opennurbs_nurbssurface.cpp`,
 `opennurbs_planesurface.cpp`). All numbers are little-endian: i = int32, q = int64, d = float64.
 
-A chunk is ``i type, q length`` and a body of that length; the body of most ends in the CRC-32
-of what stands before it. An object is::
+A chunk is ``i type, q length`` and a body of that length. Where bit 15 of the type is set, the
+body ends in the CRC-32 of those of its bytes that belong to no inner chunk; where bit 31 is
+set, there is no body. An object is::
 
     CLASS { CLASS_UUID { 16 bytes, crc }  CLASS_DATA { the object, crc }  CLASS_END }
 
@@ -57,6 +58,9 @@ CLASS_DATA: Final = 0x0002FFFC
 CLASS_END: Final = 0x80027FFF
 ANONYMOUS: Final = 0x40008000
 
+CRC_FLAG: Final = 0x8000
+SHORT_FLAG: Final = 0x80000000
+
 ARC_CURVE: Final = bytes.fromhex("2abe33cfb409d411bffb0010830122f0")
 LINE_CURVE: Final = bytes.fromhex("dbd4d74e47e9d311bfe50010830122f0")
 NURBS_CURVE: Final = bytes.fromhex("ddd4d74e47e9d311bfe50010830122f0")
@@ -77,6 +81,41 @@ _ONE_SPAN_WEIGHT = 0.25
 """Arcs that bulge more, and patches with a smaller middle weight, are cut into two spans."""
 
 
+class Checksum(NamedTuple):
+    """
+    Place of a CRC-32 in a stream and the ranges (start, stop) of bytes that it covers.
+
+    Attributes
+    ----------
+    place : int
+        Where its four bytes begin.
+    ranges : tuple of (int, int)
+        The bytes of its chunk that are in no inner chunk.
+    """
+
+    place: int
+    ranges: tuple[tuple[int, int], ...]
+
+    def compute(self, stream: memoryview) -> int:
+        """
+        The checksum of a stream.
+
+        Parameters
+        ----------
+        stream : memoryview
+            The bytes.
+
+        Returns
+        -------
+        int
+            CRC-32 of the ranges, one after the other.
+        """
+        value = 0
+        for start, stop in self.ranges:
+            value = zlib.crc32(stream[start:stop], value)
+        return value
+
+
 class _Slot(NamedTuple):
     """Float64 numbers filled in for each panel: row `row` of the named array."""
 
@@ -86,11 +125,10 @@ class _Slot(NamedTuple):
 
 
 class _Chunk(NamedTuple):
-    """A typed piece of a stream; its body may end in a CRC."""
+    """A typed piece of a stream."""
 
     typecode: int
     body: "tuple[_Piece, ...]"
-    has_crc: bool = True
 
 
 _Piece: TypeAlias = bytes | _Slot | _Chunk
@@ -101,13 +139,13 @@ class _Template:
     """
     A stream whose numbers are still zero.
 
-    `slots` pairs each slot with its place, `crcs` lists (start, stop) of the bytes covered by
-    the checksum at stop, inner chunks before outer ones.
+    `slots` pairs each slot with its place, `checksums` each checksum's place with the ranges
+    of bytes that it covers.
     """
 
     data: bytes
     slots: tuple[tuple[_Slot, int], ...]
-    crcs: tuple[tuple[int, int], ...]
+    checksums: tuple[Checksum, ...]
 
 
 @dataclass(frozen=True)
@@ -210,17 +248,25 @@ def _assemble(piece: _Piece) -> _Template:
         return _Template(bytes(8 * piece.size), ((piece, 0),), ())
     data = bytearray(CHUNK_HEADER.size)
     slots: list[tuple[_Slot, int]] = []
-    crcs: list[tuple[int, int]] = []
-    for inner in map(_assemble, piece.body):
-        here = len(data)
+    checksums: list[Checksum] = []
+    own: list[tuple[int, int]] = []
+    for inner_piece in piece.body:
+        inner, here = _assemble(inner_piece), len(data)
         slots += [(slot, here + place) for slot, place in inner.slots]
-        crcs += [(here + start, here + stop) for start, stop in inner.crcs]
+        checksums += [_shifted(checksum, here) for checksum in inner.checksums]
         data += inner.data
-    if piece.has_crc:
-        crcs.append((CHUNK_HEADER.size, len(data)))
+        if not isinstance(inner_piece, _Chunk):
+            own.append((here, len(data)))
+    if piece.typecode & CRC_FLAG:
+        checksums.append(Checksum(len(data), tuple(own)))
         data += bytes(CRC.size)
     CHUNK_HEADER.pack_into(data, 0, piece.typecode, len(data) - CHUNK_HEADER.size)
-    return _Template(bytes(data), tuple(slots), tuple(crcs))
+    return _Template(bytes(data), tuple(slots), tuple(checksums))
+
+
+def _shifted(checksum: Checksum, by: int) -> Checksum:
+    ranges = tuple((start + by, stop + by) for start, stop in checksum.ranges)
+    return Checksum(checksum.place + by, ranges)
 
 
 def _fill(template: _Template, numbers: Mapping[str, FloatArray]) -> Iterator[bytes]:
@@ -233,9 +279,9 @@ def _fill(template: _Template, numbers: Mapping[str, FloatArray]) -> Iterator[by
         streams[:, place : place + 8 * slot.size] = raw
     for row in streams:
         stream = bytearray(row.tobytes())
-        view = memoryview(stream)
-        for start, stop in template.crcs:
-            CRC.pack_into(stream, stop, zlib.crc32(view[start:stop]))
+        with memoryview(stream) as view:
+            for checksum in template.checksums:
+                CRC.pack_into(stream, checksum.place, checksum.compute(view))
         yield bytes(stream)
 
 
@@ -250,7 +296,7 @@ def _doubles(*values: float) -> bytes:
 def _object(uuid: bytes, *body: _Piece) -> _Chunk:
     name = _Chunk(CLASS_UUID, (uuid,))
     end = CHUNK_HEADER.pack(CLASS_END, 0)
-    return _Chunk(CLASS, (name, _Chunk(CLASS_DATA, body), end), has_crc=False)
+    return _Chunk(CLASS, (name, _Chunk(CLASS_DATA, body), end))
 
 
 _EMPTY_BOX = _doubles(1, 0, 0, -1, 0, 0)
@@ -335,7 +381,7 @@ def _table(minor: int, records: "Sequence[tuple[_Piece, ...]]") -> _Chunk:
 
 
 def _edge_records(panels: Panels, arcs: Arcs) -> FloatArray:
-    """Numbers of the edges' curves, (H, 30): an arc's plane, circle and domains, or a line's."""
+    """Numbers of the edges, (H, 30): an arc's plane, circle and domains, or a line's."""
     shift = panels.origins[panels.corner_panels]
     records = np.zeros((len(shift), 30))
     lengths = arc_lengths(arcs)
@@ -379,7 +425,7 @@ def _charts(panels: Panels, arcs: Arcs, ids: IntArray) -> _Charts:
     n_axes = unit(normals(rows, feet))
     corners = panels.corners[corner_ids] - feet[:, None]
     middles = arc_points(arcs, np.zeros(1))[corner_ids, 0] - feet[:, None]
-    # With u nearly along the first edge the patch is small and its isocurves run as one expects.
+    # With u nearly along the first edge the patch is small, and its isocurves look natural.
     chords = corners[:, 1] - corners[:, 0]
     e1 = unit(chords - dot(chords, n_axes)[:, None] * n_axes)
     frames = np.stack([e1, np.cross(n_axes, e1), n_axes], 1)

@@ -36,3 +36,6 @@ PARALLEL_PLANES: Final = 1e-6
 
 CROSSING: Final = 1e-9
 """How far from their ends, relative to the half chord, two arcs must meet to cross."""
+
+EXACT_BREP: Final = 1e-12
+"""How far the parts of a Brep may lie apart, relative to the radius of its sphere."""
