@@ -119,7 +119,7 @@ def _compress(
 ) -> tuple[IntArray, IntArray]:
     """Corners and offsets of faces; a plain (F, k) array is not split into rows."""
     if isinstance(faces, np.ndarray) and faces.ndim == 2:
-        table: NDArray[Any] = faces
+        table = np.asarray(faces)
         corners = _whole_numbers(table.ravel())
         degrees = np.full(len(table), len(corners) // max(len(table), 1), np.int64)
     else:
