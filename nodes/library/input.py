@@ -176,3 +176,23 @@ def vase_mesh(
         Quadrilaterals.
     """
     return surfaces.vase_net(n_around, n_across, radius, height, amplitude)
+
+
+@node
+def roof_mesh(n_span: Count = 24, n_length: Count = 60, length: Length = 80.0) -> Mesh:
+    """
+    Circular net of a freeform hall roof, to try things on.
+
+    Parameters
+    ----------
+    n_span, n_length : int
+        Faces across and along the hall.
+    length : float
+        Length of the hall.
+
+    Returns
+    -------
+    Mesh
+        Quadrilaterals with exact circumcircles, of both signs of Gaussian curvature.
+    """
+    return surfaces.roof_net(n_span, n_length, length)
