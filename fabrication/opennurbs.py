@@ -228,7 +228,7 @@ def edge_streams(panels: Panels) -> list[bytes]:
     records = _edge_records(panels, arcs)
     is_line = panels.spheres[panels.corner_panels, 0] == 0
     result = [b""] * len(records)
-    for is_straight in (False, True):
+    for is_straight in np.unique(is_line).tolist():
         ids = np.flatnonzero(is_line == is_straight)
         template = _assemble(_edge_curve(0, is_straight=is_straight))
         streams = _fill(template, {"curve": records[ids, None]})

@@ -184,7 +184,6 @@ def _setting(text: str) -> tuple[str, Any]:
 
 def _print_summary(report: dict[str, Any], out: Path) -> None:
     angles, panels, moulds = report["angles_deg"], report["panels"], report["moulds"]
-    smooth = angles.get("clustered", angles["spherical"])
     for text in report["warnings"]:
         click.echo(f"warning: {text}", err=True)
     for rejected in panels["rejected"]:
@@ -194,7 +193,7 @@ def _print_summary(report: dict[str, Any], out: Path) -> None:
     count = moulds["count"] or panels["written"]
     click.echo(
         f"angle between neighbours {angles['planar']['mean']:.2f} degrees with planes, "
-        f"{smooth['mean']:.2f} with spheres"
+        f"{angles['spherical']['mean']:.2f} with spheres"
     )
     click.echo(f"moulds {count}")
     click.echo(f"panels {panels['written']} written, {len(panels['rejected'])} rejected")

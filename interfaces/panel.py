@@ -160,7 +160,8 @@ def _report(
     moulds: Mapping[str, Any] = {"count": 0, "radii": [], "panels_per_mould": []}
     if options.moulds is not None:
         clusters: Mapping[str, Any] = graph.run("moulds.report")
-        angles["clustered"] = clusters["angles_deg"]
+        # What is built counts as spherical; what the moulds cost is there to compare.
+        angles |= {"spherical": clusters["angles_deg"], "unclustered": angles["spherical"]}
         moulds = {name: clusters[name] for name in moulds}
     return {
         "spheremesh": __version__,
@@ -174,7 +175,9 @@ def _report(
         "vertex_error": dict(optimum["vertex_error"]),
         "edge_gap": dict(panels["edge_gap"]),
         "moulds": dict(moulds),
+        "support": None,
         "panels": {"written": panels["written"], "rejected": list(panels["rejected"])},
+        "beams": {"written": 0, "rejected": []},
         "seconds": dict(seconds),
         "warnings": [text for messages in graph.messages.values() for text in messages],
     }
