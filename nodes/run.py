@@ -17,7 +17,6 @@ from .wires import Each, Param, Step, Wire, parents, sources
 OnStep = Callable[[str, str], None]
 
 
-
 @dataclass(frozen=True, eq=False)
 class Run:
     """
