@@ -1,4 +1,10 @@
-"""Mesh files: polygons in and out, in the order of the file."""
+"""
+Mesh files: polygons in and out, in the order of the file.
+
+The parsers are ours because a face is a panel: trimesh cuts polygons into triangles; meshio
+5.3.5 reads only triangles from OFF, mistakes negative OBJ numbers, fails on ``vertex_index``
+in PLY, and leaves the program when it cannot read a file.
+"""
 
 import os
 from collections.abc import Callable
@@ -30,7 +36,7 @@ _FORMATTERS: Final[dict[str, Callable[[Mesh], bytes]]] = {
     ".ply": format_ply,
     ".stl": format_stl,
 }
-SUFFIXES: Final = (".obj", ".off", ".ply", ".stl", ".3dm")
+SUFFIXES: Final = (*_FORMATTERS, ".3dm")
 """The formats of mesh files, by suffix; capitals do."""
 
 
@@ -101,28 +107,29 @@ def write_mesh(mesh: Mesh, path: str | os.PathLike[str]) -> Path:
     holds triangles with float32 corners, so other faces are cut into triangles.
     """
     target = Path(path)
-    _suffix(target, "write")
+    suffix = _suffix(target, "write")
     try:
         with replacing(target) as temporary:
-            _write(mesh, temporary, target)
+            try:
+                _write(mesh, suffix, temporary)
+            except InputError as error:
+                raise InputError(f"cannot write {target}: {error}") from error
     except OSError as error:
         raise InputError(f"cannot write {target}: {error.strerror}; check the disk") from error
     return target
 
 
-def _write(mesh: Mesh, temporary: Path, target: Path) -> None:
-    suffix = target.suffix.lower()
-    try:
-        if suffix == ".3dm":
-            write_3dm(mesh, temporary)
-        else:
-            temporary.write_bytes(_FORMATTERS[suffix](mesh))
-    except InputError as error:
-        raise InputError(f"cannot write {target}: {error}") from error
+def _write(mesh: Mesh, suffix: str, path: Path) -> None:
+    if suffix == ".3dm":
+        write_3dm(mesh, path)
+    else:
+        path.write_bytes(_FORMATTERS[suffix](mesh))
 
 
 def _suffix(path: Path, verb: str) -> str:
     suffix = path.suffix.lower()
+    if path.is_dir():
+        raise InputError(f"cannot {verb} {path}: it is a folder; name a file in it")
     if suffix not in SUFFIXES:
         raise InputError(
             f"cannot {verb} {path}: {suffix or 'no suffix'} is not a mesh format; use one of "
@@ -136,8 +143,6 @@ def _read_bytes(path: Path) -> bytes:
         data = path.read_bytes()
     except FileNotFoundError:
         raise InputError(f"cannot read {path}: there is no such file; check the path") from None
-    except IsADirectoryError:
-        raise InputError(f"cannot read {path}: it is a folder; name a file in it") from None
     except PermissionError:
         raise InputError(f"cannot read {path}: you may not; change its permissions") from None
     except OSError as error:

@@ -224,7 +224,9 @@ def write_3dm(mesh: Mesh, path: Path) -> None:
     ngon_mesh = _to_rhino(rhino, mesh)
     is_valid, reason = ngon_mesh.IsValidWithLog
     if not is_valid:
-        raise InputError(f"Rhino calls the mesh invalid: {' '.join(reason.split())}")
+        raise InputError(
+            f"Rhino calls the mesh invalid ({' '.join(reason.split())}); write .obj"
+        )
     model = rhino.File3dm()
     # A mesh has no units: Rhino must not scale it as if it were in millimetres.
     model.Settings.ModelUnitSystem = getattr(rhino.UnitSystem, "None")

@@ -119,8 +119,9 @@ def _compress(
 ) -> tuple[IntArray, IntArray]:
     """Corners and offsets of faces; a plain (F, k) array is not split into rows."""
     if isinstance(faces, np.ndarray) and faces.ndim == 2:
-        corners = _whole_numbers(faces.ravel())
-        degrees = np.full(len(faces), len(corners) // max(len(faces), 1), np.int64)
+        table = np.asarray(faces)
+        corners = _whole_numbers(table.ravel())
+        degrees = np.full(len(table), len(corners) // max(len(table), 1), np.int64)
     else:
         rows = [np.asarray(face).ravel() for face in faces]
         corners = _whole_numbers(np.concatenate(rows) if rows else np.zeros(0))

@@ -54,3 +54,5 @@ LITTLE_GAIN: Final = 0.05
 
 COINCIDENT: Final = 1e-6
 """Vertices of separate meshes closer than this, in mean edges, are one (1 µm per m)."""
+EXACT_BREP: Final = 1e-12
+"""How far the parts of a Brep may lie apart, relative to the radius of its sphere."""

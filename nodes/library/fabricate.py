@@ -76,7 +76,7 @@ def write_step(
     path: WritePath,
     units: Units = "m",
     step_units: Literal["mm", "m"] = "mm",
-    schema: Literal["AP214", "AP242"] = "AP214",
+    schema: Literal["AP214IS", "AP242DIS"] = "AP214IS",
 ) -> str:
     """
     Write panels to a STEP file: exact solids, or faces where they have no thickness.
@@ -91,7 +91,7 @@ def write_step(
         Model units.
     step_units : {"mm", "m"}
         Units of the file.
-    schema : {"AP214", "AP242"}
+    schema : {"AP214IS", "AP242DIS"}
         Application protocol.
 
     Returns

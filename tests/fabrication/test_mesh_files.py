@@ -642,6 +642,7 @@ def test_files_that_are_not_there_or_not_files(tmp_path: Path) -> None:
     assert "no such file" in error_of(tmp_path / "none.obj")
     (tmp_path / "folder.obj").mkdir()
     assert "folder" in error_of(tmp_path / "folder.obj")
+    assert "folder" in error_of(tmp_path)
     assert ".obj, .off, .ply, .stl, .3dm" in error_of(tmp_path / "a.fbx", "x")
     assert "no suffix" in error_of(tmp_path / "mesh", "x")
     for suffix in SUFFIXES:
