@@ -7,6 +7,7 @@ its own, and the setters for them crash rhino3dm at exit.
 """
 
 import base64
+import os
 from collections.abc import Callable
 from importlib.metadata import version as installed_version
 from itertools import pairwise
@@ -17,7 +18,7 @@ from uuid import NAMESPACE_URL, UUID, uuid5
 import numpy as np
 
 from ..kernel.arrays import FloatArray
-from ..kernel.colors import NEUTRAL, mould_color
+from ..kernel.colors import UNLABELLED, mould_color
 from ..kernel.errors import InputError
 from ..kernel.panels import Panels, RejectedPanel, panel_areas
 from ..kernel.spheres import center_radius
@@ -54,7 +55,7 @@ _NOTE = (
 
 def write_3dm(
     panels: Panels,
-    path: str | Path,
+    path: str | os.PathLike[str],
     units: str = "m",
     graph_json: str = "",
     version: int = 8,
@@ -295,7 +296,7 @@ def _attributes(rhino: _Rhino, panel: str, role: str, place: _Place) -> _Untyped
 
 def _mould_places(rhino: _Rhino, labels: list[int]) -> dict[int, _Place]:
     """Layers of the moulds by label, under that of the panels without mould, -1."""
-    root = _add_layer(rhino, "Panels", NEUTRAL)
+    root = _add_layer(rhino, "Panels", UNLABELLED)
     places = {-1: root}
     count = max(labels, default=-1) + 1
     for label in range(count):
@@ -333,7 +334,7 @@ def _add_edges(rhino: _Rhino, panels: Panels) -> None:
 
 
 def _add_centers(rhino: _Rhino, panels: Panels) -> None:
-    place = _add_layer(rhino, "Centres", NEUTRAL)
+    place = _add_layer(rhino, "Centres", UNLABELLED)
     centers, radii = _spheres(panels)
     for name, center, radius in zip(panels.ids, centers.tolist(), radii.tolist(), strict=True):
         if np.isfinite(radius):

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -119,7 +119,7 @@ def _compress(
 ) -> tuple[IntArray, IntArray]:
     """Corners and offsets of faces; a plain (F, k) array is not split into rows."""
     if isinstance(faces, np.ndarray) and faces.ndim == 2:
-        table = np.asarray(faces)
+        table = cast("NDArray[Any]", faces)
         corners = _whole_numbers(table.ravel())
         degrees = np.full(len(table), len(corners) // max(len(table), 1), np.int64)
     else:
