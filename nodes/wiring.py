@@ -206,10 +206,8 @@ def _only_output(step: Step, kind: Hint, where: str) -> Wire:
     if len(step.wires) == 1:
         return step.wires[0]
     fitting = [str(wire) for wire in step.wires if fits(wire.type, kind)]
-    raise GraphError(
-        f"cannot wire {step.name} into {where}: it has several outputs; "
-        f"choose {' or '.join(fitting or map(str, step.wires))}"
-    )
+    advice = f"choose {' or '.join(fitting)}" if fitting else f"none is {type_name(kind)}"
+    raise GraphError(f"cannot wire {step.name} into {where}: it has several outputs; {advice}")
 
 
 def _check_wire(wire: Wire, kind: Hint, port: Port, where: str) -> None:

@@ -26,7 +26,7 @@ def test_a_star_import_gives_every_node() -> None:
     code = """
 from spheremesh.nodes import *
 g = Graph()
-print(fit_spheres.__module__, g.add(roof_mesh).node.category, node.__name__)
+print(fit_spheres.__module__, g.add(torus_mesh).node.category, node.__name__)
 print("load_library" in globals(), "np" in globals())
 """
     assert run(code) == "spheremesh.nodes.library.spheres input node\nFalse False"

@@ -103,6 +103,10 @@ MISTAKES: list[tuple[Wiring, str]] = [
         "choose fit_shape.shape",
     ),
     (
+        lambda g: g.add(pick, kind=g.wire("fit_shape")),
+        "cannot wire fit_shape into pick.kind: it has several outputs; none is str",
+    ),
+    (
         lambda g: g.add(measure, shape=g.wire("read_shape")),
         "cannot wire read_shape.result (Shape) into measure.shape (Round)",
     ),
