@@ -83,6 +83,8 @@ def cluster_radii(
     circles, _ = face_circles(sphere_mesh.mesh)
     radii = np.sqrt(circles.radii_squared)
     angles = pencil_angles(sphere_mesh, circles)
+    # What rounding leaves of a plane is no curvature.
+    angles = np.where(np.abs(np.sin(angles)) < SAME_CURVATURE, 0.0, angles)
     curvatures = np.abs(np.sin(angles)) / radii
     side = np.where(angles < 0, -1.0, 1.0)
 
@@ -111,9 +113,10 @@ def _centers(curvatures: FloatArray, k: int, seed: int) -> FloatArray:
     scale = curvatures.max()
     if scale == 0:
         return np.zeros(1)
-    distinct = np.unique(np.round(curvatures / scale / SAME_CURVATURE))
-    if len(distinct) <= k:
-        groups = np.searchsorted(distinct, np.round(curvatures / scale / SAME_CURVATURE))
-        return np.bincount(groups, curvatures) / np.bincount(groups)
+    ordered = np.sort(curvatures)
+    is_next = np.diff(ordered) > SAME_CURVATURE * scale
+    groups = np.concatenate([[0], np.cumsum(is_next)])
+    if groups[-1] < k:
+        return np.bincount(groups, ordered) / np.bincount(groups)
     means = KMeans(k, n_init=10, random_state=seed).fit((curvatures / scale)[:, None])
     return np.sort(means.cluster_centers_[:, 0]) * scale
