@@ -82,7 +82,7 @@ def run(
     """
     Run a graph: all of it, or what a target needs.
 
-    Relative paths in the graph are those of the output folder.
+    Relative paths are read from the working directory and written to the output folder.
     """
     with _errors(), _progress() as progress:
         from ..fabrication.files import replacing_all
@@ -91,8 +91,9 @@ def run(
         graph = Graph.load(graph_file)
         graph.set(**dict(_setting(text) for text in settings))
         names = targets or tuple(step.name for step in graph.ends)
+        here = Path.cwd()
         with replacing_all(out) as staging, chdir(staging):
-            results = graph.run(*names, on_step=progress)
+            results = graph.run(*names, on_step=progress, read_from=here)
         values = (results,) if len(names) == 1 else results
     for name, value in zip(names, values, strict=True):
         if not as_json:

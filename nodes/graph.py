@@ -211,7 +211,12 @@ class Graph:
                     connect(place, step.node.inputs[name], given)
         return values
 
-    def run(self, *targets: Target, on_step: OnStep | None = None) -> Value:
+    def run(
+        self,
+        *targets: Target,
+        on_step: OnStep | None = None,
+        read_from: str | os.PathLike[str] | None = None,
+    ) -> Value:
         """
         The values of targets; only the steps that they need and that have changed are run.
 
@@ -222,6 +227,8 @@ class Graph:
         on_step : callable, optional
             Called with the name of each step touched and ``"running"``, ``"done"``,
             ``"cached"`` or ``"failed"``.
+        read_from : path, optional
+            Folder of the relative paths that nodes read; the working directory by default.
 
         Returns
         -------
@@ -249,6 +256,7 @@ class Graph:
             units=self.units,
             cache=self._cache,
             on_step=on_step or _silent,
+            read_from=None if read_from is None else Path(read_from),
         )
         try:
             with known_graph(self.to_json):

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
@@ -35,6 +36,8 @@ class Run:
     on_step : callable
         Called with the name of a step and ``"running"``, ``"done"``, ``"cached"`` or
         ``"failed"``.
+    read_from : Path, optional
+        Folder of the relative paths that nodes read; the working directory by default.
     keys : dict of str to bytes
         Keys found so far.
     entries : dict of str to Entry
@@ -46,6 +49,7 @@ class Run:
     units: str
     cache: Cache
     on_step: OnStep
+    read_from: Path | None = None
     keys: dict[str, bytes] = field(default_factory=dict[str, bytes])
     entries: dict[str, Entry] = field(default_factory=dict[str, Entry])
 
@@ -142,6 +146,18 @@ def _given(run: Run, step: Step, port: Port) -> Value:
     return step.inputs.get(port.name, port.default)
 
 
+def _argument(run: Run, step: Step, port: Port) -> Value:
+    value = _resolve(run, _given(run, step, port))
+    return _beside(run.read_from, value) if port.reads and run.read_from else value
+
+
+def _beside(folder: Path, value: Value) -> Value:
+    """Paths with relative ones taken from a folder."""
+    if value is None or isinstance(value, str | os.PathLike):
+        return value and os.fspath(folder / value)
+    return [_beside(folder, path) for path in value]
+
+
 def _resolve(run: Run, value: Value) -> Value:
     if isinstance(value, Each):
         return _resolve(run, value.items)
@@ -174,7 +190,7 @@ def _key(run: Run, step: Step) -> bytes:
         given = _given(run, step, port)
         parts.append(_key_part(run, given))
         if _is_file(port):
-            paths = _paths(_resolve(run, given))
+            paths = _paths(_argument(run, step, port))
             parts.append(paths)
             parts.append([file_state(path) for path in paths] if port.reads else None)
     return digest(parts)
@@ -185,8 +201,7 @@ def _execute(run: Run, step: Step) -> Entry:
     with collected_messages() as messages:
         try:
             arguments = {
-                port.name: _resolve(run, _given(run, step, port))
-                for port in step.node.inputs.values()
+                port.name: _argument(run, step, port) for port in step.node.inputs.values()
             }
             value = _call_each(step, arguments) if step.is_mapped else _call(step, arguments)
         except Exception as error:
