@@ -6,8 +6,8 @@ The node library is `spheremesh.nodes`; graphs of nodes are run by `Graph`.
 
 from .kernel.mesh import Mesh
 from .kernel.sphere_mesh import SphereMesh
-# from .nodes.graph import Graph
-# from .nodes.sweep import each, sweep
+from .nodes.graph import Graph
+from .nodes.sweep import each, sweep
 
 __version__ = "0.1.0"
 __all__ = ["Graph", "Mesh", "SphereMesh", "__version__", "each", "sweep"]

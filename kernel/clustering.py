@@ -114,7 +114,9 @@ def _centers(curvatures: FloatArray, k: int, seed: int) -> FloatArray:
         return np.zeros(1)
     ordered = np.sort(curvatures)
     is_next = np.diff(ordered) > SAME_CURVATURE * scale
-    groups = np.concatenate([np.zeros(1, np.int64), np.cumsum(is_next)])
+    groups: IntArray = np.concatenate(
+        [np.zeros(1, np.int64), np.cumsum(is_next, dtype=np.int64)]
+    )
     count = int(groups[-1]) + 1
     if count <= k:
         return sum_by(groups, ordered, count) / np.bincount(groups)

@@ -153,9 +153,11 @@ def _argument(run: Run, step: Step, port: Port) -> Value:
 
 def _beside(folder: Path, value: Value) -> Value:
     """Paths with relative ones taken from a folder."""
-    if value is None or isinstance(value, str | os.PathLike):
-        return value and os.fspath(folder / value)
-    return [_beside(folder, path) for path in value]
+    if value is None:
+        return None
+    if isinstance(value, list | tuple):
+        return [_beside(folder, path) for path in cast("list[Value]", value)]
+    return str(folder / value)
 
 
 def _resolve(run: Run, value: Value) -> Value:
