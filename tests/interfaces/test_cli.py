@@ -51,7 +51,7 @@ def test_json_is_the_report_alone(panelled: Panelled) -> None:
     assert sum(report["moulds"]["panels_per_mould"]) == 72
     angles = report["angles_deg"]
     assert angles["spherical"]["mean"] < 0.8 * angles["planar"]["mean"]
-    assert 0 < report["edge_gap"]["relative_to_edge"] < 0.05
+    assert 0 < report["edge_gap"]["relative_to_edge"] < 0.1
     assert set(report["seconds"]) == {"total", "optimize", "step"}
 
 
@@ -93,8 +93,8 @@ def test_nodes_lists_and_explains() -> None:
 
 def test_strict_fails_the_gate_and_names_the_panel(tmp_path: Path) -> None:
     bow_tie = Mesh(
-        [[0, 0, 0], [1, 0, 0], [0.1, 1, 0], [1, 1.2, 0], [2, 0, 0], [2, 1, 0]],
-        [[0, 1, 2, 3], [3, 1, 4, 5]],
+        [[0, 0, 0], [1, 0, 0], [0.1, 1, 0], [1, 1.2, 0], [0, -1, 0], [1, -1, 0]],
+        [[0, 1, 2, 3], [1, 0, 4, 5]],
     )
     path = write_mesh(bow_tie, tmp_path / "bow_tie.obj")
     out = tmp_path / "out"
