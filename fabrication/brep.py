@@ -3,8 +3,8 @@ Panels as shapes of the CAD kernel OpenCASCADE: spheres, planes, circles and lin
 
 Vertices, edges and faces are built directly and shared, so nothing is intersected or sewn.
 Every shape is built about the origin of its panel and placed by a translation, wherever the
-model stands on the site. The translations are rounded to few enough digits for the text of a
-STEP file (OpenCASCADE writes 13), and the remainders go into the shapes: no digit is lost.
+model stands on the site. The translations are rounded to ten digits, short in the text of a
+STEP file, and the remainders go into the shapes: no digit is lost.
 
 The sphere of a face has its parameters turned so that the panel lies about u = π, v = 0, away
 from the seam and the poles.
@@ -129,7 +129,7 @@ def _place(origin: list[float]) -> TopLoc_Location:
 
 
 def _tolerances(panels: Panels) -> FloatArray:
-    """Tolerance of each panel: how far its corners miss its surfaces, or how these round."""
+    """Tolerance of each panel: how far corners miss surfaces, or how large numbers round."""
     owners, previous = panels.corner_panels, np.empty(len(panels.corners), np.int64)
     previous[panels.next_corners] = np.arange(len(previous))
     misses = np.zeros(len(previous))
@@ -142,9 +142,8 @@ def _tolerances(panels: Panels) -> FloatArray:
             level = dot(panels.plane_normals[planes], corners) - panels.plane_offsets[planes]
             misses = np.maximum(misses, np.abs(level))
     curvature = np.abs(panels.spheres[:, 0])
-    rounding = np.divide(
-        4 * EPSILON, curvature, out=np.zeros_like(curvature), where=curvature > 0
-    )
+    radius = np.divide(0.5, curvature, out=np.zeros_like(curvature), where=curvature > 0)
+    rounding = 8 * EPSILON * np.maximum(radius, norm(panels.origins))
     missing = 2 * np.maximum.reduceat(misses, panels.offsets[:-1])
     return np.maximum(CONFUSION, np.maximum(rounding, missing))
 

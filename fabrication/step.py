@@ -67,9 +67,8 @@ def write_step(
 
     Notes
     -----
-    The only geometry is spheres, planes, circles and lines. The text of the file has 13 digits
-    and directions 12: an arc of radius R meets its corners within ``R / 10¹²``, which is below
-    OpenCASCADE's tolerance up to a radius of 100 m.
+    The only geometry is spheres, planes, circles and lines. Numbers are written with 16 digits
+    and directions with 14 decimals: an arc of radius R meets its corners within ``R / 10¹⁴``.
     """
     target = Path(path)
     if panels.n_panels == 0:

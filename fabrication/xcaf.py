@@ -4,24 +4,28 @@ Named, layered and coloured shapes in a STEP file, through OpenCASCADE's XCAF do
 This module imports OCP, which takes more than a second: others import it inside functions.
 """
 
+import io
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
-from OCP.IFSelect import IFSelect_ReturnStatus
+from OCP.BRep import BRep_Builder
 from OCP.Interface import Interface_Static
 from OCP.Message import Message
 from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
+from OCP.StepAP214 import StepAP214
 from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Writer
 from OCP.STEPControl import STEPControl_StepModelType
+from OCP.StepData import StepData_StepModel, StepData_StepWriter
 from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDF import TDF_Label
 from OCP.TDocStd import TDocStd_Document
+from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS_Shape
+from OCP.TopoDS import TopoDS_Shape, TopoDS_Shell
 from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool
 
@@ -106,7 +110,7 @@ def assembly_document(name: str, parts: Iterable[Part]) -> TDocStd_Document:
         if part.color not in color_labels:
             color_labels[part.color] = colors.AddColor(_color(part.color))
         part_name = _text(part.name)
-        definition = shapes.AddShape(part.shape.Located(TopLoc_Location()), makeAssembly=False)
+        definition = shapes.AddShape(_definition(part.shape), makeAssembly=False)
         TDataStd_Name.Set_s(definition, part_name)
         layers.SetLayer(definition, layer_labels[part.layer])
         colors.SetColor(
@@ -116,6 +120,17 @@ def assembly_document(name: str, parts: Iterable[Part]) -> TDocStd_Document:
         TDataStd_Name.Set_s(component, part_name)
     shapes.UpdateAssemblies()
     return document
+
+
+def _definition(shape: TopoDS_Shape) -> TopoDS_Shape:
+    """Shape at its own origin; a face as a shell, or layer and colour would miss the part."""
+    shape = shape.Located(TopLoc_Location())
+    if shape.ShapeType() != TopAbs_ShapeEnum.TopAbs_FACE:
+        return shape
+    shell, builder = TopoDS_Shell(), BRep_Builder()
+    builder.MakeShell(shell)
+    builder.Add(shell, shape)
+    return shell
 
 
 def write_document(document: TDocStd_Document, path: Path, header: StepHeader) -> None:
@@ -134,7 +149,7 @@ def write_document(document: TDocStd_Document, path: Path, header: StepHeader) -
     Raises
     ------
     OSError
-        If OpenCASCADE could not write the file.
+        If the file cannot be written, or OpenCASCADE cannot translate the shapes.
 
     Notes
     -----
@@ -155,13 +170,35 @@ def write_document(document: TDocStd_Document, path: Path, header: StepHeader) -
         transfer = writer.Transfer  # pyright: ignore[reportUnknownMemberType, reportUnknownVariableType]
         if not transfer(document, STEPControl_StepModelType.STEPControl_AsIs):
             raise OSError(f"OpenCASCADE could not translate the shapes for {path}")
-        _write_header(writer, header)
-        if writer.Write(str(path)) != IFSelect_ReturnStatus.IFSelect_RetDone:
-            raise OSError(f"OpenCASCADE could not write {path}; is the disk full?")
+        model = writer.ChangeWriter().Model(newone=False)
+        _fill_header(model, header)
+        path.write_bytes(_part21(model))
 
 
-def _write_header(writer: STEPCAFControl_Writer, header: StepHeader) -> None:
-    section = APIHeaderSection_MakeHeader(writer.ChangeWriter().Model(newone=False))
+def _part21(model: StepData_StepModel) -> bytes:
+    """
+    Text of a STEP file with all digits.
+
+    OpenCASCADE's own format has 12 decimals in a direction: arcs of more than 100 m radius miss
+    their corners by more than its tolerance, and a valid solid is read back as an invalid one.
+    Its way to drop zeros cuts longer numbers short; here the usual ones go by replacement.
+    """
+    writer = StepData_StepWriter(model)
+    numbers = writer.FloatWriter()
+    numbers.SetFormat("%.15E")
+    numbers.SetZeroSuppress(False)  # noqa: FBT003
+    numbers.SetFormatForRange("%.14f", 0.0, 1000.0)
+    writer.SendModel(StepAP214.Protocol_s())
+    stream = io.BytesIO()
+    writer.Print(stream)
+    header, separator, data = stream.getvalue().partition(b"DATA;")
+    for number in (b"0.", b"1."):
+        data = data.replace(number + 14 * b"0", number)
+    return header + separator + data.replace(b" = ", b"=")
+
+
+def _fill_header(model: StepData_StepModel, header: StepHeader) -> None:
+    section = APIHeaderSection_MakeHeader(model)
     section.SetName(_ascii(header.title))
     section.SetDescriptionValue(1, _ascii(header.title))
     section.SetAuthorValue(1, _ascii(""))
