@@ -154,7 +154,8 @@ class _Charts:
     Panels of one degree k in their stereographic charts, P of them.
 
     `frames` holds e1, e2, N as rows; `uv` the corners, `bulges` the tangents of a quarter of
-    the sweep of the trims, positive where they turn left; `lows` and `highs` bound the trims.
+    the sweep of the trims, positive where they turn left; `reaches` how far patches extend to
+    both sides of the origin, along u and v.
     """
 
     ids: IntArray
@@ -164,8 +165,7 @@ class _Charts:
     frames: FloatArray
     uv: FloatArray
     bulges: FloatArray
-    lows: FloatArray
-    highs: FloatArray
+    reaches: FloatArray
 
 
 def brep_streams(panels: Panels) -> list[bytes]:
@@ -436,13 +436,13 @@ def _charts(panels: Panels, arcs: Arcs, ids: IntArray) -> _Charts:
     # The tangent turns by half of the sweep between the two half chords.
     bulges = cross / (norm(first) * norm(second) + dot(first, second))
     charts = _Charts(
-        ids, corner_ids, rows[:, 0], feet + panels.origins[ids], frames, uv, bulges, uv, uv
+        ids, corner_ids, rows[:, 0], feet + panels.origins[ids], frames, uv, bulges, uv[:, 0]
     )
     hull = _trim_points(charts, 2)
     hull = (hull[..., :2] / hull[..., 2:]).reshape(len(ids), -1, 2)
-    lows, highs = hull.min(1), hull.max(1)
-    margin = _MARGIN * (highs - lows).max(1)[:, None]
-    return replace(charts, lows=lows - margin, highs=highs + margin)
+    # On a domain symmetric about the origin the middle isocurves are great circles: by them
+    # Rhino recognises the sphere.
+    return replace(charts, reaches=(1 + _MARGIN) * np.abs(hull).max(1))
 
 
 def _turned(frames: FloatArray, uv: FloatArray) -> FloatArray:
@@ -475,32 +475,27 @@ def _take(charts: _Charts, chosen: BoolArray) -> _Charts:
 
 def _spans(charts: _Charts) -> IntArray:
     """Bézier spans of the trims and, each way, of the patch: 1 or 2; 0 for planes."""
-    reach = charts.curvatures[:, None] ** 2 * charts.lows * charts.highs
-    is_steep = (1 + reach.sum(1) < _ONE_SPAN_WEIGHT) | (
-        np.abs(charts.bulges).max(1) > _ONE_SPAN_BULGE
-    )
-    return np.where(charts.curvatures == 0, 0, np.where(is_steep, 2, 1))
+    middle_weights = 1 - charts.curvatures**2 * dot(charts.reaches, charts.reaches)
+    is_bent = np.abs(charts.bulges).max(1) > _ONE_SPAN_BULGE
+    spans = np.where(is_bent | (middle_weights < _ONE_SPAN_WEIGHT), 2, 1)
+    return np.where(charts.curvatures == 0, 0, spans)
 
 
 def _patch_numbers(charts: _Charts, spans: int) -> dict[str, FloatArray]:
     """Trims, surface and box of panels whose patches have the same number of spans."""
-    bounds = np.stack([charts.lows, charts.highs], 2)
+    share = np.repeat(np.linspace(-1, 1, max(spans, 1) + 1), 2)
+    knots = charts.reaches[..., None] * share
+    net = _patch_points(charts, knots)
+    hull = (net[..., :3] / net[..., 3:]).reshape(len(net), -1, 3)
+    box = np.concatenate([hull.min(1), hull.max(1)], 1)
     if spans == 0:
         e1, e2, n_axes = charts.frames.transpose(1, 0, 2)
         plane = _planes(charts.origins, e1, e2, n_axes)
-        domains = bounds.reshape(-1, 4)
-        patch = np.column_stack([plane, domains, domains])
-        net = _patch_points(charts, bounds.repeat(2, 2))
-        trims = _line_trims(charts)
+        domains = knots[..., 1:3].reshape(-1, 4)
+        patch, trims = np.column_stack([plane, domains, domains]), _line_trims(charts)
     else:
-        share = np.repeat(np.linspace(0, 1, spans + 1), 2)
-        knots = bounds[..., :1] * (1 - share) + bounds[..., 1:] * share
-        patch = net = _patch_points(charts, knots)
-        trims = _trim_points(charts, spans)
-        bounds = knots
-    hull = (net[..., :3] / net[..., 3:]).reshape(len(net), -1, 3)
-    box = np.concatenate([hull.min(1), hull.max(1)], 1)
-    return {"trim": trims, "knots": bounds, "patch": patch[:, None], "box": box[:, None]}
+        patch, trims = net, _trim_points(charts, spans)
+    return {"trim": trims, "knots": knots, "patch": patch[:, None], "box": box[:, None]}
 
 
 def _line_trims(charts: _Charts) -> FloatArray:
