@@ -17,7 +17,14 @@ from spheremesh.kernel.arcs import arc_points
 from spheremesh.kernel.arrays import FloatArray
 from spheremesh.kernel.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.kernel.mesh import Mesh
-from spheremesh.kernel.panels import EdgeMode, Panels, cut_panels, panel_arcs, select_panels
+from spheremesh.kernel.panels import (
+    EdgeMode,
+    Panels,
+    cut_panels,
+    panel_arcs,
+    panel_areas,
+    select_panels,
+)
 from spheremesh.kernel.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres import normals, signed_distance
 from spheremesh.kernel.surfaces import roof_net, vase_net
@@ -122,6 +129,27 @@ def test_opennurbs_agrees(panels: Panels) -> None:
         assert np.dot((normal.X, normal.Y, normal.Z), normals(row, center)) > 1 - 1e-9
         assert surface.IsPlanar() == (row[0] == 0)
         assert row[0] == 0 or radius > 1e3 or surface.IsSphere(1e-6)
+
+
+def test_trims_enclose_the_area_of_the_panel() -> None:
+    """By Green's theorem in (u, v), where areas shrink by (1 + A² ρ²)²."""
+    panels = random_panels(40, 9)
+    nodes, weights = np.polynomial.legendre.leggauss(100)
+    share = (nodes + 1) / 2
+    basis = np.stack([(1 - share) ** 2, 2 * share * (1 - share), share**2], 1)
+    slope = np.stack([share - 1, 1 - 2 * share, share], 1)
+    for i, stream in enumerate(brep_streams(panels)):
+        area = 0.0
+        for trim in (side.trim for side in parse_brep(stream).sides):
+            numbers = struct.unpack_from(f"<{3 * trim.n_points}d", stream, trim.points)
+            points = np.reshape(numbers, (-1, 3))
+            for first in range(0, len(points) - 2, 2):
+                x, dx = (values @ points[first : first + 3] for values in (basis, slope))
+                u, v = (x[:, :2] / x[:, 2:]).T
+                du, dv = ((dx[:, :2] - np.stack([u, v], 1) * dx[:, 2:]) / x[:, 2:]).T
+                square = panels.spheres[i, 0] ** 2 * (u**2 + v**2)
+                area += weights @ ((u * dv - v * du) / (1 + square)) / 2
+        assert area == pytest.approx(panel_areas(panels)[i], rel=1e-13)
 
 
 def test_edges_are_the_arcs_of_the_panels(panels: Panels) -> None:
