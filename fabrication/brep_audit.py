@@ -355,7 +355,7 @@ def _fit_spheres(samples: _Samples, origins: FloatArray) -> FloatArray:
     points = np.nan_to_num(points / size[:, None])
     # Null vectors of the sphere equation A |x|² - B·x + C at all points.
     system = np.dstack([dot(points, points), -points, np.ones(points.shape[:2])])
-    rows = np.linalg.svd(system)[2][:, -1]
+    rows = np.linalg.svd(system, full_matrices=False)[2][:, -1]
     rows = rows * np.hstack([1 / size, np.ones((count, 3)), size])
     length = np.sqrt(minkowski(rows, rows))[:, None]
     rows = rows / length
