@@ -91,7 +91,12 @@ def sphere_arcs(
     slope = dot(normals(rows, (starts + ends) / 2), rises)
     curvature = rows[:, 0]
     root = np.sqrt(slope**2 + 4 * curvature**2 * half_squared)
-    sagittas = -2 * curvature * half_squared / (slope + np.copysign(root, slope))
+    denominator = slope + np.copysign(root, slope)
+    # Zero only where both vanish: a straight edge in a plane that does not cut its plane.
+    sagittas = np.divide(
+        -2 * curvature * half_squared, denominator,
+        out=np.zeros_like(slope), where=denominator != 0,
+    )  # fmt: skip
     return Arcs(starts, ends, rises, sagittas)
 
 
