@@ -201,7 +201,8 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
     Returns
     -------
     plane_normals : (H, 3) float array
-        Unit normals that point into the face of their corner.
+        Unit normals that point into the face of their corner; zero where two faces fold back
+        onto each other, which no plane bisects.
     plane_offsets : (H,) float array
         Offsets of ``n·x = d`` in the coordinates local to the face.
 
@@ -219,6 +220,8 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
     other = rows[twins]
     is_interior = twins >= 0
     upright = np.where(is_interior[:, None], upright + upright[twins], upright)
+    # No plane bisects two faces that fold back onto each other.
+    upright[norm(upright) < SAME_PLANE] = 0
     plane_normals = unit(np.cross(upright, ends - starts))
     plane_offsets = dot(plane_normals, middles)
     if edges == "intersection":
@@ -227,6 +230,7 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
         length = norm(radical)
         scale = np.abs(rows[:, 0]) + np.abs(other[:, 0])
         use = is_interior & (length > SAME_PLANE * scale) & (angle(rows, other) > SAME_PLANE)
+        use &= upright.any(axis=1)
         side = np.where(dot(radical, plane_normals) < 0, -1.0, 1.0)
         divisor = np.where(use, side * length, 1.0)
         radical, constant = radical / divisor[:, None], constant / divisor
@@ -643,6 +647,8 @@ def _reasons(
     def any_corner(is_bad: BoolArray) -> BoolArray:
         return np.logical_or.reduceat(is_bad, panels.offsets[:-1])
 
+    is_fold = (panels.plane_normals == 0).all(axis=1)
+    note(any_corner(is_fold), "the face folds back onto a neighbour")
     note(any_corner(~exists), "two cutting planes do not meet on the sphere at a corner")
     note(any_corner(~inner_exists), "the thickness leaves no corner on the inner face")
     sides = references[panels.next_corners] - references
@@ -658,8 +664,10 @@ def _reasons(
         steep = dot(normals(panels.spheres[owners], points), axis) < np.cos(CAP_ANGLE)
         note(any_corner(steep), "the cap opens more than 80 degrees: split the face")
     sound = ~np.isin(np.arange(panels.n_panels), list(reasons))
-    areas = patch_areas(panels.spheres, arcs, owners)
-    note(sound & (areas <= 0), "the boundary runs clockwise about the face normal")
+    # The others may reach where the area integral has no origin.
+    areas = np.ones(panels.n_panels)
+    areas[sound] = panel_areas(select_panels(panels, sound))
+    note(areas <= 0, "the boundary runs clockwise about the face normal")
     return reasons
 
 

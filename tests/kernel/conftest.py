@@ -18,7 +18,7 @@ from spheremesh.kernel.surfaces import (
     vase_net,
 )
 
-settings.register_profile("kernel", deadline=None, derandomize=True, max_examples=50)
+settings.register_profile("kernel", deadline=None, derandomize=True, max_examples=40)
 settings.load_profile("kernel")
 
 
