@@ -1,15 +1,16 @@
-"""Names and colours of moulds: the same in every file, picture and viewer."""
+"""Names and colours of moulds: the same in every file and picture."""
 
-import math
-from typing import TypeAlias
+from math import cos, sin
+from typing import Final, TypeAlias
 
 Color: TypeAlias = tuple[int, int, int]
 
-UNLABELLED: Color = (178, 182, 187)
+UNLABELLED: Final[Color] = (178, 182, 187)
 """Light grey of panels that belong to no mould."""
 
-_LIGHTNESSES = (0.74, 0.52)
-_CHROMA = 0.15
+_HUES: Final = (4.45, 1.1)  # radians: from blue over green to sand
+_LIGHTNESSES: Final = (0.50, 0.87)
+_CHROMA: Final = 0.11
 
 
 def mould_name(label: int, count: int) -> str:
@@ -43,64 +44,56 @@ def mould_name(label: int, count: int) -> str:
 
 def mould_color(label: int, count: int) -> Color:
     """
-    Colour of a mould, told apart from the colours of the other moulds.
+    Colour of a mould.
 
     Parameters
     ----------
     label : int
-        Mould, from 0; -1 for a panel without mould.
+        Mould, from 0 (the sharpest); -1 for panels without one.
     count : int
         Number of moulds.
 
     Returns
     -------
     tuple of int
-        Red, green and blue from 0 to 255 (sRGB).
+        Red, green and blue, 0 to 255 (sRGB).
 
     Notes
     -----
-    Hues are spread evenly over the circle of the OKLCH space, from more than five moulds on
-    light and dark in turn. Labels follow the hues: moulds sorted by radius read as a scale.
+    A path through the OKLab colour space, where equal steps look equal: from a dark blue for
+    the sharpest mould over green to a pale sand for the flattest. Lightness rises with
+    the hue, so that grey prints keep the order.
 
     References
     ----------
-    B. Ottosson, A perceptual color space for image processing (OKLab), 2020.
+    B. Ottosson, A perceptual color space for image processing, 2020.
 
     Examples
     --------
-    >>> mould_color(0, 8)
-    (251, 131, 113)
-    >>> mould_color(-1, 8) == UNLABELLED
-    True
+    >>> mould_color(-1, 8)
+    (178, 182, 187)
+    >>> len({mould_color(label, 60) for label in range(60)})
+    60
     """
     if label < 0:
         return UNLABELLED
-    is_few = count <= 5
-    lightness = _LIGHTNESSES[0 if is_few else label % 2]
-    # An even number of steps: the last hue and the first must not share their lightness.
-    steps = max(count, 1) if is_few else count + count % 2
-    hue = math.radians(30) + 2 * math.pi * label / steps
-    chroma = _CHROMA
-    while (color := _linear_rgb(lightness, chroma, hue)) is None:
-        chroma *= 0.97
-    red, green, blue = (round(255 * _encode(value)) for value in color)
-    return red, green, blue
+    share = label / max(count - 1, 1)
+    hue = _HUES[0] + share * (_HUES[1] - _HUES[0])
+    lightness = _LIGHTNESSES[0] + share * (_LIGHTNESSES[1] - _LIGHTNESSES[0])
+    return _oklab_to_srgb(lightness, _CHROMA * cos(hue), _CHROMA * sin(hue))
 
 
-def _linear_rgb(
-    lightness: float, chroma: float, hue: float
-) -> tuple[float, float, float] | None:
-    """Linear red, green and blue of an OKLCH colour; None outside the display's range."""
-    a, b = chroma * math.cos(hue), chroma * math.sin(hue)
+def _oklab_to_srgb(lightness: float, a: float, b: float) -> Color:
     long = (lightness + 0.3963377774 * a + 0.2158037573 * b) ** 3
     medium = (lightness - 0.1055613458 * a - 0.0638541728 * b) ** 3
     short = (lightness - 0.0894841775 * a - 1.2914855480 * b) ** 3
     red = 4.0767416621 * long - 3.3077115913 * medium + 0.2309699292 * short
     green = -1.2684380046 * long + 2.6097574011 * medium - 0.3413193965 * short
     blue = -0.0041960863 * long - 0.7034186147 * medium + 1.7076147010 * short
-    is_shown = all(0 <= value <= 1 for value in (red, green, blue))
-    return (red, green, blue) if is_shown else None
+    return _gamma(red), _gamma(green), _gamma(blue)
 
 
-def _encode(value: float) -> float:
-    return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
+def _gamma(linear: float) -> int:
+    value = min(max(linear, 0.0), 1.0)
+    curve = 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
+    return round(255 * curve)
