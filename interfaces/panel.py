@@ -89,6 +89,7 @@ def panel_graph(options: PanelOptions) -> Graph:
     graph.add("write_3dm", "rhino", panels=panels.panels, path="model.3dm")
     graph.add("write_schedule", "table", panels=panels.panels, path="schedule.csv")
     graph.add("write_schedule", "list", panels=panels.panels, path="schedule.json")
+    graph.add("render", "picture", panels=panels.panels, path="preview.png")
     return graph
 
 

@@ -195,7 +195,7 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
     edges : {"bisector", "intersection"}
         ``bisector``: the plane through the two vertices that bisects the two spheres' normals.
         ``intersection``: the plane of the circle in which the two spheres meet; where they
-        are the same sphere or two planes, the bisecting one. Boundary edges are cut by the
+        are the same sphere or one is a plane, the bisecting one. Boundary edges are cut by the
         plane through their vertices and the normal of their sphere.
 
     Returns
@@ -229,7 +229,10 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
         constant = other[:, 0] * rows[:, 4] - rows[:, 0] * other[:, 4]
         length = norm(radical)
         scale = np.abs(rows[:, 0]) + np.abs(other[:, 0])
-        use = is_interior & (length > SAME_PLANE * scale) & (angle(rows, other) > SAME_PLANE)
+        # A plane meets a sphere in its own plane, which cannot cut it.
+        curved = (rows[:, 0] != 0) & (other[:, 0] != 0)
+        distinct = (length > SAME_PLANE * scale) & (angle(rows, other) > SAME_PLANE)
+        use = is_interior & curved & distinct
         use &= upright.any(axis=1)
         side = np.where(dot(radical, plane_normals) < 0, -1.0, 1.0)
         divisor = np.where(use, side * length, 1.0)

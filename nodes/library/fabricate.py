@@ -4,11 +4,13 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Literal, NamedTuple
 
 from ...fabrication import rhino, schedule, step
+from ...fabrication.files import replacing
 from ...kernel import panels as cutting
 from ...kernel.arrays import IntArray
 from ...kernel.errors import name_ids
 from ...kernel.panels import Panels
 from ...kernel.sphere_mesh import SphereMesh
+from ...viewer.render import render_image
 from ..node import node, running_graph, warn
 from ..ports import Port, Units, WritePath
 
@@ -151,3 +153,45 @@ def write_schedule(panels: Panels, path: WritePath, units: Units = "m") -> str:
         The path.
     """
     return str(schedule.write_schedule(panels, path, units))
+
+
+@node
+def render(
+    panels: Panels,
+    path: WritePath,
+    color_by: Literal["mould", "radius", "none"] = "mould",
+    shading: Literal["studio", "zebra"] = "studio",
+    width: Annotated[int, Port(min=16, max=8000)] = 1600,
+    height: Annotated[int, Port(min=16, max=8000)] = 1000,
+    *,
+    legend: bool = False,
+) -> str:
+    """
+    Draw panels into a PNG, from exact spheres and without a graphics card.
+
+    Parameters
+    ----------
+    panels : Panels
+        The panels.
+    path : path
+        Ends in .png.
+    color_by : {"mould", "radius", "none"}
+        What the colours mean.
+    shading : {"studio", "zebra"}
+        Daylight, or reflection lines that show how smooth the surface is.
+    width, height : int
+        Size in pixels.
+    legend : bool
+        Whether to list the moulds beside the picture.
+
+    Returns
+    -------
+    str
+        The path.
+    """
+    image = render_image(
+        panels, color_by=color_by, shading=shading, width=width, height=height, legend=legend
+    )
+    with replacing(path) as temporary:
+        image.save(temporary, format="PNG", optimize=True)
+    return str(path)
