@@ -1,12 +1,15 @@
 """
 The command line.
 
+The docstrings of the commands are their help: click adds the options.
+
 Exit codes: 0 done, 1 a library of the system is missing, 2 usage, 3 bad input, 4 not converged,
 5 finished but a quality gate failed. An error is one line on standard error.
 """
 
 import json
 import sys
+import textwrap
 import warnings
 from collections.abc import Generator
 from contextlib import chdir, contextmanager
@@ -17,6 +20,7 @@ import click
 
 if TYPE_CHECKING:
     from ..nodes.node import Node
+    from ..nodes.ports import Port
     from .panel import Progress
 
 MISSING_LIBRARY: Final = 1
@@ -49,7 +53,13 @@ def main() -> None:
 )
 @click.option("--strict", is_flag=True, help="Exit with 5 if a panel is rejected.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report alone.")
-def panel(out: Path, *, strict: bool, as_json: bool, **options: Any) -> None:  # noqa: ANN401
+def panel(  # numpydoc ignore=PR01
+    out: Path,
+    *,
+    strict: bool,
+    as_json: bool,
+    **options: Any,  # noqa: ANN401
+) -> None:
     """
     Panel a MESH with spheres and write CAD files, schedule and report.
 
@@ -75,7 +85,7 @@ def panel(out: Path, *, strict: bool, as_json: bool, **options: Any) -> None:  #
     "-o", "--out", default=".", type=click.Path(path_type=Path), help="Folder for its files."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the targets' values as JSON.")
-def run(
+def run(  # numpydoc ignore=PR01
     graph_file: Path, settings: tuple[str, ...], targets: tuple[str, ...], out: Path, *,
     as_json: bool,
 ) -> None:  # fmt: skip
@@ -105,7 +115,7 @@ def run(
 
 @main.command()
 @click.argument("name", required=False)
-def nodes(name: str | None) -> None:
+def nodes(name: str | None) -> None:  # numpydoc ignore=PR01
     """List the nodes, or explain one."""
     with _errors():
         from ..nodes.node import REGISTRY, find_node, load_library
@@ -123,7 +133,7 @@ def nodes(name: str | None) -> None:
 
 @main.command()
 @click.argument("graph_file", metavar="GRAPH.json", type=click.Path(path_type=Path))
-def graph(graph_file: Path) -> None:
+def graph(graph_file: Path) -> None:  # numpydoc ignore=PR01
     """Print a graph as a Mermaid flowchart."""
     with _errors():
         from ..nodes.graph import Graph
@@ -201,11 +211,26 @@ def _print_summary(report: dict[str, Any], out: Path) -> None:
 
 
 def _print_node(node: "Node") -> None:
-    click.echo(f"{click.style(node.name, bold=True)} ({node.category})\n\n{node.help}\n")
+    click.echo(f"{click.style(node.name, bold=True)} ({node.category})\n\n{node.summary}")
     for title, ports in (("Inputs", node.inputs), ("Outputs", node.outputs)):
-        click.echo(title)
+        click.echo(f"\n{click.style(title, bold=True)}")
         for port in ports.values():
-            click.echo(f"  {port.name:16s}{port.help}")
+            click.echo(f"  {port.name} : {_port_facts(port)}")
+            click.echo(textwrap.indent(textwrap.fill(port.help, 84), "      "))
+
+
+def _port_facts(port: "Port") -> str:
+    """Type, unit, range and default of a port, in one line."""
+    from ..nodes.ports import REQUIRED, type_name
+
+    facts = [f"{type_name(port.type)} in {port.unit}" if port.unit else type_name(port.type)]
+    if port.min is not None:
+        facts.append(f"at least {port.min:g}")
+    if port.max is not None:
+        facts.append(f"at most {port.max:g}")
+    if port.default is not REQUIRED:
+        facts.append(f"default {port.default!r}")
+    return ", ".join(facts)
 
 
 def _plain(value: Any) -> Any:  # noqa: ANN401

@@ -7,6 +7,7 @@ import numpy as np
 from ...fabrication import mesh_files
 from ...kernel import surfaces
 from ...kernel.mesh import Mesh
+from ...kernel.sphere_mesh import SphereMesh
 from ..node import node
 from ..ports import Port, ReadPath, WritePath
 
@@ -35,14 +36,14 @@ def read_mesh(path: ReadPath, layer: str = "") -> Mesh:
 
 
 @node
-def write_mesh(mesh: Mesh, path: WritePath) -> str:
+def write_mesh(mesh: Mesh | SphereMesh, path: WritePath) -> str:
     """
     Write a mesh to a file.
 
     Parameters
     ----------
-    mesh : Mesh
-        The mesh.
+    mesh : Mesh or SphereMesh
+        The mesh; of a sphere mesh its vertices and faces.
     path : path
         Ends in .obj, .off, .ply, .stl or .3dm.
 
@@ -51,6 +52,8 @@ def write_mesh(mesh: Mesh, path: WritePath) -> str:
     str
         The path.
     """
+    if isinstance(mesh, SphereMesh):
+        mesh = mesh.mesh
     return str(mesh_files.write_mesh(mesh, path))
 
 
