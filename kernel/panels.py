@@ -167,8 +167,9 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
     edges : {"bisector", "intersection"}
         ``bisector``: the plane through the two vertices that bisects the two spheres' normals.
         ``intersection``: the plane of the circle in which the two spheres meet; where they
-        are the same sphere or two planes, the bisecting one. Boundary edges are cut by the
-        plane through their vertices and the normal of their sphere.
+        are the same sphere, or one of them is a plane (that circle lies in the plane, which
+        cannot cut itself), the bisecting one. Boundary edges are cut by the plane through
+        their vertices and the normal of their sphere.
 
     Returns
     -------
@@ -202,7 +203,7 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
         length = norm(radical)
         scale = np.abs(rows[:, 0]) + np.abs(other[:, 0])
         use = is_interior & (length > SAME_PLANE * scale) & (angle(rows, other) > SAME_PLANE)
-        use &= upright.any(axis=1)
+        use &= upright.any(axis=1) & (rows[:, 0] != 0) & (other[:, 0] != 0)
         side = np.where(dot(radical, plane_normals) < 0, -1.0, 1.0)
         divisor = np.where(use, side * length, 1.0)
         radical, constant = radical / divisor[:, None], constant / divisor
