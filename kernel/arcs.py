@@ -92,11 +92,13 @@ def sphere_arcs(
     curvature = rows[:, 0]
     root = np.sqrt(slope**2 + 4 * curvature**2 * half_squared)
     denominator = slope + np.copysign(root, slope)
-    # Zero only where both vanish: a straight edge in a plane that does not cut its plane.
+    # Both vanish where a plane is cut by itself: there is no arc, and any chord lies in it.
     sagittas = np.divide(
-        -2 * curvature * half_squared, denominator,
-        out=np.zeros_like(slope), where=denominator != 0,
-    )  # fmt: skip
+        -2 * curvature * half_squared,
+        denominator,
+        out=np.zeros_like(slope),
+        where=denominator != 0,
+    )
     return Arcs(starts, ends, rises, sagittas)
 
 

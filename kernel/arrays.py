@@ -81,8 +81,8 @@ def sum_by(ids: IntArray, values: FloatArray, size: int) -> FloatArray:
         Sums; zero for a group without rows.
     """
     if values.ndim == 1:
-        return np.bincount(ids, values, size)
-    columns = [np.bincount(ids, column, size) for column in values.T]
+        return np.bincount(ids, values, size).astype(np.float64, copy=False)
+    columns = [sum_by(ids, column, size) for column in values.T]
     return np.stack(columns, axis=1)
 
 

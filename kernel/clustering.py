@@ -6,10 +6,11 @@ would decide alone. The side to which a panel curves is no property of the mould
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from .arrays import BoolArray, FloatArray, IntArray
+from .arrays import BoolArray, FloatArray, IntArray, sum_by
 from .circles import circle_pencils, face_circles, pencil_spheres
 from .errors import InputError
 from .pencil import pencil_angles
@@ -108,15 +109,23 @@ def cluster_radii(
 
 def _centers(curvatures: FloatArray, k: int, seed: int) -> FloatArray:
     """Ascending cluster centres of the curvatures, at most k."""
-    from sklearn.cluster import KMeans
-
-    scale = curvatures.max()
+    scale = float(curvatures.max())
     if scale == 0:
         return np.zeros(1)
     ordered = np.sort(curvatures)
     is_next = np.diff(ordered) > SAME_CURVATURE * scale
-    groups = np.concatenate([[0], np.cumsum(is_next)])
-    if groups[-1] < k:
-        return np.bincount(groups, ordered) / np.bincount(groups)
-    means = KMeans(k, n_init=10, random_state=seed).fit((curvatures / scale)[:, None])
-    return np.sort(means.cluster_centers_[:, 0]) * scale
+    groups: IntArray = np.concatenate(
+        [np.zeros(1, np.int64), np.cumsum(is_next, dtype=np.int64)]
+    )
+    count = int(groups[-1]) + 1
+    if count <= k:
+        return sum_by(groups, ordered, count) / np.bincount(groups)
+    return np.sort(_k_means(curvatures / scale, k, seed)) * scale
+
+
+def _k_means(values: FloatArray, k: int, seed: int) -> FloatArray:
+    from sklearn import cluster  # pyright: ignore[reportMissingTypeStubs]
+
+    k_means: Any = cluster.k_means  # pyright: ignore[reportUnknownVariableType, reportUnknownMemberType]
+    centers, _, _ = k_means(values[:, None], k, n_init=10, random_state=seed)
+    return np.asarray(centers, np.float64)[:, 0]

@@ -1,5 +1,7 @@
 """Spheres for the faces of a mesh to start from: planes, and least squares."""
 
+from typing import Any
+
 import numpy as np
 
 from .arrays import FloatArray, IntArray, dot, sum_by
@@ -102,12 +104,12 @@ def _rings(mesh: Mesh, ring: int) -> tuple[IntArray, IntArray]:
     pairs = (np.concatenate([left, right]), np.concatenate([right, left]))
     ones = np.ones(len(pairs[0]), bool)
     adjacency = csr_array((ones, pairs), shape=(mesh.n_faces, mesh.n_faces))
-    step = (adjacency + eye_array(mesh.n_faces, dtype=bool)).tocsr()
-    reach = incidence
+    step: Any = adjacency + eye_array(mesh.n_faces, dtype=bool)
+    reach: Any = incidence
     for _ in range(ring):
-        reach = (step @ reach).tocsr()
-    faces = np.repeat(np.arange(mesh.n_faces), np.diff(reach.indptr))
-    return faces, reach.indices.astype(np.int64)
+        reach = csr_array(step @ reach)
+    starts, vertices = np.asarray(reach.indptr), np.asarray(reach.indices, np.int64)
+    return np.repeat(np.arange(mesh.n_faces), np.diff(starts)), vertices
 
 
 def _pencil_fit(

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -54,17 +54,9 @@ class Mesh:
     topology: Topology = field(repr=False)
 
     def __init__(
-        self, vertices: ArrayLike, faces: Sequence[Sequence[int]] | Iterable[ArrayLike]
+        self, vertices: ArrayLike, faces: IntArray | Iterable[Sequence[int] | IntArray]
     ) -> None:
-        if isinstance(faces, np.ndarray) and faces.ndim == 2:
-            count, degree = faces.shape
-            corners = _whole_numbers(faces.ravel())
-            degrees = np.full(count, degree)
-        else:
-            rows = [np.asarray(face).ravel() for face in faces]
-            corners = _whole_numbers(np.concatenate(rows) if rows else np.zeros(0))
-            degrees = np.array([len(row) for row in rows], np.int64)
-        offsets = np.concatenate([[0], np.cumsum(degrees)]).astype(np.int64)
+        corners, offsets = _compress(faces)
         points = np.array(vertices, np.float64)
         _check_elements(points, corners, offsets)
         topology = build_topology(corners, offsets, len(points))
@@ -75,23 +67,66 @@ class Mesh:
 
     @property
     def faces(self) -> tuple[IntArray, ...]:
-        """Vertex ids of each face."""
+        """
+        Vertex ids of each face.
+
+        Returns
+        -------
+        tuple of F int arrays
+            In the order of the corners.
+        """
         return tuple(np.split(self.corners, self.offsets[1:-1]))
 
     @property
     def n_vertices(self) -> int:
-        """Number of vertices."""
+        """
+        Number of vertices.
+
+        Returns
+        -------
+        int
+            V.
+        """
         return len(self.vertices)
 
     @property
     def n_faces(self) -> int:
-        """Number of faces."""
+        """
+        Number of faces.
+
+        Returns
+        -------
+        int
+            F.
+        """
         return len(self.offsets) - 1
 
     @property
     def degrees(self) -> IntArray:
-        """Number of corners of each face, (F,)."""
+        """
+        Number of corners of each face, (F,).
+
+        Returns
+        -------
+        (F,) int array
+            Number of corners of each face, (F,).
+        """
         return np.diff(self.offsets)
+
+
+def _compress(
+    faces: IntArray | Iterable[Sequence[int] | IntArray],
+) -> tuple[IntArray, IntArray]:
+    """Corners and offsets of faces; a plain (F, k) array is not split into rows."""
+    if isinstance(faces, np.ndarray) and faces.ndim == 2:
+        table = cast("NDArray[Any]", faces)
+        corners = _whole_numbers(table.ravel())
+        degrees = np.full(len(table), len(corners) // max(len(table), 1), np.int64)
+    else:
+        rows = [np.asarray(face).ravel() for face in faces]
+        corners = _whole_numbers(np.concatenate(rows) if rows else np.zeros(0))
+        degrees = np.array([len(row) for row in rows], np.int64)
+    return corners, np.concatenate([np.zeros(1, np.int64), np.cumsum(degrees)])
 
 
 def _whole_numbers(indices: NDArray[Any]) -> IntArray:

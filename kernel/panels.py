@@ -17,7 +17,7 @@ from .arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from .errors import InputError
 from .mesh import face_centroids, local_corners, mean_edge_length
 from .sphere_mesh import SphereMesh
-from .spheres import angle, evaluate, normals, offset, recenter
+from .spheres import angle, evaluate, normals, offset, recenter, rescale
 from .tolerances import CAP_ANGLE, CROSSING, PARALLEL_PLANES, PLANE_SAGITTA, SAME_PLANE
 
 EdgeMode = Literal["bisector", "intersection"]
@@ -78,22 +78,50 @@ class Panels:
 
     @property
     def n_panels(self) -> int:
-        """Number of panels."""
+        """
+        Number of panels.
+
+        Returns
+        -------
+        int
+            P.
+        """
         return len(self.face_ids)
 
     @property
     def degrees(self) -> IntArray:
-        """Number of corners of each panel, (P,)."""
+        """
+        Number of corners of each panel, (P,).
+
+        Returns
+        -------
+        (P,) int array
+            Number of corners of each panel, (P,).
+        """
         return np.diff(self.offsets)
 
     @property
     def corner_panels(self) -> IntArray:
-        """Panel of each corner, (H,)."""
+        """
+        Panel of each corner, (H,).
+
+        Returns
+        -------
+        (H,) int array
+            Panel of each corner, (H,).
+        """
         return np.repeat(np.arange(self.n_panels), self.degrees)
 
     @property
     def next_corners(self) -> IntArray:
-        """Following corner in the same panel, (H,)."""
+        """
+        Following corner in the same panel, (H,).
+
+        Returns
+        -------
+        (H,) int array
+            Following corner in the same panel, (H,).
+        """
         return _following(self.offsets)
 
 
@@ -167,9 +195,8 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
     edges : {"bisector", "intersection"}
         ``bisector``: the plane through the two vertices that bisects the two spheres' normals.
         ``intersection``: the plane of the circle in which the two spheres meet; where they
-        are the same sphere, or one of them is a plane (that circle lies in the plane, which
-        cannot cut itself), the bisecting one. Boundary edges are cut by the plane through
-        their vertices and the normal of their sphere.
+        are the same sphere or one is a plane, the bisecting one. Boundary edges are cut by the
+        plane through their vertices and the normal of their sphere.
 
     Returns
     -------
@@ -202,8 +229,11 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
         constant = other[:, 0] * rows[:, 4] - rows[:, 0] * other[:, 4]
         length = norm(radical)
         scale = np.abs(rows[:, 0]) + np.abs(other[:, 0])
-        use = is_interior & (length > SAME_PLANE * scale) & (angle(rows, other) > SAME_PLANE)
-        use &= upright.any(axis=1) & (rows[:, 0] != 0) & (other[:, 0] != 0)
+        # A plane meets a sphere in its own plane, which cannot cut it.
+        curved = (rows[:, 0] != 0) & (other[:, 0] != 0)
+        distinct = (length > SAME_PLANE * scale) & (angle(rows, other) > SAME_PLANE)
+        use = is_interior & curved & distinct
+        use &= upright.any(axis=1)
         side = np.where(dot(radical, plane_normals) < 0, -1.0, 1.0)
         divisor = np.where(use, side * length, 1.0)
         radical, constant = radical / divisor[:, None], constant / divisor
@@ -442,6 +472,64 @@ def select_panels(panels: Panels, keep: BoolArray) -> Panels:
         corners=panels.corners[corner_keep],
         inner_corners=panels.inner_corners[corner_keep],
         neighbors=panels.neighbors[corner_keep],
+    )
+
+
+def scale_panels(panels: Panels, factor: float) -> Panels:
+    """
+    Panels in another unit of length.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+    factor : float
+        Positive number of new units in an old one.
+
+    Returns
+    -------
+    Panels
+        The same panels; every length is multiplied by the factor.
+    """
+    return replace(
+        panels,
+        origins=panels.origins * factor,
+        spheres=rescale(panels.spheres, factor),
+        inner_spheres=rescale(panels.inner_spheres, factor),
+        plane_offsets=panels.plane_offsets * factor,
+        corners=panels.corners * factor,
+        inner_corners=panels.inner_corners * factor,
+        thickness=panels.thickness * factor,
+        joint_gap=panels.joint_gap * factor,
+    )
+
+
+def move_origins(panels: Panels, origins: FloatArray) -> Panels:
+    """
+    The same panels in coordinates local to other points.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+    origins : (P, 3) float array
+        New origins, in model coordinates, near the old ones.
+
+    Returns
+    -------
+    Panels
+        Panels at the same place.
+    """
+    shifts = origins - panels.origins
+    corner_shifts = shifts[panels.corner_panels]
+    return replace(
+        panels,
+        origins=origins,
+        spheres=recenter(panels.spheres, shifts),
+        inner_spheres=recenter(panels.inner_spheres, shifts),
+        plane_offsets=panels.plane_offsets - dot(panels.plane_normals, corner_shifts),
+        corners=panels.corners - corner_shifts,
+        inner_corners=panels.inner_corners - corner_shifts,
     )
 
 

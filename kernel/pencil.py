@@ -16,16 +16,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import FloatArray, IntArray, dot
+from .arrays import FloatArray, IntArray, dot, sum_by
 from .circles import Circles, circle_pencils, face_circles, pencil_spheres
 from .errors import InputError
 from .mesh import Mesh, face_centroids, mean_edge_length
+from .solvers import solve_symmetric, symmetric_pattern
 from .sphere_mesh import SphereMesh
 from .spheres import minkowski
-from .tolerances import ANGLE_STEP, DAMPING, ENERGY_ROUNDING, LINEAR_SOLVE
+from .tolerances import ANGLE_STEP, DAMPING, ENERGY_ROUNDING
 
 MAX_ITERATIONS = 100
-MAX_LINEAR = 400
 
 
 @dataclass(frozen=True)
@@ -198,11 +198,13 @@ def angle_density(target: float) -> EdgeEnergy:
     """
     aim = np.cos(target) ** 2
 
-    def density(products: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _density(
+        products: FloatArray,
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
         excess = products**2 - aim
         return excess**2, 4 * products * excess, 4 * excess + 8 * products**2
 
-    return density
+    return _density
 
 
 def minimize_angles(
@@ -319,25 +321,23 @@ class _Descent:
 
 def _minimize(coupling: PencilCoupling, density: EdgeEnergy, start: FloatArray) -> _Descent:
     """Damped Newton steps, each solved by conjugate gradients; only descents are accepted."""
-    pattern = _hessian_pattern(coupling.faces, len(start))
-    angles, damping, largest = start, DAMPING, 0.0
+    pattern = symmetric_pattern(coupling.faces, len(start))
     energies = [_energy(coupling, density, start)]
-    for iteration in range(1, MAX_ITERATIONS + 1):
+    angles, damping, largest, converged = start, DAMPING, np.inf, False
+    while not converged and len(energies) <= MAX_ITERATIONS and damping < 1 / DAMPING:
         gradient, diagonal, mixed = _derivatives(coupling, density, angles)
         accepted = False
         while not accepted and damping < 1 / DAMPING:
-            step = _solve(pattern, diagonal + damping, mixed, -gradient)
+            step = solve_symmetric(pattern, diagonal + damping, mixed, -gradient)
             largest = float(np.abs(step).max(initial=0.0))
-            trial = _energy(coupling, density, angles + step)
-            accepted = trial <= energies[-1] * (1 + ENERGY_ROUNDING) or largest <= ANGLE_STEP
+            converged = largest <= ANGLE_STEP
+            energy = _energy(coupling, density, angles + step)
+            accepted = converged or energy <= energies[-1] * (1 + ENERGY_ROUNDING)
+            if accepted:
+                angles = angles + step
+                energies.append(energy)
             damping = max(damping / 16, DAMPING) if accepted else damping * 16
-        if not accepted:
-            break
-        angles = angles + step
-        energies.append(trial)
-        if largest <= ANGLE_STEP:
-            return _Descent(angles, tuple(energies), largest, iteration, converged=True)
-    return _Descent(angles, tuple(energies), largest, iteration, converged=False)
+    return _Descent(angles, tuple(energies), largest, len(energies) - 1, converged)
 
 
 def _derivatives(
@@ -349,42 +349,8 @@ def _derivatives(
     _, slope, bend = density(g.value)
     slope, bend = coupling.weights * slope, coupling.weights * bend
     count = len(angles)
-    gradient = np.bincount(a, slope * g.by_first, count) + np.bincount(
-        b, slope * g.by_second, count
-    )
-    diagonal = np.bincount(a, bend * g.by_first**2 - slope * g.value, count) + np.bincount(
+    gradient = sum_by(a, slope * g.by_first, count) + sum_by(b, slope * g.by_second, count)
+    diagonal = sum_by(a, bend * g.by_first**2 - slope * g.value, count) + sum_by(
         b, bend * g.by_second**2 - slope * g.value, count
     )
     return gradient, diagonal, bend * g.by_first * g.by_second + slope * g.mixed
-
-
-@dataclass(frozen=True)
-class _Pattern:
-    """Rows of the Hessian in compressed form; `order` sorts (diagonal, mixed, mixed)."""
-
-    order: IntArray
-    indices: IntArray
-    starts: IntArray
-
-
-def _hessian_pattern(faces: IntArray, count: int) -> _Pattern:
-    a, b = faces.T
-    rows = np.concatenate([np.arange(count), a, b])
-    columns = np.concatenate([np.arange(count), b, a])
-    order = np.argsort(rows, kind="stable")
-    starts = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=count))])
-    return _Pattern(order, columns[order], starts)
-
-
-def _solve(
-    pattern: _Pattern, diagonal: FloatArray, mixed: FloatArray, right: FloatArray
-) -> FloatArray:
-    from scipy.sparse import csr_array, dia_array
-    from scipy.sparse.linalg import cg
-
-    count = len(diagonal)
-    entries = np.concatenate([diagonal, mixed, mixed])[pattern.order]
-    hessian = csr_array((entries, pattern.indices, pattern.starts), shape=(count, count))
-    jacobi = dia_array((1 / np.abs(diagonal)[None], [0]), shape=(count, count))
-    solution, _ = cg(hessian, right, rtol=LINEAR_SOLVE, maxiter=MAX_LINEAR, M=jacobi)
-    return solution

@@ -8,7 +8,7 @@ generators work at any resolution; normals point outwards (upwards for roofs).
 
 import numpy as np
 
-from .arrays import FloatArray, IntArray, dot
+from .arrays import FloatArray, IntArray, dot, norm
 from .errors import InputError
 from .mesh import Mesh
 
@@ -188,50 +188,68 @@ def enneper_net(n: int, size: float) -> Mesh:
     return _grid_mesh(((points - points.mean((0, 1))) * step**2).transpose(1, 0, 2))
 
 
-def roof_net(n_around: int, n_across: int, length: float) -> Mesh:
+def roof_net(n_span: int, n_length: int, length: float) -> Mesh:
     """
-    Freeform roof over a long hall: a Möbius image of a piece of an undulating pipe.
+    Freeform roof over a long hall: three domes in a row, bent in plan and of growing size.
 
     Parameters
     ----------
-    n_around, n_across : int
-        Faces along the span and along the hall.
+    n_span, n_length : int
+        Faces across the hall and along it; 24 and 60 give nearly square ones.
     length : float
-        Length of the hall.
+        Length of the hall, in model units.
 
     Returns
     -------
     Mesh
-        ``n_around * n_across`` quadrilaterals with exact circumcircles, of both signs of
-        Gaussian curvature, no two rows alike.
+        ``n_span * n_length`` quadrilaterals with exact circumcircles, of both signs of
+        Gaussian curvature, no two rows alike. The normals point up.
 
     Raises
     ------
     InputError
         If a count or the length is too small.
+
+    Notes
+    -----
+    The upper part of a pipe whose radius swings: its circles and profiles form a circular net.
+    Its domes are about as round along as across, where spheres fit best; the waists between
+    them are narrower, and saddles. An inversion at a point far to the side keeps the circles,
+    bends the axis and makes one end larger than the other.
     """
-    _check_counts(around=(n_around, 1), across=(n_across, 1))
+    _check_counts(span=(n_span, 1), length=(n_length, 1))
     _check_positive(length=length)
-    along = np.linspace(-2.4, 2.4, n_across + 1)
-    radii = 1 + 0.16 * np.sin(2.6 * along + 0.5) + 0.05 * along
-    turns = np.linspace(np.pi * 0.08, np.pi * 0.92, n_around + 1)
+    share = _equal_steps(_swinging_pipe(np.linspace(0, 1, 4001)), n_length)
+    radii, along = _swinging_pipe(share)
+    # The inversion turns the pipe inside out: its angles run backwards to keep N outside.
+    turns = np.pi * np.linspace(0.86, 0.14, n_span + 1)
     points = _revolve(radii, along, turns)[..., [2, 0, 1]]
-    center = np.array([1.2, -5.2, -3.6])
-    relative = points - center
-    points = relative / dot(relative, relative)[..., None]
-    points = _lay_flat(points)
-    extent = np.ptp(points[..., 0])
-    # Inversion turned the normals: the rows run the other way.
-    return _grid_mesh(points[::-1] * (length / extent))
+    relative = points - np.array([3.5, -7.0, 2.0])
+    points = _lay_flat(relative / dot(relative, relative)[..., None])
+    return _grid_mesh(points * (length / np.ptp(points[..., 0])))
+
+
+def _swinging_pipe(share: FloatArray) -> FloatArray:
+    """Radius and height (2, n) of a profile with three swells, at shares of its length."""
+    wave = np.sqrt(np.sin(np.pi * (2.4 * share - 0.6)) ** 2 + 0.25)
+    return np.stack([0.4 + 0.7 * wave, 6 * (share - 0.5)])
+
+
+def _equal_steps(profile: FloatArray, count: int) -> FloatArray:
+    """Shares of the parameter that divide a sampled curve (2, n) in pieces of equal length."""
+    lengths = np.concatenate([np.zeros(1), np.cumsum(norm(np.diff(profile).T))])
+    shares = np.linspace(0, 1, len(lengths))
+    targets = np.linspace(0, float(lengths[-1]), count + 1)
+    return np.asarray(np.interp(targets, lengths, shares), np.float64)
 
 
 def _lay_flat(points: FloatArray) -> FloatArray:
-    """Longest direction along x, the boundary's mean plane horizontal, lowest point at 0."""
+    """Longest direction along x, mean plane of the rim level, normals up, lowest point at 0."""
     rim = np.concatenate([points[0], points[-1], points[:, 0], points[:, -1]])
     center = rim.mean(0)
     axes = np.linalg.svd(rim - center, full_matrices=False)[2]
-    inside = points.mean((0, 1)) - center
-    axes[2] *= np.copysign(1.0, axes[2] @ inside)
+    diagonals = points[1:, 1:] - points[:-1, :-1], points[:-1, 1:] - points[1:, :-1]
+    axes[2] *= np.copysign(1.0, np.cross(*diagonals).sum((0, 1)) @ axes[2])
     axes[1] = np.cross(axes[2], axes[0])
     result = (points - center) @ axes.T
     result[..., 2] -= result[..., 2].min()
@@ -251,8 +269,8 @@ def _revolve(radii: FloatArray, heights: FloatArray, turns: FloatArray) -> Float
 def _grid_mesh(
     points: FloatArray, *, closed_around: bool = False, closed_across: bool = False
 ) -> Mesh:
-    rows, columns = points.shape[:2]
-    ids: IntArray = np.arange(rows * columns).reshape(rows, columns)
+    rows, columns = len(points), len(points[0])
+    ids: IntArray = np.arange(rows * columns).reshape((rows, columns))
     if closed_around:
         ids = np.concatenate([ids, ids[:1]], axis=0)
     if closed_across:

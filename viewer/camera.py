@@ -1,0 +1,154 @@
+"""The camera: where a picture is taken from, and what of the scene lies where in it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..kernel.arrays import FloatArray, norm, unit
+from ..kernel.errors import InputError
+
+FIELD_OF_VIEW = np.radians(24.0)
+"""Horizontal opening: that of a mild telephoto lens, for a calm perspective."""
+
+MARGIN = 0.07
+"""Share of the picture that stays empty on each side."""
+
+
+@dataclass(frozen=True)
+class Camera:
+    """
+    A perspective camera.
+
+    Attributes
+    ----------
+    eye : (3,) float array
+        Where it stands, relative to the origin of the triangles.
+    axes : (3, 3) float array
+        Unit vectors to the right, upwards, and back towards the viewer.
+    focal : float
+        Focal length, in pixels.
+    width, height : int
+        Size of the picture, in pixels.
+    """
+
+    eye: FloatArray
+    axes: FloatArray
+    focal: float
+    width: int
+    height: int
+
+
+def view_axes(direction: FloatArray) -> FloatArray:
+    """
+    Axes of a camera that looks against a direction and stands upright.
+
+    Parameters
+    ----------
+    direction : (3,) float array
+        From the scene to the viewer, of any length.
+
+    Returns
+    -------
+    (3, 3) float array
+        Unit vectors to the right, upwards, and towards the viewer.
+
+    Raises
+    ------
+    InputError
+        If the direction is zero or not finite.
+    """
+    if direction.shape != (3,) or not np.isfinite(direction).all() or not norm(direction) > 0:
+        raise InputError(f"the direction of a view must be three numbers, not {direction}")
+    back = unit(direction)
+    # Seen from straight above there is no upright: then y is up.
+    upright = np.array([0.0, 0.0, 1.0]) if abs(back[2]) < 0.9999 else np.array([0.0, 1.0, 0.0])
+    right = unit(np.cross(upright, back))
+    return np.stack([right, np.cross(back, right), back])
+
+
+def frame_scene(points: FloatArray, direction: FloatArray, width: int, height: int) -> Camera:
+    """
+    The camera that shows all points as large as they fit.
+
+    Parameters
+    ----------
+    points : (N, 3) float array
+        What has to be seen.
+    direction : (3,) float array
+        From the scene to the viewer.
+    width, height : int
+        Size of the picture, in pixels.
+
+    Returns
+    -------
+    Camera
+        The nearest camera whose pyramid of view holds the points.
+
+    Notes
+    -----
+    Closed form: each side of the pyramid touches the points where ``x ± t z`` is extreme.
+    """
+    axes = view_axes(direction)
+    x, y, z = axes @ points.T
+    focal = width / 2 / np.tan(FIELD_OF_VIEW / 2)
+    eye = np.zeros(3)
+    for axis, (values, size) in enumerate(((x, width), (y, height))):
+        slope = (0.5 - MARGIN) * size / focal
+        right, left = (values + slope * z).max(), (values - slope * z).min()
+        eye[axis] = (right + left) / 2
+        eye[2] = (
+            max(eye[2], (right - left) / (2 * slope)) if axis else (right - left) / (2 * slope)
+        )
+    return Camera(eye @ axes, axes, float(focal), width, height)
+
+
+def project_points(camera: Camera, points: FloatArray) -> FloatArray:
+    """
+    Where points lie in the picture.
+
+    Parameters
+    ----------
+    camera : Camera
+        The camera.
+    points : (N, 3) float array
+        Points in front of it.
+
+    Returns
+    -------
+    (N, 3) float array
+        Pixels to the right and downwards, and the nearness (inverse depth), which is affine
+        over the picture of a triangle.
+    """
+    x, y, z = camera.axes @ (points - camera.eye).T
+    nearness = -1 / z
+    return np.stack(
+        [
+            camera.width / 2 + camera.focal * x * nearness,
+            camera.height / 2 - camera.focal * y * nearness,
+            nearness,
+        ],
+        axis=1,
+    )
+
+
+def pixel_rays(camera: Camera, x: FloatArray, y: FloatArray) -> FloatArray:
+    """
+    Directions in which the camera sees points of its picture.
+
+    Parameters
+    ----------
+    camera : Camera
+        The camera.
+    x, y : (n,) float array
+        Pixels to the right and downwards.
+
+    Returns
+    -------
+    (n, 3) float array
+        Directions whose component along the line of sight is 1: the point at depth d is
+        ``eye + d direction``.
+    """
+    across = (x - camera.width / 2) / camera.focal
+    upward = (camera.height / 2 - y) / camera.focal
+    right, up, back = camera.axes
+    return across[:, None] * right + upward[:, None] * up - back

@@ -1,0 +1,191 @@
+"""
+Daylight for pictures: a bright sky, and a sun with a soft edge.
+
+How much of the sky a point sees is counted with depth pictures from directions all over the
+sky; it is smooth, so it is taken at the points of the triangles and interpolated.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..kernel.arrays import FloatArray, IntArray, dot
+from .camera import view_axes
+from .raster import rasterize
+
+SKY_DIRECTIONS = 40
+SKY_PIXELS = 224
+SUN_PIXELS = 900
+
+
+@dataclass(frozen=True)
+class DepthMap:
+    """
+    What is nearest to a far away light.
+
+    Attributes
+    ----------
+    axes : (3, 3) float array
+        Unit vectors across, and towards the light.
+    corner : (2,) float array
+        Where the picture starts, along the axes.
+    pixel : float
+        Size of a pixel, in model units.
+    heights : (n, n) float array
+        Coordinate towards the light of the nearest point of each pixel; -inf for none.
+    """
+
+    axes: FloatArray
+    corner: FloatArray
+    pixel: float
+    heights: FloatArray
+
+
+def depth_map(
+    points: FloatArray, triangles: IntArray, direction: FloatArray, size: int
+) -> DepthMap:
+    """
+    The parallel picture of a scene from the side of a light.
+
+    Parameters
+    ----------
+    points : (N, 3) float array
+        Points.
+    triangles : (T, 3) int array
+        Triangles.
+    direction : (3,) float array
+        Towards the light.
+    size : int
+        Pixels along each side of the picture.
+
+    Returns
+    -------
+    DepthMap
+        The picture, with an empty rim.
+    """
+    axes = view_axes(direction)
+    local = points @ axes.T
+    low, extent = local.min(axis=0), np.ptp(local, axis=0)
+    pixel = float(extent[:2].max()) / (size - 4) or 1.0
+    corner = low[:2] - 2 * pixel
+    local[:, :2] = (local[:, :2] - corner) / pixel
+    picture = rasterize(local, triangles, size, size)
+    return DepthMap(axes, corner, pixel, picture.nearness)
+
+
+def light_reaches(light: DepthMap, points: FloatArray, softness: float = 0.0) -> FloatArray:
+    """
+    Which share of a light reaches points.
+
+    Parameters
+    ----------
+    light : DepthMap
+        The light.
+    points : (N, 3) float array
+        Points, lifted from their surface towards the light by about a pixel.
+    softness : float
+        Width of the edge of shadows, in model units; 0 for a hard edge.
+
+    Returns
+    -------
+    (N,) float array
+        From 0 in the shadow to 1 in the light.
+    """
+    size = len(light.heights)
+    local = points @ light.axes.T
+    start = (local[:, :2] - light.corner) / light.pixel
+    taps = np.linspace(-1, 1, 4) * softness / light.pixel / 2 if softness else np.zeros(1)
+    total = np.zeros(len(points))
+    for right in taps:
+        column = np.clip(start[:, 0] + right, 0, size - 1).astype(np.int64)
+        for up in taps:
+            row = np.clip(start[:, 1] + up, 0, size - 1).astype(np.int64)
+            total += light.heights[row, column] <= local[:, 2] + light.pixel
+    return total / len(taps) ** 2
+
+
+def sky_maps(points: FloatArray, triangles: IntArray) -> list[DepthMap]:
+    """
+    Depth maps from directions spread evenly over the sky.
+
+    Parameters
+    ----------
+    points : (N, 3) float array
+        Points.
+    triangles : (T, 3) int array
+        Triangles; coarse ones will do.
+
+    Returns
+    -------
+    list of DepthMap
+        `SKY_DIRECTIONS` maps, of parts of the sky of equal size.
+    """
+    index = np.arange(SKY_DIRECTIONS) + 0.5
+    height = index / SKY_DIRECTIONS
+    turn = np.pi * (1 + 5**0.5) * index
+    across = np.sqrt(1 - height**2)
+    directions = np.stack([across * np.cos(turn), across * np.sin(turn), height], axis=1)
+    return [depth_map(points, triangles, direction, SKY_PIXELS) for direction in directions]
+
+
+def sky_openness(sky: list[DepthMap], points: FloatArray, normals: FloatArray) -> FloatArray:
+    """
+    Share of the light of the sky that reaches both sides of a surface.
+
+    Parameters
+    ----------
+    sky : list of DepthMap
+        The sky.
+    points : (N, 3) float array
+        Points.
+    normals : (N, 3) float array
+        Unit normals.
+
+    Returns
+    -------
+    (N, 2) float array
+        Share on the side of the normal, and on the other: 0 hidden, 1 free.
+    """
+    seen, whole = np.zeros((2, len(points))), np.full((2, len(points)), 1e-9)
+    for light in sky:
+        slope = normals @ light.axes[2]
+        lift = np.copysign(1.5 * light.pixel, slope)
+        reaches = light_reaches(light, points + lift[:, None] * normals)
+        for side, cosine in enumerate((np.maximum(slope, 0), np.maximum(-slope, 0))):
+            seen[side] += cosine * reaches
+            whole[side] += cosine
+    return (seen / whole).T
+
+
+def daylight(
+    normals: FloatArray, openness: FloatArray, sun: FloatArray, sunshine: FloatArray
+) -> FloatArray:
+    """
+    Light that falls on a surface.
+
+    Parameters
+    ----------
+    normals : (N, 3) float array
+        Unit normals, on the side that is looked at.
+    openness : (N,) float array
+        Share of the sky's light that arrives.
+    sun : (3,) float array
+        Direction towards the sun.
+    sunshine : (N,) float array
+        Share of the sun's light that arrives.
+
+    Returns
+    -------
+    (N, 3) float array
+        Red, green and blue, linear: a cool sky, a warm sun, and what the ground throws back.
+        Free level ground gets 1.
+    """
+    up = normals[:, 2]
+    sky = openness * (0.5 + 0.5 * up)
+    ground = (0.35 + 0.65 * openness) * (0.5 - 0.5 * up)
+    direct = sunshine * np.maximum(dot(normals, sun), 0) / sun[2]
+    return (
+        sky[:, None] * np.array([0.52, 0.55, 0.60])
+        + ground[:, None] * np.array([0.26, 0.25, 0.24])
+        + direct[:, None] * np.array([0.48, 0.45, 0.40])
+    )
