@@ -18,7 +18,7 @@ from spheremesh.kernel.surfaces import (
     vase_net,
 )
 
-settings.register_profile("kernel", deadline=None, derandomize=True, max_examples=40)
+settings.register_profile("kernel", deadline=None, derandomize=True, max_examples=30)
 settings.load_profile("kernel")
 
 

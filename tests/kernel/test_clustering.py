@@ -119,7 +119,7 @@ def test_more_moulds_never_cost_more(optimum: dict[str, SphereMesh]) -> None:
     before = optimum["roof"]
     costs = [
         ((curvatures(before) - curvatures(cluster_radii(before, k)[0])) ** 2).sum()
-        for k in (1, 2, 4, 8, 16)
+        for k in (1, 3, 8)
     ]
     assert (np.diff(costs) < 0).all()
 

@@ -227,7 +227,7 @@ def test_gains_over_plane_faces(
 
 def test_refinement_halves_the_angles() -> None:
     coarse, fine = (
-        mean_angle(minimize_angles(face_planes(roof_net(n, n, 40.0)))[0]) for n in (8, 16)
+        mean_angle(minimize_angles(face_planes(roof_net(n, 2 * n, 40.0)))[0]) for n in (8, 16)
     )
     assert fine == pytest.approx(coarse / 2, rel=0.15)
 
