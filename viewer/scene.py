@@ -11,10 +11,10 @@ from ..kernel.spheres import evaluate, normals
 from ..kernel.tessellation import PanelTriangles, surface_rows, tessellate
 from .camera import Camera, pixel_rays
 
-JOINT_WIDTH = 0.008
+JOINT_WIDTH = 0.01
 """Half width of a drawn joint, in mean edges."""
 
-MIN_JOINT = 0.5
+MIN_JOINT = 0.75
 """The same in samples of the picture, for panels that are small there."""
 
 FINE_PANEL = 20.0
