@@ -8,6 +8,7 @@ its pixels out without gaps and without overlap.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -140,8 +141,8 @@ def _pixels(
     counts[(x.max(axis=1) < 0) | (x.min(axis=1) > width)] = 0
     sides = _Sides.of(x, y)
     load = np.cumsum(counts * (np.minimum(np.ptp(x, axis=1), width) / 2 + 4))
-    batches = np.searchsorted(load, np.arange(0, load[-1] if len(load) else 0, BATCH))
-    for begin, end in zip(batches, [*batches[1:], len(triangles)], strict=True):
+    starts = np.searchsorted(load, np.arange(0, float(load[-1]) if len(load) else 0, BATCH))
+    for begin, end in pairwise([*starts.tolist(), len(triangles)]):
         chosen: IntArray = np.arange(int(begin), int(end))
         owner, step = _expand(chosen, counts[chosen])
         row = first[owner] + step

@@ -42,7 +42,7 @@ BATCH = 1 << 15
 MAX_SIDE = 8000
 
 STRIPES = 14
-"""Reflected stripes per half turn of the mirrored ray."""
+"""Bright stripes that a mirrored ray passes in a turn of 2π."""
 
 LEADING = 1.6
 """Distance of the lines of a legend, in sizes of its type."""
@@ -230,7 +230,7 @@ def _hang_lamps(scene: Scene, camera: Camera) -> _Lamps:
     size = float(np.ptp(coarse.points, axis=0).max())
     return _Lamps(
         sky_maps(coarse.points, coarse.triangles),
-        depth_map(coarse.points, coarse.triangles, sun, SUN_PIXELS),
+        depth_map(coarse.points, coarse.triangles, sun, min(SUN_PIXELS, camera.width)),
         0.012 * size,
     )
 
@@ -259,7 +259,7 @@ def _zebra(sight: Sight, camera: Camera, light: FloatArray) -> FloatArray:
     mirrored = sight.rays - 2 * dot(sight.normals, sight.rays)[:, None] * sight.normals
     right = unit(camera.axes[0])
     angle = np.arcsin(np.clip(mirrored @ right, -1, 1))
-    stripe = 0.5 + 0.5 * np.tanh(6 * np.sin(STRIPES * angle))
+    stripe = 0.5 + 0.5 * np.tanh(6 * np.cos(STRIPES * angle))
     tone = 0.06 + 0.84 * stripe
     result = (tone * (0.55 + 0.45 * light[:, 1]))[:, None] * np.array([0.97, 0.99, 1.0])
     joints = 0.35 * sight.joints[:, None]
