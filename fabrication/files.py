@@ -1,6 +1,7 @@
 """Files are written whole or not at all: beside their target, then renamed over it."""
 
 import os
+import shutil
 import tempfile
 from collections.abc import Generator
 from contextlib import contextmanager
@@ -58,3 +59,48 @@ def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)
     return mask
+
+
+@contextmanager
+def replacing_all(folder: str | os.PathLike[str]) -> Generator[Path]:
+    """
+    A temporary folder whose files move into `folder` together when the block succeeds.
+
+    Parameters
+    ----------
+    folder : path
+        Folder to write into; made if it does not exist.
+
+    Yields
+    ------
+    Path
+        Where to write. When the block raises, nothing of it is left, nor a folder made here.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be made or written to.
+    """
+    target = Path(folder)
+    made = [path for path in (target, *target.parents) if not path.exists()]
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+        temporary = Path(tempfile.mkdtemp(dir=target, prefix=".spheremesh-"))
+    except OSError as error:
+        _remove_empty(made)
+        raise InputError(
+            f"cannot write into the folder {target}: {error.strerror}; choose another"
+        ) from error
+    try:
+        yield temporary
+        for written in sorted(temporary.iterdir()):
+            written.replace(target / written.name)
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+        _remove_empty(made)
+
+
+def _remove_empty(folders: list[Path]) -> None:
+    for folder in folders:
+        if folder.is_dir() and not any(folder.iterdir()):
+            folder.rmdir()

@@ -9,7 +9,7 @@ import json
 import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, cast
 
 import numpy as np
 
@@ -175,7 +175,7 @@ def _cell(value: object) -> str:
     if isinstance(value, float):
         return f"{value:.9g}"
     if isinstance(value, list):
-        items: list[object] = value
+        items = cast("list[object]", value)
         separator = "; " if items and isinstance(items[0], list) else " "
         return separator.join(_cell(item) or "-" for item in items)
     return str(value)

@@ -91,7 +91,14 @@ def sphere_arcs(
     slope = dot(normals(rows, (starts + ends) / 2), rises)
     curvature = rows[:, 0]
     root = np.sqrt(slope**2 + 4 * curvature**2 * half_squared)
-    sagittas = -2 * curvature * half_squared / (slope + np.copysign(root, slope))
+    denominator = slope + np.copysign(root, slope)
+    # Both vanish where a plane is cut by itself: there is no arc, and any chord lies in it.
+    sagittas = np.divide(
+        -2 * curvature * half_squared,
+        denominator,
+        out=np.zeros_like(slope),
+        where=denominator != 0,
+    )
     return Arcs(starts, ends, rises, sagittas)
 
 

@@ -11,7 +11,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from .arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by
+from .arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from .errors import InputError, name_ids
 from .mesh import Mesh, face_vector_areas, local_corners
 from .spheres import evaluate, lift_points, minkowski
@@ -64,11 +64,15 @@ def pencil_kind(s: FloatArray, t: FloatArray) -> IntArray:
     ----------
     Meshes with Spherical Faces, Sec. 2.1, sphere pencils.
     """
-    product = minkowski(s, s) * minkowski(t, t)
-    square = minkowski(s, t) ** 2
-    magnitude = dot(s, s) * dot(t, t)
-    rounding = 64 * EPSILON * (np.abs(product) + square + magnitude)
-    discriminant = product - square
+    ss, tt, st = minkowski(s, s), minkowski(t, t), minkowski(s, t)
+    discriminant = ss * tt - st**2
+    # Each product is rounded at the size of its terms, which for spheres far from the origin
+    # is much larger than itself.
+    error_ss, error_tt = 64 * EPSILON * dot(s, s), 64 * EPSILON * dot(t, t)
+    error_st = np.sqrt(error_ss * error_tt)
+    rounding = (
+        error_ss * np.abs(tt) + error_tt * np.abs(ss) + 2 * error_st * np.abs(st) + error_st**2
+    )
     result = np.full(discriminant.shape, int(PencilKind.PARABOLIC), np.int64)
     result[discriminant > rounding] = PencilKind.ELLIPTIC
     result[discriminant < -rounding] = PencilKind.HYPERBOLIC
@@ -244,9 +248,8 @@ def face_circles(mesh: Mesh) -> tuple[Circles, FloatArray]:
     size = np.sqrt(sum_by(faces, dot(corners, corners), count) / mesh.degrees)
     _refuse_degenerate(norm(areas) <= DEGENERATE * size**2)
     unit_normals = areas / norm(areas)[:, None]
-    first = corners[mesh.offsets[:-1]] / size[:, None]
-    first = first - dot(first, unit_normals)[:, None] * unit_normals
-    x_axis = first / norm(first)[:, None]
+    helper = np.eye(3)[np.argmin(np.abs(unit_normals), axis=1)]
+    x_axis = unit(np.cross(unit_normals, helper))
     y_axis = np.cross(unit_normals, x_axis)
     scaled = corners / size[faces, None]
     x, y = dot(scaled, x_axis[faces]), dot(scaled, y_axis[faces])

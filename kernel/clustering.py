@@ -84,6 +84,8 @@ def cluster_radii(
     circles, _ = face_circles(sphere_mesh.mesh)
     radii = np.sqrt(circles.radii_squared)
     angles = pencil_angles(sphere_mesh, circles)
+    # What rounding leaves of a plane is no curvature.
+    angles = np.where(np.abs(np.sin(angles)) < SAME_CURVATURE, 0.0, angles)
     curvatures = np.abs(np.sin(angles)) / radii
     side = np.where(angles < 0, -1.0, 1.0)
 
@@ -110,10 +112,14 @@ def _centers(curvatures: FloatArray, k: int, seed: int) -> FloatArray:
     scale = float(curvatures.max())
     if scale == 0:
         return np.zeros(1)
-    rounded: FloatArray = np.round(curvatures / scale / SAME_CURVATURE)
-    distinct, groups = np.unique(rounded, return_inverse=True)
-    if len(distinct) <= k:
-        return sum_by(groups, curvatures, len(distinct)) / np.bincount(groups)
+    ordered = np.sort(curvatures)
+    is_next = np.diff(ordered) > SAME_CURVATURE * scale
+    groups: IntArray = np.concatenate(
+        [np.zeros(1, np.int64), np.cumsum(is_next, dtype=np.int64)]
+    )
+    count = int(groups[-1]) + 1
+    if count <= k:
+        return sum_by(groups, ordered, count) / np.bincount(groups)
     return np.sort(_k_means(curvatures / scale, k, seed)) * scale
 
 

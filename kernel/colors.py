@@ -1,9 +1,11 @@
-"""Colours that stand for moulds, the same in every file and picture."""
+"""Names and colours of moulds: the same in every file and picture."""
 
 from math import cos, sin
-from typing import Final
+from typing import Final, TypeAlias
 
-NEUTRAL: Final = (178, 182, 187)
+Color: TypeAlias = tuple[int, int, int]
+
+UNLABELLED: Final[Color] = (178, 182, 187)
 """Light grey of panels that belong to no mould."""
 
 _HUES: Final = (4.45, 1.1)  # radians: from blue over green to sand
@@ -11,7 +13,36 @@ _LIGHTNESSES: Final = (0.50, 0.87)
 _CHROMA: Final = 0.11
 
 
-def mould_color(label: int, count: int) -> tuple[int, int, int]:
+def mould_name(label: int, count: int) -> str:
+    """
+    Name of a mould, for layers and schedules.
+
+    Parameters
+    ----------
+    label : int
+        Mould, from 0; -1 for a panel without mould.
+    count : int
+        Number of moulds.
+
+    Returns
+    -------
+    str
+        ``Mould 01`` for the first; ``Panels`` for panels without mould.
+
+    Examples
+    --------
+    >>> mould_name(0, 8)
+    'Mould 01'
+    >>> mould_name(8, 120)
+    'Mould 009'
+    """
+    if label < 0:
+        return "Panels"
+    width = max(2, len(str(count)))
+    return f"Mould {label + 1:0{width}d}"
+
+
+def mould_color(label: int, count: int) -> Color:
     """
     Colour of a mould.
 
@@ -45,14 +76,14 @@ def mould_color(label: int, count: int) -> tuple[int, int, int]:
     60
     """
     if label < 0:
-        return NEUTRAL
+        return UNLABELLED
     share = label / max(count - 1, 1)
     hue = _HUES[0] + share * (_HUES[1] - _HUES[0])
     lightness = _LIGHTNESSES[0] + share * (_LIGHTNESSES[1] - _LIGHTNESSES[0])
     return _oklab_to_srgb(lightness, _CHROMA * cos(hue), _CHROMA * sin(hue))
 
 
-def _oklab_to_srgb(lightness: float, a: float, b: float) -> tuple[int, int, int]:
+def _oklab_to_srgb(lightness: float, a: float, b: float) -> Color:
     long = (lightness + 0.3963377774 * a + 0.2158037573 * b) ** 3
     medium = (lightness - 0.1055613458 * a - 0.0638541728 * b) ** 3
     short = (lightness - 0.0894841775 * a - 1.2914855480 * b) ** 3

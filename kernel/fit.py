@@ -57,7 +57,8 @@ def fit_spheres(mesh: Mesh, ring: int = 1) -> SphereMesh:
     SphereMesh
         On circular faces the best sphere through the circle, else the best of all spheres, by
         least squares of the sphere equation under Pratt's norm ``|B|² - 4 A C = 1``. Exact on
-        vertices of one sphere or plane, and covariant under similarities.
+        vertices of one sphere or plane, and covariant under similarities. A circular face
+        without vertices around it gets its plane.
 
     Raises
     ------
@@ -77,10 +78,11 @@ def fit_spheres(mesh: Mesh, ring: int = 1) -> SphereMesh:
     points = mesh.vertices[vertices] - origins[faces]
     planes, great_spheres = circle_pencils(circles)
     first, second = evaluate(planes[faces], points), evaluate(great_spheres[faces], points)
-    angles = _pencil_fit(faces, first, second, mesh.n_faces)
+    rounding = CIRCULAR * mean_edge_length(mesh)
+    angles = _pencil_fit(faces, first, second, mesh.n_faces, rounding)
     rows = pencil_spheres(planes, great_spheres, angles)
 
-    is_free = miss > CIRCULAR * mean_edge_length(mesh)
+    is_free = miss > rounding
     if is_free.any():
         chosen = is_free[faces]
         rows[is_free] = _pratt_fit(faces[chosen], points[chosen], mesh.n_faces)[is_free]
@@ -96,29 +98,34 @@ def _rings(mesh: Mesh, ring: int) -> tuple[IntArray, IntArray]:
     topology = mesh.topology
     shape = (mesh.n_faces, mesh.n_vertices)
     incidence = csr_array(
-        (np.ones(len(mesh.corners), np.int8), mesh.corners, mesh.offsets), shape=shape
+        (np.ones(len(mesh.corners), bool), mesh.corners, mesh.offsets), shape=shape
     )
     left, right = topology.edge_faces.T
     pairs = (np.concatenate([left, right]), np.concatenate([right, left]))
-    ones = np.ones(len(pairs[0]), np.int8)
+    ones = np.ones(len(pairs[0]), bool)
     adjacency = csr_array((ones, pairs), shape=(mesh.n_faces, mesh.n_faces))
-    step: Any = adjacency + eye_array(mesh.n_faces, dtype=np.int8)
+    step: Any = adjacency + eye_array(mesh.n_faces, dtype=bool)
     reach: Any = incidence
     for _ in range(ring):
         reach = csr_array(step @ reach)
-        reach.data[:] = 1
     starts, vertices = np.asarray(reach.indptr), np.asarray(reach.indices, np.int64)
     return np.repeat(np.arange(mesh.n_faces), np.diff(starts)), vertices
 
 
 def _pencil_fit(
-    faces: IntArray, first: FloatArray, second: FloatArray, count: int
+    faces: IntArray, first: FloatArray, second: FloatArray, count: int, rounding: float
 ) -> FloatArray:
-    """Angle t that minimises the sum of ``(cos t P(x) + sin t Q(x))²``: a 2x2 eigenproblem."""
+    """
+    Angle t that minimises the sum of ``(cos t P(x) + sin t Q(x))²``: a 2x2 eigenproblem.
+
+    Zero, the plane, where all points lie on the circle up to `rounding`.
+    """
     difference = sum_by(faces, first**2 - second**2, count)
     mixed = sum_by(faces, 2 * first * second, count)
     # The quadratic form is constant plus half of (difference cos 2t + mixed sin 2t).
-    return np.where((difference == 0) & (mixed == 0), 0.0, np.arctan2(-mixed, -difference) / 2)
+    least = rounding**2 * np.bincount(faces, minlength=count)
+    is_undetermined = np.hypot(difference, mixed) <= least
+    return np.where(is_undetermined, 0.0, np.arctan2(-mixed, -difference) / 2)
 
 
 def _pratt_fit(faces: IntArray, points: FloatArray, count: int) -> FloatArray:

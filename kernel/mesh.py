@@ -2,9 +2,10 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from typing import Any, cast
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from .arrays import FloatArray, IntArray, norm, read_only, sum_by, unit
 from .errors import InputError, name_ids
@@ -118,14 +119,22 @@ def _compress(
 ) -> tuple[IntArray, IntArray]:
     """Corners and offsets of faces; a plain (F, k) array is not split into rows."""
     if isinstance(faces, np.ndarray) and faces.ndim == 2:
-        table = np.array(faces, np.int64)
-        corners = table.ravel()
+        table = cast("NDArray[Any]", faces)
+        corners = _whole_numbers(table.ravel())
         degrees = np.full(len(table), len(corners) // max(len(table), 1), np.int64)
     else:
-        rows = [np.asarray(face, np.int64).ravel() for face in faces]
-        corners = np.concatenate(rows) if rows else np.zeros(0, np.int64)
+        rows = [np.asarray(face).ravel() for face in faces]
+        corners = _whole_numbers(np.concatenate(rows) if rows else np.zeros(0))
         degrees = np.array([len(row) for row in rows], np.int64)
     return corners, np.concatenate([np.zeros(1, np.int64), np.cumsum(degrees)])
+
+
+def _whole_numbers(indices: NDArray[Any]) -> IntArray:
+    if indices.dtype.kind not in "iu":
+        is_whole = np.isfinite(indices) & (indices == np.floor(indices))
+        if not is_whole.all():
+            raise InputError("faces must refer to vertices by whole numbers")
+    return indices.astype(np.int64)
 
 
 def _check_elements(points: FloatArray, corners: IntArray, offsets: IntArray) -> None:

@@ -17,7 +17,7 @@ from .arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from .errors import InputError
 from .mesh import face_centroids, local_corners, mean_edge_length
 from .sphere_mesh import SphereMesh
-from .spheres import angle, evaluate, normals, offset, recenter
+from .spheres import angle, evaluate, normals, offset, recenter, rescale
 from .tolerances import CAP_ANGLE, CROSSING, PARALLEL_PLANES, PLANE_SAGITTA, SAME_PLANE
 
 EdgeMode = Literal["bisector", "intersection"]
@@ -195,13 +195,14 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
     edges : {"bisector", "intersection"}
         ``bisector``: the plane through the two vertices that bisects the two spheres' normals.
         ``intersection``: the plane of the circle in which the two spheres meet; where they
-        are the same sphere or two planes, the bisecting one. Boundary edges are cut by the
+        are the same sphere or one is a plane, the bisecting one. Boundary edges are cut by the
         plane through their vertices and the normal of their sphere.
 
     Returns
     -------
     plane_normals : (H, 3) float array
-        Unit normals that point into the face of their corner.
+        Unit normals that point into the face of their corner; zero where two faces fold back
+        onto each other, which no plane bisects.
     plane_offsets : (H,) float array
         Offsets of ``n·x = d`` in the coordinates local to the face.
 
@@ -219,6 +220,8 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
     other = rows[twins]
     is_interior = twins >= 0
     upright = np.where(is_interior[:, None], upright + upright[twins], upright)
+    # No plane bisects two faces that fold back onto each other.
+    upright[norm(upright) < SAME_PLANE] = 0
     plane_normals = unit(np.cross(upright, ends - starts))
     plane_offsets = dot(plane_normals, middles)
     if edges == "intersection":
@@ -226,7 +229,11 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
         constant = other[:, 0] * rows[:, 4] - rows[:, 0] * other[:, 4]
         length = norm(radical)
         scale = np.abs(rows[:, 0]) + np.abs(other[:, 0])
-        use = is_interior & (length > SAME_PLANE * scale) & (angle(rows, other) > SAME_PLANE)
+        # A plane meets a sphere in its own plane, which cannot cut it.
+        curved = (rows[:, 0] != 0) & (other[:, 0] != 0)
+        distinct = (length > SAME_PLANE * scale) & (angle(rows, other) > SAME_PLANE)
+        use = is_interior & curved & distinct
+        use &= upright.any(axis=1)
         side = np.where(dot(radical, plane_normals) < 0, -1.0, 1.0)
         divisor = np.where(use, side * length, 1.0)
         radical, constant = radical / divisor[:, None], constant / divisor
@@ -468,6 +475,64 @@ def select_panels(panels: Panels, keep: BoolArray) -> Panels:
     )
 
 
+def scale_panels(panels: Panels, factor: float) -> Panels:
+    """
+    Panels in another unit of length.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+    factor : float
+        Positive number of new units in an old one.
+
+    Returns
+    -------
+    Panels
+        The same panels; every length is multiplied by the factor.
+    """
+    return replace(
+        panels,
+        origins=panels.origins * factor,
+        spheres=rescale(panels.spheres, factor),
+        inner_spheres=rescale(panels.inner_spheres, factor),
+        plane_offsets=panels.plane_offsets * factor,
+        corners=panels.corners * factor,
+        inner_corners=panels.inner_corners * factor,
+        thickness=panels.thickness * factor,
+        joint_gap=panels.joint_gap * factor,
+    )
+
+
+def move_origins(panels: Panels, origins: FloatArray) -> Panels:
+    """
+    The same panels in coordinates local to other points.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+    origins : (P, 3) float array
+        New origins, in model coordinates, near the old ones.
+
+    Returns
+    -------
+    Panels
+        Panels at the same place.
+    """
+    shifts = origins - panels.origins
+    corner_shifts = shifts[panels.corner_panels]
+    return replace(
+        panels,
+        origins=origins,
+        spheres=recenter(panels.spheres, shifts),
+        inner_spheres=recenter(panels.inner_spheres, shifts),
+        plane_offsets=panels.plane_offsets - dot(panels.plane_normals, corner_shifts),
+        corners=panels.corners - corner_shifts,
+        inner_corners=panels.inner_corners - corner_shifts,
+    )
+
+
 def panel_arcs(panels: Panels) -> Arcs:
     """
     Edges of the outer faces, in local coordinates.
@@ -585,6 +650,8 @@ def _reasons(
     def any_corner(is_bad: BoolArray) -> BoolArray:
         return np.logical_or.reduceat(is_bad, panels.offsets[:-1])
 
+    is_fold = (panels.plane_normals == 0).all(axis=1)
+    note(any_corner(is_fold), "the face folds back onto a neighbour")
     note(any_corner(~exists), "two cutting planes do not meet on the sphere at a corner")
     note(any_corner(~inner_exists), "the thickness leaves no corner on the inner face")
     sides = references[panels.next_corners] - references
@@ -600,8 +667,10 @@ def _reasons(
         steep = dot(normals(panels.spheres[owners], points), axis) < np.cos(CAP_ANGLE)
         note(any_corner(steep), "the cap opens more than 80 degrees: split the face")
     sound = ~np.isin(np.arange(panels.n_panels), list(reasons))
-    areas = patch_areas(panels.spheres, arcs, owners)
-    note(sound & (areas <= 0), "the boundary runs clockwise about the face normal")
+    # The others may reach where the area integral has no origin.
+    areas = np.ones(panels.n_panels)
+    areas[sound] = panel_areas(select_panels(panels, sound))
+    note(areas <= 0, "the boundary runs clockwise about the face normal")
     return reasons
 
 

@@ -35,7 +35,7 @@ def torus_net(n_around: int, n_across: int, major_radius: float, minor_radius: f
         If the counts are too small or the tube does not fit.
     """
     _check_counts(around=(n_around, 3), across=(n_across, 3))
-    if not 0 < minor_radius < major_radius:
+    if not 0 < minor_radius < major_radius < np.inf:
         raise InputError(
             "a torus needs 0 < minor radius < major radius, "
             f"not {minor_radius} and {major_radius}"

@@ -13,9 +13,6 @@ EPSILON: Final = 2.220446049250313e-16
 DEGENERATE: Final = 1e-10
 """A face of less than this area, relative to its squared perimeter, has no plane."""
 
-UNIT_ROW: Final = 1e-9
-"""How far a row's norm may be from 1 and still count as unit."""
-
 PLANE_SAGITTA: Final = 1e-6
 """A panel whose bulge is below this share of its size is built as a plane (1 µm per m)."""
 
@@ -48,3 +45,14 @@ CROSSING: Final = 1e-9
 
 SAME_CURVATURE: Final = 1e-9
 """Curvatures that differ by less, relative to the sharpest, share a mould without a choice."""
+
+VERTEX_MISS: Final = 0.01
+"""Vertices farther from their sphere than this share of the mean edge are worth a warning."""
+
+LITTLE_GAIN: Final = 0.05
+"""A relative gain of spheres over planes that is worth saying to be small."""
+
+COINCIDENT: Final = 1e-6
+"""Vertices of separate meshes closer than this, in mean edges, are one (1 µm per m)."""
+EXACT_BREP: Final = 1e-12
+"""How far the parts of a Brep may lie apart, relative to the radius of its sphere."""

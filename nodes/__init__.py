@@ -1,1 +1,58 @@
-"""Typed functions as nodes, and the lazy graph that runs them."""
+"""
+Typed functions as nodes, and the lazy graph that runs them.
+
+All nodes of the library can be imported from here by name or with ``*``.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+from .errors import GraphError, NodeError
+from .graph import Graph
+from .node import REGISTRY, Node, NodeWarning, find_node, load_library, node, warn
+from .ports import Port, ReadPath, Units, WritePath
+from .sweep import each, sweep
+
+__all__ = [
+    "Graph",
+    "GraphError",
+    "Node",
+    "NodeError",
+    "NodeWarning",
+    "Port",
+    "ReadPath",
+    "Units",
+    "WritePath",
+    "each",
+    "find_node",
+    "node",
+    "sweep",
+    "warn",
+]
+
+# The nodes are found when first asked for, by the registry: a new function in a module of
+# nodes/library needs no line here, and `import spheremesh` does not import the library.
+# For static analysis every other name of this package is a callable; who wants its full
+# signature imports it from its own module, such as spheremesh.nodes.library.spheres.
+_FRAMEWORK = tuple(__all__)
+del __all__  # from here on __getattr__ answers for it, with the nodes of the library added
+
+
+def _library_nodes() -> dict[str, Node]:
+    load_library()
+    inside = f"{__name__}.library."
+    return {n: r for n, r in REGISTRY.items() if r.function.__module__.startswith(inside)}
+
+
+def __getattr__(name: str) -> Callable[..., Any]:
+    if name == "__all__":
+        return [*_FRAMEWORK, *sorted(_library_nodes())]  # pyright: ignore[reportReturnType]
+    if not name.startswith("_"):
+        nodes = _library_nodes()
+        if name in nodes:
+            return nodes[name].function
+    raise AttributeError(f"module {__name__!r} has no node {name!r}")
+
+
+def __dir__() -> list[str]:
+    return [*_FRAMEWORK, *sorted(_library_nodes())]

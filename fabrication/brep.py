@@ -1,0 +1,432 @@
+"""
+Panels as shapes of the CAD kernel OpenCASCADE: spheres, planes, circles and lines, all exact.
+
+Vertices, edges and faces are built directly and shared, so nothing is intersected or sewn.
+Every shape is built about the origin of its panel and placed by a translation, wherever the
+model stands on the site. The translations are rounded to ten digits, short in the text of a
+STEP file, and the remainders go into the shapes: no digit is lost.
+
+The sphere of a face has its parameters turned so that the panel lies about u = π, v = 0, away
+from the seam and the poles.
+
+This module imports OCP, which takes more than a second: others import it inside functions.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from OCP.BRep import BRep_Builder
+from OCP.Geom import (
+    Geom_Circle,
+    Geom_Curve,
+    Geom_Line,
+    Geom_Plane,
+    Geom_SphericalSurface,
+    Geom_Surface,
+)
+from OCP.Geom2d import Geom2d_BSplineCurve
+from OCP.gp import gp_Ax2, gp_Ax3, gp_Dir, gp_Pnt, gp_Pnt2d, gp_Trsf, gp_Vec
+from OCP.TColgp import TColgp_Array1OfPnt2d
+from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
+from OCP.TopAbs import TopAbs_Orientation
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import (
+    TopoDS_Edge,
+    TopoDS_Face,
+    TopoDS_Shape,
+    TopoDS_Shell,
+    TopoDS_Solid,
+    TopoDS_Vertex,
+    TopoDS_Wire,
+)
+
+from ..kernel.arcs import ArcCircles, Arcs, arc_circles
+from ..kernel.arrays import FloatArray, IntArray, dot, norm, unit
+from ..kernel.panels import (
+    Panels,
+    inner_panel_arcs,
+    move_origins,
+    panel_arcs,
+    scale_panels,
+)
+from ..kernel.spheres import center_radius, signed_distance
+from ..kernel.tolerances import EPSILON
+
+CONFUSION = 1e-7
+"""Distance below which OpenCASCADE takes points for one; meant for millimetres."""
+
+_BUILDER = BRep_Builder()
+
+
+@dataclass(frozen=True)
+class _Layer:
+    """Outer or inner faces: vertices and edges (H), faces (P) oriented along N."""
+
+    vertices: list[TopoDS_Vertex]
+    edges: list[TopoDS_Edge]
+    faces: list[TopoDS_Shape]
+
+
+def panel_shapes(
+    panels: Panels, scale: float = 1.0, *, pcurves: bool = True
+) -> list[TopoDS_Shape]:
+    """
+    A face per panel, or a closed solid where panels have a thickness.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+    scale : float
+        Units of the shapes per model unit; OpenCASCADE's tolerances suit millimetres.
+    pcurves : bool
+        Whether edges carry curves in the parameters of spheres, which OpenCASCADE's own
+        algorithms need; a STEP file does not.
+
+    Returns
+    -------
+    list of TopoDS_Shape
+        P shapes, each placed by a translation to the origin of its panel. Faces are oriented
+        along N, solids outwards.
+
+    Notes
+    -----
+    A solid has the outer face, the concentric inner face and a plane wall per edge. The shape
+    of a panel of n edges takes 0.1 n ms with, half of it without curves in parameters.
+    """
+    panels = scale_panels(panels, scale)
+    panels = move_origins(panels, _rounded(panels.origins))
+    tolerances = _tolerances(panels)
+    outer = _layer(panels, panels.spheres, panel_arcs(panels), tolerances, pcurves=pcurves)
+    shapes: Iterable[TopoDS_Shape] = outer.faces
+    if panels.thickness > 0:
+        arcs = inner_panel_arcs(panels)
+        inner = _layer(panels, panels.inner_spheres, arcs, tolerances, pcurves=pcurves)
+        walls = _walls(panels, outer, inner, tolerances)
+        bounds = panels.offsets.tolist()
+        shapes = [
+            _solid([face, inner_face.Reversed(), *walls[first:last]])
+            for face, inner_face, first, last in zip(
+                outer.faces, inner.faces, bounds, bounds[1:], strict=False
+            )
+        ]
+    places = panels.origins.tolist()
+    return [shape.Located(_place(x)) for shape, x in zip(shapes, places, strict=True)]
+
+
+def _rounded(origins: FloatArray) -> FloatArray:
+    """Origins with the decimals that leave the farthest ten digits."""
+    farthest = float(np.abs(origins).max(initial=0.0))
+    decimals = 10 - int(np.ceil(np.log10(farthest))) if farthest > 0 else 0
+    return np.round(origins, decimals)
+
+
+def _place(origin: list[float]) -> TopLoc_Location:
+    translation = gp_Trsf()
+    translation.SetTranslation(gp_Vec(*origin))
+    return TopLoc_Location(translation)
+
+
+def _tolerances(panels: Panels) -> FloatArray:
+    """Tolerance of each panel: how far corners miss surfaces, or how large numbers round."""
+    owners, previous = panels.corner_panels, np.empty(len(panels.corners), np.int64)
+    previous[panels.next_corners] = np.arange(len(previous))
+    misses = np.zeros(len(previous))
+    for rows, corners in (
+        (panels.spheres, panels.corners),
+        (panels.inner_spheres, panels.inner_corners),
+    ):
+        misses = np.maximum(misses, np.abs(signed_distance(rows[owners], corners)))
+        for planes in (np.arange(len(previous)), previous):
+            level = dot(panels.plane_normals[planes], corners) - panels.plane_offsets[planes]
+            misses = np.maximum(misses, np.abs(level))
+    curvature = np.abs(panels.spheres[:, 0])
+    radius = np.divide(0.5, curvature, out=np.zeros_like(curvature), where=curvature > 0)
+    rounding = 8 * EPSILON * np.maximum(radius, norm(panels.origins))
+    missing = 2 * np.maximum.reduceat(misses, panels.offsets[:-1])
+    return np.maximum(CONFUSION, np.maximum(rounding, missing))
+
+
+def _layer(
+    panels: Panels, rows: FloatArray, arcs: Arcs, tolerances: FloatArray, *, pcurves: bool
+) -> _Layer:
+    owners = panels.corner_panels
+    corner_tolerances = tolerances[owners].tolist()
+    frames = _frames(rows, arcs, panels.offsets)
+    circles = arc_circles(arcs)
+    vertices = [
+        _vertex(point, tolerance)
+        for point, tolerance in zip(arcs.starts.tolist(), corner_tolerances, strict=True)
+    ]
+    following: list[int] = panels.next_corners.tolist()
+    ends = [vertices[corner] for corner in following]
+    curves, lengths = _curves(arcs, circles)
+    edges = [
+        _edge(*parts)
+        for parts in zip(curves, vertices, ends, lengths, corner_tolerances, strict=True)
+    ]
+    surfaces = _surfaces(rows, frames)
+    curves_2d: list[Geom2d_BSplineCurve | None] = [None] * len(edges)
+    if pcurves:
+        curves_2d = _parameter_curves(rows[owners], frames[owners], arcs, circles)
+    bounds, is_inward = panels.offsets.tolist(), (rows[:, 0] > 0).tolist()
+    faces: list[TopoDS_Shape] = []
+    for panel, surface in enumerate(surfaces):
+        ring = slice(bounds[panel], bounds[panel + 1])
+        tolerance = corner_tolerances[bounds[panel]]
+        faces.append(
+            _patch(surface, edges[ring], curves_2d[ring], tolerance, is_inward=is_inward[panel])
+        )
+    return _Layer(vertices, edges, faces)
+
+
+def _frames(rows: FloatArray, arcs: Arcs, offsets: IntArray) -> FloatArray:
+    """
+    Axes x, y, z (P, 3, 3) of the surfaces, in rows.
+
+    Those of a sphere point from the panel to the centre, along the first edge of the panel,
+    and across: the patch lies about u = π, v = 0. Those of a plane: along the first edge,
+    across, along N.
+    """
+    first = offsets[:-1]
+    chords = arcs.ends[first] - arcs.starts[first]
+    is_plane = rows[:, 0] == 0
+    inward = unit(rows[:, 1:4]) * np.where(rows[:, :1] < 0, -1.0, 1.0)
+    along = unit(chords - dot(chords, inward)[:, None] * inward)
+    across = np.cross(inward, along)
+    spherical = np.stack([inward, along, across], 1)
+    plane = np.stack([along, across, inward], 1)
+    return np.where(is_plane[:, None, None], plane, spherical)
+
+
+def _surfaces(rows: FloatArray, frames: FloatArray) -> list[Geom_Surface]:
+    centers, squares = center_radius(rows)
+    is_plane = rows[:, 0] == 0
+    centers = np.where(is_plane[:, None], rows[:, 1:4] * rows[:, 4:], centers)
+    surfaces: list[Geom_Surface] = []
+    for center, radius, (x, _, z) in zip(
+        centers.tolist(), np.sqrt(squares).tolist(), frames.tolist(), strict=True
+    ):
+        axes = gp_Ax3(gp_Pnt(*center), gp_Dir(*z), gp_Dir(*x))
+        if radius == np.inf:
+            surfaces.append(Geom_Plane(axes))
+        else:
+            surfaces.append(Geom_SphericalSurface(axes, radius))
+    return surfaces
+
+
+def _curves(arcs: Arcs, circles: ArcCircles) -> tuple[list[Geom_Curve], list[float]]:
+    """Curves from parameter 0 at the starts of arcs, and the parameters of their ends."""
+    starts, chords = arcs.starts, arcs.ends - arcs.starts
+    x_axes, _ = _circle_axes(arcs, circles)
+    curves: list[Geom_Curve] = []
+    for start, chord, center, axis, x, radius in zip(
+        starts.tolist(), chords.tolist(), circles.centers.tolist(), circles.axes.tolist(),
+        x_axes.tolist(), circles.radii.tolist(), strict=True,
+    ):  # fmt: skip
+        if radius == np.inf:
+            curves.append(Geom_Line(gp_Pnt(*start), gp_Dir(*chord)))
+        else:
+            axes = gp_Ax2(gp_Pnt(*center), gp_Dir(*axis), gp_Dir(*x))
+            curves.append(Geom_Circle(axes, radius))
+    lengths = np.where(np.isinf(circles.radii), norm(chords), circles.sweeps)
+    return curves, lengths.tolist()
+
+
+def _circle_axes(arcs: Arcs, circles: ArcCircles) -> tuple[FloatArray, FloatArray]:
+    """Unit vectors from the centres to the starts, and along the arcs at their starts."""
+    half = circles.sweeps[:, None] / 2
+    along = unit(arcs.ends - arcs.starts)
+    outward = np.copysign(1.0, arcs.sagittas)[:, None] * arcs.rises
+    x = np.cos(half) * outward - np.sin(half) * along
+    y = np.sin(half) * outward + np.cos(half) * along
+    return x, y
+
+
+def _walls(
+    panels: Panels, outer: _Layer, inner: _Layer, tolerances: FloatArray
+) -> list[TopoDS_Face]:
+    """Plane side walls, one per edge, with the normal out of the panel."""
+    corner_tolerances = tolerances[panels.corner_panels].tolist()
+    rises = panels.corners - panels.inner_corners
+    posts = [
+        _edge(Geom_Line(gp_Pnt(*foot), gp_Dir(*rise)), bottom, top, height, tolerance)
+        for foot, rise, height, bottom, top, tolerance in zip(
+            panels.inner_corners.tolist(), rises.tolist(), norm(rises).tolist(),
+            inner.vertices, outer.vertices, corner_tolerances, strict=True,
+        )
+    ]  # fmt: skip
+    following: list[int] = panels.next_corners.tolist()
+    next_posts = [posts[corner] for corner in following]
+    chords = panels.corners[panels.next_corners] - panels.corners
+    walls: list[TopoDS_Face] = []
+    for corner, normal, chord, low, right, high, left, tolerance in zip(
+        panels.corners.tolist(), (-panels.plane_normals).tolist(), chords.tolist(),
+        inner.edges, next_posts, outer.edges, posts, corner_tolerances, strict=True,
+    ):  # fmt: skip
+        plane = Geom_Plane(gp_Ax3(gp_Pnt(*corner), gp_Dir(*normal), gp_Dir(*chord)))
+        walls.append(_face(plane, (low, right, high.Reversed(), left.Reversed()), tolerance))
+    return walls
+
+
+def _vertex(point: list[float], tolerance: float) -> TopoDS_Vertex:
+    vertex = TopoDS_Vertex()
+    _BUILDER.MakeVertex(vertex, gp_Pnt(*point), tolerance)
+    return vertex
+
+
+def _edge(
+    curve: Geom_Curve, start: TopoDS_Vertex, end: TopoDS_Vertex, length: float, tolerance: float
+) -> TopoDS_Edge:
+    edge = TopoDS_Edge()
+    _BUILDER.MakeEdge(edge, curve, tolerance)
+    _BUILDER.Add(edge, start.Oriented(TopAbs_Orientation.TopAbs_FORWARD))
+    _BUILDER.Add(edge, end.Oriented(TopAbs_Orientation.TopAbs_REVERSED))
+    _BUILDER.Range(edge, 0.0, length)
+    return edge
+
+
+def _face(surface: Geom_Surface, ring: Iterable[TopoDS_Shape], tolerance: float) -> TopoDS_Face:
+    """Face to the left of a closed chain of oriented edges."""
+    wire = TopoDS_Wire()
+    _BUILDER.MakeWire(wire)
+    for edge in ring:
+        _BUILDER.Add(wire, edge)
+    wire.Closed(theIsClosed=True)
+    face = TopoDS_Face()
+    _BUILDER.MakeFace(face, surface, tolerance)
+    _BUILDER.Add(face, wire)
+    return face
+
+
+def _patch(
+    surface: Geom_Surface,
+    edges: list[TopoDS_Edge],
+    curves_2d: list[Geom2d_BSplineCurve | None],
+    tolerance: float,
+    *,
+    is_inward: bool,
+) -> TopoDS_Shape:
+    """Face along N; is_inward: N points to the centre, unlike the surface's own normal."""
+    ring = [edge.Reversed() for edge in reversed(edges)] if is_inward else edges
+    face = _face(surface, ring, tolerance)
+    for edge, curve in zip(edges, curves_2d, strict=True):
+        if curve is not None:
+            _BUILDER.UpdateEdge(edge, curve, face, tolerance)
+    return face.Reversed() if is_inward else face
+
+
+def _solid(faces: Iterable[TopoDS_Shape]) -> TopoDS_Solid:
+    shell = TopoDS_Shell()
+    _BUILDER.MakeShell(shell)
+    for face in faces:
+        _BUILDER.Add(shell, face)
+    shell.Closed(theIsClosed=True)
+    solid = TopoDS_Solid()
+    _BUILDER.MakeSolid(solid)
+    _BUILDER.Add(solid, shell)
+    return solid
+
+
+def _parameter_curves(
+    rows: FloatArray, frames: FloatArray, arcs: Arcs, circles: ArcCircles
+) -> list[Geom2d_BSplineCurve | None]:
+    """
+    Arcs in the parameters (u, v) of their spheres, by angle as the circles; None on planes.
+
+    Quintic splines, twice differentiable, through nodes at equal angles where the value and
+    two derivatives are those of the arc.
+    """
+    result: list[Geom2d_BSplineCurve | None] = [None] * len(rows)
+    curved = np.flatnonzero(np.isfinite(circles.radii))
+    x, y = (axes[curved] for axes in _circle_axes(arcs, circles))
+    frames, radii = frames[curved], circles.radii[curved]
+    start = np.einsum("hij,hj->hi", frames, arcs.starts[curved])
+    start[:, 0] -= norm(rows[curved, 1:4]) / (2 * np.abs(rows[curved, 0]))
+    cosine = radii[:, None] * np.einsum("hij,hj->hi", frames, x)
+    sine = radii[:, None] * np.einsum("hij,hj->hi", frames, y)
+    motion = np.stack([start, cosine, sine], 1)
+    sweeps = circles.sweeps[curved]
+    spans = _span_counts(motion, sweeps)
+    for count in np.unique(spans).tolist():
+        ids = np.flatnonzero(spans == count)
+        angles = sweeps[ids, None] * np.linspace(0, 1, count + 1)
+        poles = _quintic_poles(_sphere_parameters(motion[ids], angles), sweeps[ids] / count)
+        for i, knots, points in zip(
+            curved[ids].tolist(), angles.tolist(), poles.tolist(), strict=True
+        ):
+            result[i] = _spline(knots, points)
+    return result
+
+
+def _span_counts(motion: FloatArray, sweeps: FloatArray) -> IntArray:
+    """Spans after which the splines miss the arcs by much less than the tolerance."""
+    points, _, _ = _moving_points(motion, sweeps[:, None] * np.linspace(0, 1, 7))
+    cosine = np.hypot(points[..., 0], points[..., 1]) / norm(points)
+    radii = norm(motion[:, 1])
+    wanted = np.minimum(0.2 * CONFUSION, 1e-9 * radii * sweeps)
+    step = 0.1 * (wanted / (1.2e-9 * radii)) ** (1 / 6) * cosine.min(axis=1)
+    return np.maximum(1, np.ceil(sweeps / step)).astype(np.int64)
+
+
+def _moving_points(
+    motion: FloatArray, angles: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Points (H, n, 3) of arcs about the centres of their spheres, and two derivatives."""
+    start, x, y = (motion[:, i, None] for i in range(3))
+    cosine, sine = np.cos(angles)[..., None], np.sin(angles)[..., None]
+    fall = 2 * np.sin(angles / 2)[..., None] ** 2
+    return start - fall * x + sine * y, cosine * y - sine * x, -cosine * x - sine * y
+
+
+def _sphere_parameters(motion: FloatArray, angles: FloatArray) -> FloatArray:
+    """Parameters (u, v) at the angles and two derivatives by the angle: (3, H, n, 2)."""
+    points, speeds, pulls = _moving_points(motion, angles)
+    px, py, pz = np.moveaxis(points, -1, 0)
+    qx, qy, qz = np.moveaxis(speeds, -1, 0)
+    rx, ry, rz = np.moveaxis(pulls, -1, 0)
+    square = px**2 + py**2
+    equator = np.sqrt(square)
+    half_rate = px * qx + py * qy
+    moment = px * qy - py * qx
+    u = np.pi + np.arctan2(-py, -px)
+    u1 = moment / square
+    u2 = (px * ry - py * rx) / square - 2 * moment * half_rate / square**2
+    v = np.arctan2(pz, equator)
+    v1 = qz / equator
+    v2 = rz / equator - qz * half_rate / (square * equator)
+    return np.stack([np.stack([u, v], -1), np.stack([u1, v1], -1), np.stack([u2, v2], -1)])
+
+
+def _quintic_poles(nodes: FloatArray, steps: FloatArray) -> FloatArray:
+    """
+    Poles (H, 3n + 3, 2) of quintic splines with triple inner knots, through n + 1 nodes.
+
+    With the Bézier points b₃, b₄ before an inner node and b₂ after it, the three poles of its
+    knot are b₃, 2 b₄ - b₃, b₂. The first and last three poles are Bézier points.
+    """
+    value, rate, bend = nodes
+    rate = rate * steps[:, None, None]
+    bend = bend * steps[:, None, None] ** 2
+    before = value - 0.4 * rate + 0.05 * bend
+    after = value + 0.4 * rate + 0.05 * bend
+    middle = 2 * (value - 0.2 * rate) - before
+    ring = np.stack([before, middle, after], 2)
+    ring[:, 0] = np.stack([value, value + 0.2 * rate, after], 2)[:, 0]
+    ring[:, -1] = np.stack([before, value - 0.2 * rate, value], 2)[:, -1]
+    return ring.reshape(len(steps), -1, 2)
+
+
+def _spline(knots: list[float], poles: list[list[float]]) -> Geom2d_BSplineCurve:
+    points = TColgp_Array1OfPnt2d(1, len(poles))
+    for i, pole in enumerate(poles, 1):
+        points.SetValue(i, gp_Pnt2d(*pole))
+    values = TColStd_Array1OfReal(1, len(knots))
+    multiplicities = TColStd_Array1OfInteger(1, len(knots))
+    for i, knot in enumerate(knots, 1):
+        values.SetValue(i, knot)
+        multiplicities.SetValue(i, 3)
+    multiplicities.SetValue(1, 6)
+    multiplicities.SetValue(len(knots), 6)
+    return Geom2d_BSplineCurve(points, values, multiplicities, 5)

@@ -1,0 +1,206 @@
+"""What a mesh file says: polygons, before they are known to be a mesh."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..kernel.arrays import FloatArray, IntArray, norm
+from ..kernel.errors import InputError
+from ..kernel.mesh import Mesh
+
+
+@dataclass(frozen=True)
+class Polygons:
+    """
+    Polygons of mixed degree as a file lists them.
+
+    Attributes
+    ----------
+    vertices : (V, 3) float array
+        Points, in model units.
+    corners : (H,) int array
+        Vertex of each corner, face after face, from 0; not checked.
+    degrees : (F,) int array
+        Number of corners of each face.
+    vertex_lines : (V,) int array
+        Line of each vertex in a text file, from 1; empty for binary files.
+    face_lines : (F,) int array
+        Line of each face in a text file, from 1; empty for binary files.
+    """
+
+    vertices: FloatArray
+    corners: IntArray
+    degrees: IntArray
+    vertex_lines: ArrayLike = ()
+    face_lines: ArrayLike = ()
+
+
+def to_mesh(polygons: Polygons) -> Mesh:
+    """
+    The polygons as a mesh: same vertices, same faces, same order.
+
+    Parameters
+    ----------
+    polygons : Polygons
+        What a file says.
+
+    Returns
+    -------
+    Mesh
+        The mesh.
+
+    Raises
+    ------
+    InputError
+        If the polygons are no orientable manifold mesh; the message names the line of the
+        file where one line is to blame, the faces otherwise.
+    """
+    if not len(polygons.degrees):
+        raise InputError("the file has no faces; export the model as a polygon mesh")
+    try:
+        return Mesh(polygons.vertices, _faces(polygons))
+    except InputError:
+        _raise_at_line(polygons)
+        raise
+
+
+def _faces(polygons: Polygons) -> IntArray | list[IntArray]:
+    degrees = polygons.degrees
+    if (degrees == max(degrees[0], 1)).all():
+        return polygons.corners.reshape(-1, int(degrees[0]))
+    return np.split(polygons.corners, np.cumsum(degrees)[:-1])
+
+
+def _raise_at_line(polygons: Polygons) -> None:
+    """Find the first line that is wrong by itself; Mesh has found that something is."""
+    n_vertices = len(polygons.vertices)
+    for line, point in zip(np.asarray(polygons.vertex_lines), polygons.vertices, strict=False):
+        if not np.isfinite(point).all():
+            raise InputError(
+                f"line {line}: the coordinates {point.tolist()} are not finite; "
+                "export the mesh again"
+            )
+    faces = np.split(polygons.corners, np.cumsum(polygons.degrees)[:-1])
+    for line, face in zip(np.asarray(polygons.face_lines), faces, strict=False):
+        if len(face) < 3:
+            raise InputError(
+                f"line {line}: the face has {len(face)} corners and needs 3; delete it"
+            )
+        if face.min() < 0 or face.max() >= n_vertices:
+            raise InputError(
+                f"line {line}: the face refers to a vertex out of range: the file has "
+                f"{n_vertices} vertices; export the mesh again"
+            )
+        if len(np.unique(face)) < len(face):
+            raise InputError(
+                f"line {line}: the face has a repeated corner; remove the duplicate"
+            )
+
+
+def drop_unused(polygons: Polygons) -> Polygons:
+    """
+    The same polygons without the vertices that no face uses; the others keep their order.
+
+    Parameters
+    ----------
+    polygons : Polygons
+        Polygons whose corners may be out of range: these are left for `to_mesh` to report.
+
+    Returns
+    -------
+    Polygons
+        Polygons with renumbered corners.
+    """
+    n_vertices, corners = len(polygons.vertices), polygons.corners
+    if ((corners < 0) | (corners >= n_vertices)).any():
+        return polygons
+    is_used = np.zeros(n_vertices, bool)
+    is_used[corners] = True
+    lines = np.asarray(polygons.vertex_lines)
+    return replace(
+        polygons,
+        vertices=polygons.vertices[is_used],
+        corners=(np.cumsum(is_used) - 1)[corners],
+        vertex_lines=lines[is_used] if len(lines) else lines,
+    )
+
+
+def weld(points: FloatArray, distance: float = 0.0) -> tuple[FloatArray, IntArray]:
+    """
+    Merge coincident points.
+
+    Parameters
+    ----------
+    points : (N, 3) float array
+        Points, finite.
+    distance : float
+        Points that are this close, or linked by a chain of such pairs, are one point, at the
+        place of the first; 0 merges equal points only. In model units.
+
+    Returns
+    -------
+    vertices : (V, 3) float array
+        The distinct points in order of first appearance.
+    ids : (N,) int array
+        Vertex of each point.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> vertices, ids = weld(np.array([[1.0, 0, 0], [0, 0, 0], [1, 0, 0]]))
+    >>> len(vertices), ids.tolist()
+    (2, [0, 1, 0])
+    """
+    vertices, ids = _first_of_each(points, _equal_labels(points))
+    if distance > 0:
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+        from scipy.spatial import KDTree
+
+        pairs = KDTree(vertices).query_pairs(distance, output_type="ndarray")
+        links = coo_array(
+            (np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), (len(vertices), len(vertices))
+        )
+        labels = np.asarray(connected_components(links, directed=False)[1], np.int64)
+        vertices, merged = _first_of_each(vertices, labels)
+        ids = merged[ids]
+    return vertices, ids
+
+
+def _equal_labels(points: FloatArray) -> IntArray:
+    order = np.lexsort(points.T)
+    is_new = np.ones(len(points), bool)
+    is_new[1:] = (np.diff(points[order], axis=0) != 0).any(axis=1)
+    labels = np.empty(len(points), np.int64)
+    labels[order] = np.cumsum(is_new) - 1
+    return labels
+
+
+def _first_of_each(points: FloatArray, labels: IntArray) -> tuple[FloatArray, IntArray]:
+    _, firsts, inverse = np.unique(labels, return_index=True, return_inverse=True)
+    by_appearance = np.argsort(firsts)
+    ranks = np.empty(len(firsts), np.int64)
+    ranks[by_appearance] = np.arange(len(firsts))
+    return points[firsts[by_appearance]], ranks[inverse]
+
+
+def mean_side(polygons: Polygons) -> float:
+    """
+    Mean length of the sides of the polygons.
+
+    Parameters
+    ----------
+    polygons : Polygons
+        Polygons with corners in range.
+
+    Returns
+    -------
+    float
+        Mean over all sides, in model units.
+    """
+    ends = np.cumsum(polygons.degrees)
+    following = np.arange(1, len(polygons.corners) + 1)
+    following[ends - 1] = ends - polygons.degrees
+    points = polygons.vertices[polygons.corners]
+    return float(norm(points[following] - points).mean())

@@ -1,0 +1,157 @@
+"""
+Panels as exact CAD geometry: STEP files, and objects for CadQuery.
+
+OpenCASCADE (the package OCP, which CadQuery brings) is imported when it is first needed.
+"""
+
+import os
+from collections.abc import Generator
+from contextlib import contextmanager
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, Literal
+
+from ..kernel.colors import Color, mould_color, mould_name
+from ..kernel.errors import InputError, MissingLibraryError
+from ..kernel.panels import Panels
+from .files import replacing
+from .units import millimeters_per
+
+if TYPE_CHECKING:
+    import cadquery
+
+StepSchema = Literal["AP214IS", "AP242DIS"]
+
+STEP_UNITS: Final = {"mm": "MM", "cm": "CM", "m": "M", "in": "INCH", "ft": "FT"}
+"""Units that a STEP file can declare, by OpenCASCADE's names."""
+
+
+def write_step(
+    panels: Panels,
+    path: str | os.PathLike[str],
+    units: str = "m",
+    step_units: str = "mm",
+    schema: StepSchema = "AP214IS",
+    title: str = "Spherical panels",
+) -> Path:
+    """
+    Write panels to a STEP file as exact faces, or solids where they have a thickness.
+
+    Parameters
+    ----------
+    panels : Panels
+        The panels; at least one.
+    path : path
+        File to write. It is replaced when the new one is complete.
+    units : str
+        Unit of the model: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
+    step_units : str
+        Unit that the file declares, of the same.
+    schema : {"AP214IS", "AP242DIS"}
+        Application protocol.
+    title : str
+        Title in the header of the file.
+
+    Returns
+    -------
+    Path
+        The file. It holds one assembly ``Panels`` with a component per panel, named by its id,
+        on the layer and in the colour of its mould.
+
+    Raises
+    ------
+    InputError
+        If there are no panels, a unit or schema is not known, or the folder does not exist.
+    MissingLibraryError
+        If OpenCASCADE or a library of the system that it needs is missing.
+
+    Notes
+    -----
+    The only geometry is spheres, planes, circles and lines. Numbers are written with 16 digits
+    and directions with 14 decimals: an arc of radius R meets its corners within ``R / 10¹⁴``.
+    """
+    target = Path(path)
+    if panels.n_panels == 0:
+        raise InputError(f"there are no panels to write to {target}")
+    if schema not in ("AP214IS", "AP242DIS"):
+        raise InputError(f"unknown STEP schema {schema!r}: use AP214IS or AP242DIS")
+    scale = millimeters_per(units)
+    millimeters_per(step_units)
+    with _opencascade():
+        from . import brep, xcaf
+    with replacing(target) as temporary:
+        shapes = brep.panel_shapes(panels, scale, pcurves=False)
+        parts = (
+            xcaf.Part(shape, name, layer, color)
+            for shape, name, (layer, color) in zip(
+                shapes, panels.ids, _moulds(panels), strict=True
+            )
+        )
+        system = f"spheremesh {version('spheremesh')}"
+        header = xcaf.StepHeader(schema, STEP_UNITS[step_units], title, system)
+        xcaf.write_document(xcaf.assembly_document("Panels", parts), temporary, header)
+    return target
+
+
+def panels_to_cadquery(panels: Panels, units: str = "m") -> "cadquery.Assembly":
+    """
+    Panels as a CadQuery assembly, for further modelling.
+
+    Parameters
+    ----------
+    panels : Panels
+        The panels.
+    units : str
+        Unit of the model: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
+
+    Returns
+    -------
+    cadquery.Assembly
+        Assembly in millimetres, with a `cadquery.Solid` (`cadquery.Face` without thickness)
+        per panel, named by its id and in the colour of its mould.
+
+    Raises
+    ------
+    InputError
+        If the unit is not known.
+    MissingLibraryError
+        If CadQuery or a library of the system that it needs is missing.
+    """
+    scale = millimeters_per(units)
+    with _opencascade():
+        import cadquery
+
+        from . import brep
+    kind = cadquery.Solid if panels.thickness > 0 else cadquery.Face
+    assembly = cadquery.Assembly(name="Panels")
+    for shape, name, (_, color) in zip(
+        brep.panel_shapes(panels, scale), panels.ids, _moulds(panels), strict=True
+    ):
+        red, green, blue = (value / 255 for value in color)
+        assembly.add(kind(shape), name=name, color=cadquery.Color(red, green, blue))
+    return assembly
+
+
+def _moulds(panels: Panels) -> list[tuple[str, Color]]:
+    """Name and colour of the mould of each panel."""
+    count = int(panels.labels.max(initial=-1)) + 1
+    return [
+        (mould_name(label, count), mould_color(label, count))
+        for label in panels.labels.tolist()
+    ]
+
+
+@contextmanager
+def _opencascade() -> Generator[None]:
+    """Turn the failure to import OpenCASCADE into an error that names the remedy."""
+    try:
+        yield
+    except ImportError as error:
+        if "libGL" in str(error) or "libX" in str(error):
+            remedy = (
+                "install the packages libgl1 and libx11-6 (Debian, Ubuntu) or mesa-libGL and "
+                "libX11 (Fedora)"
+            )
+        else:
+            remedy = "install the package cadquery, which brings it"
+        raise MissingLibraryError(f"STEP needs OpenCASCADE: {error}; {remedy}") from error

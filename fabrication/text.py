@@ -1,0 +1,171 @@
+"""Text files of numbers: lines, words, and errors that name the line."""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..kernel.arrays import FloatArray, IntArray
+from ..kernel.errors import InputError
+from ..kernel.mesh import Mesh
+
+
+def decode(data: bytes) -> str:
+    """
+    The text of a file; bytes that are not UTF-8 (old comments, names) do no harm.
+
+    Parameters
+    ----------
+    data : bytes
+        Content of the file, with or without a byte order mark, with any line ends.
+
+    Returns
+    -------
+    str
+        Text with plain newlines.
+    """
+    text = data.decode("utf-8-sig", errors="replace")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def numbered_words(text: str, first: int = 1) -> Iterator[tuple[int, list[str]]]:
+    """
+    The words of each line that is not blank, without its comment.
+
+    Parameters
+    ----------
+    text : str
+        Lines; ``#`` at the start of a line or of a word starts a comment.
+    first : int
+        Number of the first line.
+
+    Yields
+    ------
+    tuple of int and list of str
+        Line number and words.
+    """
+    for number, line in enumerate(text.split("\n"), first):
+        words = line.split()
+        if "#" in line:
+            words = words[: next((i for i, word in enumerate(words) if word[0] == "#"), None)]
+        if words:
+            yield number, words
+
+
+def face_words(mesh: Mesh, first: int) -> list[str]:
+    """
+    The vertex numbers of each face, as words separated by blanks.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    first : int
+        Number of the first vertex.
+
+    Returns
+    -------
+    list of str
+        One text per face.
+    """
+    words = list(map(str, (mesh.corners + first).tolist()))
+    return [" ".join(words[start:end]) for start, end in pairwise(mesh.offsets.tolist())]
+
+
+def to_count(word: str) -> int:
+    """
+    A word of a text file as a number of elements.
+
+    Parameters
+    ----------
+    word : str
+        The word.
+
+    Returns
+    -------
+    int
+        The number, or -1 if the word is none that a file could hold.
+
+    Examples
+    --------
+    >>> to_count("12"), to_count("-3"), to_count("9" * 40)
+    (12, -1, -1)
+    """
+    return int(word) if word.isdecimal() and len(word) <= 15 else -1
+
+
+def to_floats(words: Sequence[str], lines: Sequence[int], per_line: int) -> FloatArray:
+    """
+    Words of a text file as numbers.
+
+    Parameters
+    ----------
+    words : sequence of str
+        Numbers as written, the same count from every line.
+    lines : sequence of int
+        Line of each group of words.
+    per_line : int
+        Words in a group.
+
+    Returns
+    -------
+    (N, per_line) float array
+        The numbers.
+
+    Raises
+    ------
+    InputError
+        If a word is not a number; the message names its line.
+    """
+    try:
+        return np.array(list(map(float, words)), np.float64).reshape(-1, per_line)
+    except ValueError:
+        index = next(i for i, word in enumerate(words) if not _is_number(word, float))
+        raise InputError(_not_a_number(lines[index // per_line], words[index])) from None
+
+
+def to_integers(words: Sequence[str], lines: ArrayLike, counts: ArrayLike) -> IntArray:
+    """
+    Words of a text file as integers.
+
+    Parameters
+    ----------
+    words : sequence of str
+        Integers as written.
+    lines : (F,) array_like of int
+        Line of each group of words.
+    counts : (F,) array_like of int
+        Number of words in each group.
+
+    Returns
+    -------
+    (N,) int array
+        The integers.
+
+    Raises
+    ------
+    InputError
+        If a word is not an integer; the message names its line.
+    """
+    try:
+        return np.array(list(map(int, words)), np.int64)
+    except (ValueError, OverflowError):
+        index = next(i for i, word in enumerate(words) if not _is_number(word, np.int64))
+        line = int(np.repeat(np.asarray(lines), np.asarray(counts))[index])
+        raise InputError(_not_a_number(line, words[index])) from None
+
+
+def _is_number(word: str, kind: type[float | np.int64]) -> bool:
+    try:
+        kind(word)
+    except (ValueError, OverflowError):
+        return False
+    return True
+
+
+def _not_a_number(line: int, word: str) -> str:
+    return (
+        f"line {line}: {word!r} is not a usable number; write coordinates with a decimal "
+        "point and vertex numbers as integers"
+    )

@@ -1,0 +1,255 @@
+"""
+Named, layered and coloured shapes in a STEP file, through OpenCASCADE's XCAF documents.
+
+This module imports OCP, which takes more than a second: others import it inside functions.
+"""
+
+import io
+from collections.abc import Generator, Iterable
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
+from OCP.BRep import BRep_Builder
+from OCP.Interface import Interface_Static
+from OCP.Message import Message
+from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
+from OCP.StepAP214 import StepAP214
+from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Writer
+from OCP.STEPControl import STEPControl_StepModelType
+from OCP.StepData import StepData_StepModel, StepData_StepWriter
+from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDF import TDF_Label
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopAbs import TopAbs_ShapeEnum
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Shape, TopoDS_Shell
+from OCP.XCAFApp import XCAFApp_Application
+from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool
+
+from ..kernel.colors import Color
+
+
+@dataclass(frozen=True)
+class Part:
+    """
+    A shape as it appears in a file.
+
+    Attributes
+    ----------
+    shape : TopoDS_Shape
+        Shape in millimetres, placed by its location.
+    name : str
+        Name of the part and of its instance.
+    layer : str
+        Layer, made where it is new.
+    color : Color
+        Red, green and blue from 0 to 255 (sRGB).
+    """
+
+    shape: TopoDS_Shape
+    name: str
+    layer: str
+    color: Color
+
+
+@dataclass(frozen=True)
+class StepHeader:
+    """
+    What a STEP file says about itself.
+
+    Attributes
+    ----------
+    schema : str
+        ``AP214IS`` or ``AP242DIS``.
+    unit : str
+        Unit of length by OpenCASCADE's name, such as ``MM``.
+    title : str
+        Title of the file.
+    system : str
+        Name and version of the program that wrote it.
+    """
+
+    schema: str
+    unit: str
+    title: str
+    system: str
+
+
+def assembly_document(name: str, parts: Iterable[Part]) -> TDocStd_Document:
+    """
+    A document of one assembly with a component per part.
+
+    Parameters
+    ----------
+    name : str
+        Name of the assembly.
+    parts : iterable of Part
+        The parts.
+
+    Returns
+    -------
+    TDocStd_Document
+        The document. Layers and colours belong to the definitions: on components the STEP
+        writer would drop layers without a word.
+    """
+    document = TDocStd_Document(_text("BinXCAF"))
+    XCAFApp_Application.GetApplication_s().InitDocument(document)
+    shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    colors = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
+    layers = XCAFDoc_DocumentTool.LayerTool_s(document.Main())
+    assembly = shapes.NewShape()
+    TDataStd_Name.Set_s(assembly, _text(name))
+    layer_labels: dict[str, TDF_Label] = {}
+    color_labels: dict[Color, TDF_Label] = {}
+    for part in parts:
+        if part.layer not in layer_labels:
+            layer_labels[part.layer] = layers.AddLayer(_text(part.layer))
+        if part.color not in color_labels:
+            color_labels[part.color] = colors.AddColor(_color(part.color))
+        part_name = _text(part.name)
+        definition = shapes.AddShape(_definition(part.shape), makeAssembly=False)
+        TDataStd_Name.Set_s(definition, part_name)
+        layers.SetLayer(definition, layer_labels[part.layer])
+        colors.SetColor(
+            definition, color_labels[part.color], XCAFDoc_ColorType.XCAFDoc_ColorSurf
+        )
+        component = shapes.AddComponent(assembly, definition, part.shape.Location())
+        TDataStd_Name.Set_s(component, part_name)
+    shapes.UpdateAssemblies()
+    return document
+
+
+def _definition(shape: TopoDS_Shape) -> TopoDS_Shape:
+    """Shape at its own origin; a face as a shell, or layer and colour would miss the part."""
+    shape = shape.Located(TopLoc_Location())
+    if shape.ShapeType() != TopAbs_ShapeEnum.TopAbs_FACE:
+        return shape
+    shell, builder = TopoDS_Shell(), BRep_Builder()
+    builder.MakeShell(shell)
+    builder.Add(shell, shape)
+    return shell
+
+
+def write_document(document: TDocStd_Document, path: Path, header: StepHeader) -> None:
+    """
+    Write a document to a STEP file.
+
+    Parameters
+    ----------
+    document : TDocStd_Document
+        The document.
+    path : Path
+        File to write.
+    header : StepHeader
+        Schema, unit and names.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written, or OpenCASCADE cannot translate the shapes.
+
+    Notes
+    -----
+    Curves in the parameters of surfaces are left out: they are not needed where the geometry is
+    elementary, and take two thirds of a file. OpenCASCADE's settings are global; they are set
+    for the call and put back.
+    """
+    settings = {
+        "write.step.schema": header.schema,
+        "write.step.unit": header.unit,
+        "write.surfacecurve.mode": "0",
+        "xstep.cascade.unit": "MM",
+    }
+    STEPCAFControl_Controller.Init_s()  # registers the settings
+    with _quiet(), _settings(settings):
+        writer = STEPCAFControl_Writer()
+        # One overload takes a type that OCP does not bind, and pyright cannot see.
+        transfer = writer.Transfer  # pyright: ignore[reportUnknownMemberType, reportUnknownVariableType]
+        if not transfer(document, STEPControl_StepModelType.STEPControl_AsIs):
+            raise OSError(f"OpenCASCADE could not translate the shapes for {path}")
+        model = writer.ChangeWriter().Model(newone=False)
+        _fill_header(model, header)
+        path.write_bytes(_part21(model))
+
+
+def _part21(model: StepData_StepModel) -> bytes:
+    """
+    Text of a STEP file with all digits.
+
+    OpenCASCADE's own format has 12 decimals in a direction: arcs of more than 100 m radius miss
+    their corners by more than its tolerance, and a valid solid is read back as an invalid one.
+    Its way to drop zeros cuts longer numbers short; here the usual ones go by replacement.
+    """
+    writer = StepData_StepWriter(model)
+    numbers = writer.FloatWriter()
+    numbers.SetFormat("%.15E")
+    numbers.SetZeroSuppress(False)  # noqa: FBT003
+    numbers.SetFormatForRange("%.14f", 0.0, 1000.0)
+    writer.SendModel(StepAP214.Protocol_s())
+    stream = io.BytesIO()
+    writer.Print(stream)
+    header, separator, data = stream.getvalue().partition(b"DATA;")
+    for number in (b"0.", b"1."):
+        data = data.replace(number + 14 * b"0", number)
+    return header + separator + data.replace(b" = ", b"=")
+
+
+def _fill_header(model: StepData_StepModel, header: StepHeader) -> None:
+    section = APIHeaderSection_MakeHeader(model)
+    section.SetName(_ascii(header.title))
+    section.SetDescriptionValue(1, _ascii(header.title))
+    section.SetAuthorValue(1, _ascii(""))
+    section.SetOrganizationValue(1, _ascii(""))
+    section.SetOriginatingSystem(_ascii(header.system))
+    section.SetAuthorisation(_ascii(""))
+
+
+@contextmanager
+def _settings(values: dict[str, str]) -> Generator[None]:
+    before = {name: Interface_Static.CVal_s(name) for name in values}
+    try:
+        _set(values)
+        yield
+    finally:
+        _set(before)
+
+
+def _set(values: dict[str, str]) -> None:
+    for name, value in values.items():
+        if not Interface_Static.SetCVal_s(name, value):
+            raise ValueError(f"OpenCASCADE does not know {name} = {value}")
+
+
+@contextmanager
+def _quiet() -> Generator[None]:
+    """Keep OpenCASCADE from printing statistics on standard output."""
+    messenger = Message.DefaultMessenger_s()
+    printers = list(messenger.Printers())
+    for printer in printers:
+        messenger.RemovePrinter(printer)
+    try:
+        yield
+    finally:
+        for printer in printers:
+            messenger.AddPrinter(printer)
+
+
+def _text(text: str) -> TCollection_ExtendedString:
+    return TCollection_ExtendedString(text, isMultiByte=True)
+
+
+def _ascii(text: str) -> TCollection_HAsciiString:
+    """Text of a STEP header: characters beyond ASCII as the directives of ISO 10303-21."""
+    encoded = "".join(
+        character if character.isascii() else f"\\X4\\{ord(character):08X}\\X0\\"
+        for character in text
+    )
+    return TCollection_HAsciiString(encoded)
+
+
+def _color(color: Color) -> Quantity_Color:
+    red, green, blue = (value / 255 for value in color)
+    return Quantity_Color(red, green, blue, Quantity_TypeOfColor.Quantity_TOC_sRGB)

@@ -1,0 +1,198 @@
+"""Meshes to start from: read from files, or exactly circular nets."""
+
+from typing import Annotated
+
+import numpy as np
+
+from ...fabrication import mesh_files
+from ...kernel import surfaces
+from ...kernel.mesh import Mesh
+from ..node import node
+from ..ports import Port, ReadPath, WritePath
+
+Count = Annotated[int, Port(min=1, max=2000)]
+Length = Annotated[float, Port(min=0)]
+
+
+@node
+def read_mesh(path: ReadPath, layer: str = "") -> Mesh:
+    """
+    Read a mesh from a file.
+
+    Parameters
+    ----------
+    path : path
+        An OBJ, OFF, PLY, STL or Rhino .3dm file; polygons are kept as they are.
+    layer : str
+        Only what is on this layer (.3dm) or in this group (OBJ), and below.
+
+    Returns
+    -------
+    Mesh
+        The mesh, in the units of the file.
+    """
+    return mesh_files.read_mesh(path, layer)
+
+
+@node
+def write_mesh(mesh: Mesh, path: WritePath) -> str:
+    """
+    Write a mesh to a file.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    path : path
+        Ends in .obj, .off, .ply, .stl or .3dm.
+
+    Returns
+    -------
+    str
+        The path.
+    """
+    return str(mesh_files.write_mesh(mesh, path))
+
+
+@node
+def torus_mesh(
+    n_around: Count = 48, n_across: Count = 24, major_radius: Length = 3.0,
+    minor_radius: Length = 1.0,
+) -> Mesh:  # fmt: skip
+    """
+    Closed circular net on a torus.
+
+    Parameters
+    ----------
+    n_around, n_across : int
+        Faces along the large and the small circles.
+    major_radius, minor_radius : float
+        Radius of the core circle and of the tube.
+
+    Returns
+    -------
+    Mesh
+        Quadrilaterals.
+    """
+    return surfaces.torus_net(n_around, n_across, major_radius, minor_radius)
+
+
+@node
+def ellipsoid_mesh(
+    n_around: Count = 32,
+    n_across: Count = 16,
+    radius: Length = 1.0,
+    height: Length = 1.5,
+    latitude: Annotated[float, Port(unit="deg", min=0, max=90)] = 70.0,
+) -> Mesh:
+    """
+    Circular net on an ellipsoid of revolution, cut off below its poles.
+
+    Parameters
+    ----------
+    n_around, n_across : int
+        Faces along the parallels and the meridians.
+    radius, height : float
+        Half axes across and along z.
+    latitude : float
+        Reduced latitude at which the caps are cut off, below 90.
+
+    Returns
+    -------
+    Mesh
+        Quadrilaterals.
+    """
+    angle = float(np.radians(latitude))
+    return surfaces.ellipsoid_net(n_around, n_across, radius, height, angle)
+
+
+@node
+def catenoid_mesh(
+    n_around: Count = 32, n_across: Count = 16, waist: Length = 1.0, height: Length = 1.0
+) -> Mesh:
+    """
+    Circular net on a catenoid.
+
+    Parameters
+    ----------
+    n_around, n_across : int
+        Faces along the parallels and the meridians.
+    waist : float
+        Smallest radius.
+    height : float
+        Half of the height.
+
+    Returns
+    -------
+    Mesh
+        Quadrilaterals.
+    """
+    return surfaces.catenoid_net(n_around, n_across, waist, height)
+
+
+@node
+def enneper_mesh(n: Count = 16, size: Length = 0.9) -> Mesh:
+    """
+    Circular net that is a discrete Enneper surface.
+
+    Parameters
+    ----------
+    n : int
+        Faces along each side.
+    size : float
+        Half width of the parameter square; below 1 the surface does not meet itself.
+
+    Returns
+    -------
+    Mesh
+        Quadrilaterals.
+    """
+    return surfaces.enneper_net(n, size)
+
+
+@node
+def vase_mesh(
+    n_around: Count = 32,
+    n_across: Count = 16,
+    radius: Length = 1.0,
+    height: Length = 3.0,
+    amplitude: Annotated[float, Port(min=-1, max=1)] = 0.3,
+) -> Mesh:
+    """
+    Circular net on a vase: a cylinder whose radius swings by a sine.
+
+    Parameters
+    ----------
+    n_around, n_across : int
+        Faces along the parallels and the meridians.
+    radius, height : float
+        Mean radius and height.
+    amplitude : float
+        Swing of the radius relative to the mean one.
+
+    Returns
+    -------
+    Mesh
+        Quadrilaterals.
+    """
+    return surfaces.vase_net(n_around, n_across, radius, height, amplitude)
+
+
+@node
+def roof_mesh(n_span: Count = 24, n_length: Count = 60, length: Length = 80.0) -> Mesh:
+    """
+    Circular net of a freeform hall roof, to try things on.
+
+    Parameters
+    ----------
+    n_span, n_length : int
+        Faces across and along the hall.
+    length : float
+        Length of the hall.
+
+    Returns
+    -------
+    Mesh
+        Quadrilaterals with exact circumcircles, of both signs of Gaussian curvature.
+    """
+    return surfaces.roof_net(n_span, n_length, length)

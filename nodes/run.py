@@ -1,0 +1,270 @@
+"""One run of a graph: keys first, then only the steps whose results are not known."""
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .cache import Cache, Entry, digest, file_state, lock_arrays, own_containers
+from .errors import GraphError, NodeError
+from .node import collected_messages
+from .ports import Port, Value, check_value, convert
+from .wires import Each, Param, Step, Wire, parents, sources
+
+OnStep = Callable[[str, str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """
+    A run under way.
+
+    Attributes
+    ----------
+    steps : mapping of str to Step
+        The steps of the graph, each after those it depends on.
+    values : mapping of str to object
+        Values of the sliders.
+    units : str
+        Units of the graph.
+    cache : Cache
+        Results of earlier runs.
+    on_step : callable
+        Called with the name of a step and ``"running"``, ``"done"``, ``"cached"`` or
+        ``"failed"``.
+    read_from : Path, optional
+        Folder of the relative paths that nodes read; the working directory by default.
+    keys : dict of str to bytes
+        Keys found so far.
+    entries : dict of str to Entry
+        Results at hand so far.
+    """
+
+    steps: Mapping[str, Step]
+    values: Mapping[str, Any]
+    units: str
+    cache: Cache
+    on_step: OnStep
+    read_from: Path | None = None
+    keys: dict[str, bytes] = field(default_factory=dict[str, bytes])
+    entries: dict[str, Entry] = field(default_factory=dict[str, Entry])
+
+
+def run_steps(run: Run, targets: Iterable[str]) -> None:
+    """
+    Bring the entries of steps up to date, running as little as possible.
+
+    Parameters
+    ----------
+    run : Run
+        The run; its keys and entries are filled in.
+    targets : iterable of str
+        Names of the steps that are wanted.
+
+    Raises
+    ------
+    NodeError
+        If a step fails.
+    """
+    wanted = list(targets)
+    needed = _ancestors(run, wanted)
+    for step in needed:
+        ports = step.node.inputs
+        files = [source for name, source in step.sources if _is_file(ports[name])]
+        # The state of a file is part of the key, so its path must be known before.
+        _bring(run, [w.step.name for w in files if isinstance(w, Wire)])
+        run.keys[step.name] = _key(run, step)
+    writers = [step.name for step in needed if any(p.writes for p in step.node.inputs.values())]
+    _bring(run, [*wanted, *writers])
+
+
+def output(run: Run, source: Step | Wire | Param) -> Value:
+    """
+    The value of a target.
+
+    Parameters
+    ----------
+    run : Run
+        A run that has reached it.
+    source : Step, Wire or Param
+        The target.
+
+    Returns
+    -------
+    object
+        What the function returned, one field of it, or the value of the slider.
+    """
+    if isinstance(source, Param):
+        return run.values[source.name]
+    step = source.step if isinstance(source, Wire) else source
+    value = run.entries[step.name].value
+    if isinstance(source, Wire) and step.node.has_fields:
+        value = getattr(value, source.port.name)
+    return own_containers(value)
+
+
+def _ancestors(run: Run, targets: Iterable[str]) -> list[Step]:
+    names, pending = set[str](), list(targets)
+    while pending:
+        name = pending.pop()
+        if name not in names:
+            names.add(name)
+            pending.extend(parents(run.steps[name]))
+    return [step for name, step in run.steps.items() if name in names]
+
+
+def _bring(run: Run, targets: Iterable[str]) -> None:
+    """Run what is missing for the targets; their keys and those before are known."""
+    missing, seen, pending = set[str](), set[str](), list(targets)
+    while pending:
+        name = pending.pop()
+        if name in seen or name in run.entries:
+            continue
+        seen.add(name)
+        entry = run.cache.get(run.keys[name])
+        if entry is None:
+            missing.add(name)
+            pending.extend(parents(run.steps[name]))
+        else:
+            run.entries[name] = entry
+            run.on_step(name, "cached")
+    for name in run.steps if missing else ():
+        if name in missing:
+            # asked again: a step before this one may have been its equal
+            entry = run.cache.get(run.keys[name]) or _execute(run, run.steps[name])
+            run.cache.put(run.keys[name], entry)
+            run.entries[name] = entry
+
+
+def _given(run: Run, step: Step, port: Port) -> Value:
+    if port.graph_units:
+        return step.inputs.get(port.name, run.units)
+    return step.inputs.get(port.name, port.default)
+
+
+def _argument(run: Run, step: Step, port: Port) -> Value:
+    value = _resolve(run, _given(run, step, port))
+    return _beside(run.read_from, value) if port.reads and run.read_from else value
+
+
+def _beside(folder: Path, value: Value) -> Value:
+    """Paths with relative ones taken from a folder."""
+    if value is None:
+        return None
+    if isinstance(value, list | tuple):
+        return [_beside(folder, path) for path in cast("list[Value]", value)]
+    return str(folder / value)
+
+
+def _resolve(run: Run, value: Value) -> Value:
+    if isinstance(value, Each):
+        return _resolve(run, value.items)
+    if isinstance(value, Wire | Param):
+        return output(run, value)
+    if any(True for _ in sources(value)):
+        return [_resolve(run, item) for item in value]
+    if isinstance(value, np.ndarray):
+        # the caller may still write to its array, and the node may return it
+        value = cast("NDArray[Any]", value).copy()
+        lock_arrays(value)
+    return own_containers(value)
+
+
+def _key_part(run: Run, value: Value) -> Value:
+    if isinstance(value, Wire):
+        return ("wire", run.keys[value.step.name], value.port.name)
+    if isinstance(value, Each):
+        return ("each", _key_part(run, value.items))
+    if isinstance(value, Param):
+        return ("value", run.values[value.name])
+    if any(True for _ in sources(value)):
+        return ("list", [_key_part(run, item) for item in value])
+    return ("value", value)
+
+
+def _key(run: Run, step: Step) -> bytes:
+    parts: list[Any] = [step.node.name, step.node.version, step.node.edition]
+    for port in step.node.inputs.values():
+        given = _given(run, step, port)
+        parts.append(_key_part(run, given))
+        if _is_file(port):
+            paths = _paths(_argument(run, step, port))
+            parts.append(paths)
+            parts.append([file_state(path) for path in paths] if port.reads else None)
+    return digest(parts)
+
+
+def _execute(run: Run, step: Step) -> Entry:
+    run.on_step(step.name, "running")
+    with collected_messages() as messages:
+        try:
+            arguments = {
+                port.name: _argument(run, step, port) for port in step.node.inputs.values()
+            }
+            value = _call_each(step, arguments) if step.is_mapped else _call(step, arguments)
+        except Exception as error:
+            run.on_step(step.name, "failed")
+            name = step.node.name
+            what = f"step {step.name!r}" + (f" (node {name})" if name != step.name else "")
+            text = str(error) or type(error).__name__
+            raise NodeError(f"{what} failed: {text}", step.name, name, error) from error
+    lock_arrays(value)
+    written = [
+        path
+        for port in step.node.inputs.values()
+        if port.writes
+        for path in _paths(arguments[port.name])
+    ]
+    run.on_step(step.name, "done")
+    states = tuple((path, file_state(path)) for path in written)
+    return Entry(value, tuple(dict.fromkeys(messages)), states)
+
+
+def _call(step: Step, arguments: Mapping[str, Any]) -> Value:
+    inputs: dict[str, Any] = {}
+    for name, value in arguments.items():
+        port = step.node.inputs[name]
+        # What comes by wire was checked as a type; only small values are looked at again.
+        if value is None or isinstance(value, bool | int | float | str):
+            check_value(port, value, f"{step.name}.{name}")
+        inputs[name] = convert(port, value)
+    value = step.node.function(**inputs)
+    if step.node.has_fields and not isinstance(value, step.node.result_type):
+        kind = step.node.result_type.__name__
+        raise TypeError(f"node {step.node.name} must return {kind}, not {type(value).__name__}")
+    return value
+
+
+def _call_each(step: Step, arguments: Mapping[str, Any]) -> Value:
+    """Map over lists; a shorter list repeats its last item."""
+    lists: dict[str, list[Any]] = {
+        name: list(arguments[name]) for name, v in step.inputs.items() if isinstance(v, Each)
+    }
+    length = max(map(len, lists.values()))
+    empty = [name for name, items in lists.items() if not items]
+    if length and empty:
+        raise GraphError(f"{step.name}.{empty[0]} is an empty list, another has {length} items")
+    rows = [
+        _call(step, {**arguments, **{n: v[min(i, len(v) - 1)] for n, v in lists.items()}})
+        for i in range(length)
+    ]
+    if not step.node.has_fields:
+        return rows
+    return step.node.result_type(*([row[i] for row in rows] for i in range(len(step.wires))))
+
+
+def _is_file(port: Port) -> bool:
+    return port.reads or port.writes
+
+
+def _paths(value: Value) -> list[str]:
+    """The files of a path port: none, one, or one for each item."""
+    if value is None:
+        return []
+    if isinstance(value, str | os.PathLike):
+        return [os.path.abspath(os.fspath(value))]  # noqa: PTH100, Path.resolve follows links
+    return [path for item in value for path in _paths(item)]

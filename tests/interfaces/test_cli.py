@@ -1,0 +1,181 @@
+"""The command line: what it writes, what it says, and how it fails."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+
+from spheremesh.fabrication.mesh_files import write_mesh
+from spheremesh.interfaces.cli import main
+from spheremesh.kernel.mesh import Mesh
+from spheremesh.kernel.surfaces import vase_net
+
+FILES = {
+    "panels.step", "model.3dm", "schedule.csv", "schedule.json", "preview.png", "graph.json",
+    "report.json",
+}  # fmt: skip
+
+
+Panelled = tuple[Result, Path]
+
+
+@pytest.fixture(scope="module")
+def vase(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("vase") / "vase.obj"
+    return write_mesh(vase_net(12, 6, 1.0, 2.0, 0.3), path)
+
+
+@pytest.fixture(scope="module")
+def panelled(vase: Path, tmp_path_factory: pytest.TempPathFactory) -> Panelled:
+    out = tmp_path_factory.mktemp("panelled") / "out"
+    arguments = ["panel", str(vase), "-o", str(out), "--moulds", "4", "--thickness", "0.01"]
+    result = CliRunner().invoke(main, [*arguments, "--json"])
+    return result, out
+
+
+def test_panel_writes_every_file(panelled: Panelled) -> None:
+    result, out = panelled
+    assert result.exit_code == 0, result.stderr
+    assert {path.name for path in out.iterdir()} == FILES
+
+
+def test_json_is_the_report_alone(panelled: Panelled) -> None:
+    result, out = panelled
+    report = json.loads(result.stdout)
+    assert report == json.loads((out / "report.json").read_text(encoding="utf-8"))
+    assert report["input"]["faces"] == 72
+    assert report["panels"] == {"written": 72, "rejected": []}
+    assert report["moulds"]["count"] == 4
+    assert sum(report["moulds"]["panels_per_mould"]) == 72
+    angles = report["angles_deg"]
+    assert angles["spherical"]["mean"] < 0.8 * angles["planar"]["mean"]
+    assert 0 < report["edge_gap"]["relative_to_edge"] < 0.1
+    assert set(report["seconds"]) == {"total", "optimize", "step"}
+
+
+def test_schedule_agrees_with_the_report(panelled: Panelled) -> None:
+    result, out = panelled
+    report = json.loads(result.stdout)
+    schedule = json.loads((out / "schedule.json").read_text(encoding="utf-8"))
+    radii = [mould["radius_mm"] / 1000 for mould in schedule["moulds"]]
+    np.testing.assert_allclose(radii, report["moulds"]["radii"], rtol=1e-12)
+    assert len(schedule["panels"]) == 72
+
+
+def test_graph_of_a_job_runs_again(panelled: Panelled, tmp_path: Path) -> None:
+    _, out = panelled
+    arguments = ["run", str(out / "graph.json"), "--set", "moulds=2", "-o", str(tmp_path)]
+    result = CliRunner().invoke(main, [*arguments, "--target", "moulds.report", "--json"])
+    assert result.exit_code == 0, result.stderr
+    assert json.loads(result.stdout)["moulds.report"]["count"] == 2
+    assert not list(tmp_path.iterdir()), "no file was asked for"
+
+
+def test_run_writes_the_files_of_a_target(panelled: Panelled, tmp_path: Path) -> None:
+    _, out = panelled
+    arguments = ["run", str(out / "graph.json"), "-o", str(tmp_path), "--target", "table"]
+    result = CliRunner().invoke(main, arguments)
+    assert result.exit_code == 0, result.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["schedule.csv"]
+
+
+def test_nodes_lists_and_explains() -> None:
+    listed = CliRunner().invoke(main, ["nodes"])
+    assert "minimize_angles" in listed.stdout
+    explained = CliRunner().invoke(main, ["nodes", "minimize_angles"])
+    assert "target_angle" in explained.stdout
+    unknown = CliRunner().invoke(main, ["nodes", "minimise_angles"])
+    assert unknown.exit_code == 3
+    assert "minimize_angles" in unknown.stderr
+
+
+def test_strict_fails_the_gate_and_names_the_panel(tmp_path: Path) -> None:
+    bow_tie = Mesh(
+        [[0, 0, 0], [1, 0, 0], [0.1, 1, 0], [1, 1.2, 0], [0, -1, 0], [1, -1, 0]],
+        [[0, 1, 2, 3], [1, 0, 4, 5]],
+    )
+    path = write_mesh(bow_tie, tmp_path / "bow_tie.obj")
+    out = tmp_path / "out"
+    lenient = CliRunner().invoke(main, ["panel", str(path), "-o", str(out)])
+    assert lenient.exit_code == 0, lenient.stderr
+    assert "P0000" in lenient.stderr
+    strict = CliRunner().invoke(main, ["panel", str(path), "-o", str(out), "--strict"])
+    assert strict.exit_code == 5
+    rejected = json.loads((out / "report.json").read_text(encoding="utf-8"))["panels"][
+        "rejected"
+    ]
+    assert [panel["id"] for panel in rejected] == ["P0000"]
+    assert "cross" in rejected[0]["reason"]
+
+
+SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+BAD_MESHES = {
+    "empty": ("", "empty"),
+    "nan": (SQUARE.replace("v 1 1 0", "v nan 1 0") + "f 1 2 3 4\n", "line 3"),
+    "range": (SQUARE + "f 1 2 3 9\n", "line 5"),
+    "repeated": (SQUARE + "f 1 2 3 3\n", "repeated corner"),
+    "non_manifold": (SQUARE + "v 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 1 5\n", "1"),
+    "zero_area": (SQUARE + "v 2 0 0\nf 1 2 3 4\nf 2 1 5\n", "zero area"),
+}
+
+
+@pytest.mark.parametrize("name", BAD_MESHES)
+def test_bad_mesh_is_one_line_and_no_file(name: str, tmp_path: Path) -> None:
+    content, expected = BAD_MESHES[name]
+    path = tmp_path / f"{name}.obj"
+    path.write_text(content, encoding="utf-8")
+    _assert_refused(
+        ["panel", str(path), "-o", str(tmp_path / "out")], tmp_path / "out", expected
+    )
+
+
+def test_missing_mesh(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    _assert_refused(["panel", str(tmp_path / "no.obj"), "-o", str(out)], out, "no.obj")
+
+
+def test_unreadable_3dm(tmp_path: Path) -> None:
+    path = tmp_path / "broken.3dm"
+    path.write_bytes(b"3D Geometry File Format, but no more")
+    out = tmp_path / "out"
+    _assert_refused(["panel", str(path), "-o", str(out)], out, "broken.3dm")
+
+
+def test_no_moulds(vase: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    arguments = ["panel", str(vase), "-o", str(out), "--moulds", "0"]
+    _assert_refused(arguments, out, "moulds")
+
+
+def test_thickness_beyond_the_smallest_radius(vase: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    arguments = ["panel", str(vase), "-o", str(out), "--thickness", "50"]
+    _assert_refused(arguments, out, "smallest inner radius")
+
+
+def test_folder_that_cannot_be_written(vase: Path, tmp_path: Path) -> None:
+    file = tmp_path / "file"
+    file.write_text("in the way", encoding="utf-8")
+    _assert_refused(["panel", str(vase), "-o", str(file / "out")], file / "out", "file")
+
+
+def test_failure_keeps_older_files(vase: Path, tmp_path: Path) -> None:
+    older = tmp_path / "panels.step"
+    older.write_text("older", encoding="utf-8")
+    arguments = ["panel", str(vase), "-o", str(tmp_path), "--thickness", "50"]
+    result = CliRunner().invoke(main, arguments)
+    assert result.exit_code == 3
+    assert [path.name for path in tmp_path.iterdir()] == ["panels.step"]
+    assert older.read_text(encoding="utf-8") == "older"
+
+
+def _assert_refused(arguments: list[str], out: Path, expected: str) -> None:
+    result = CliRunner().invoke(main, arguments)
+    assert result.exit_code == 3, result.output
+    lines = result.stderr.splitlines()
+    assert len(lines) == 1, lines
+    assert expected in lines[0]
+    assert result.stdout == ""
+    assert not out.exists()

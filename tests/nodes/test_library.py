@@ -1,0 +1,46 @@
+"""The library is found by itself, and only when asked for."""
+
+import subprocess
+import sys
+
+
+def run(code: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+def test_importing_spheremesh_imports_no_node_and_nothing_heavy() -> None:
+    heavy = ("scipy", "sklearn", "igl", "rich", "click", "rhino3dm", "cadquery", "OCP", "ezdxf")
+    code = f"""
+import sys, spheremesh
+print([name for name in sys.modules if name.startswith("spheremesh.nodes.library")])
+print([name for name in {heavy} if name in sys.modules])
+"""
+    assert run(code) == "[]\n[]"
+
+
+def test_a_star_import_gives_every_node() -> None:
+    code = """
+from spheremesh.nodes import *
+g = Graph()
+print(fit_spheres.__module__, g.add(torus_mesh).node.category, node.__name__)
+print("load_library" in globals(), "np" in globals())
+"""
+    assert run(code) == "spheremesh.nodes.library.spheres input node\nFalse False"
+
+
+def test_a_node_by_name_and_a_name_that_is_none() -> None:
+    code = """
+import spheremesh.nodes as nodes
+print(nodes.fit_spheres.__name__, "fit_spheres" in dir(nodes), hasattr(nodes, "fit_sphere"))
+try:
+    nodes.Graph().add("fit_sphere")
+except ValueError as error:
+    print(error)
+"""
+    assert run(code) == (
+        "fit_spheres True False\nunknown node 'fit_sphere'; did you mean 'fit_spheres'?"
+    )
