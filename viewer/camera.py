@@ -66,7 +66,9 @@ def view_axes(direction: FloatArray) -> FloatArray:
     return np.stack([right, np.cross(back, right), back])
 
 
-def frame_scene(points: FloatArray, direction: FloatArray, width: int, height: int) -> Camera:
+def frame_scene(
+    points: FloatArray, direction: FloatArray, width: int, height: int, strip: int = 0
+) -> Camera:
     """
     The camera that shows all points as large as they fit.
 
@@ -78,28 +80,37 @@ def frame_scene(points: FloatArray, direction: FloatArray, width: int, height: i
         From the scene to the viewer.
     width, height : int
         Size of the picture, in pixels.
+    strip : int
+        Width of a strip at the right that is kept free, in pixels.
 
     Returns
     -------
     Camera
         The nearest camera whose pyramid of view holds the points.
 
+    Raises
+    ------
+    InputError
+        If the direction is zero or not finite.
+
     Notes
     -----
-    Closed form: each side of the pyramid touches the points where ``x ± t z`` is extreme.
+    Closed form: each side of the pyramid touches the points where ``x ± t z`` is extreme, with
+    t the slope of the side.
     """
     axes = view_axes(direction)
     x, y, z = axes @ points.T
     focal = width / 2 / np.tan(FIELD_OF_VIEW / 2)
-    eye = np.zeros(3)
-    for axis, (values, size) in enumerate(((x, width), (y, height))):
-        slope = (0.5 - MARGIN) * size / focal
-        right, left = (values + slope * z).max(), (values - slope * z).min()
-        eye[axis] = (right + left) / 2
-        eye[2] = (
-            max(eye[2], (right - left) / (2 * slope)) if axis else (right - left) / (2 * slope)
-        )
-    return Camera(eye @ axes, axes, float(focal), width, height)
+    across, upward = (0.5 - MARGIN) * width / focal, (0.5 - MARGIN) * height / focal
+    right = across - strip / focal
+    # Of each pair of sides: the slopes, and where the sides meet the plane z = 0.
+    pairs = [
+        (across, right, float((x - across * z).min()), float((x + right * z).max())),
+        (upward, upward, float((y - upward * z).min()), float((y + upward * z).max())),
+    ]
+    distance = max((high - low) / (s + t) for s, t, low, high in pairs)
+    middles = [(low + s * distance + high - t * distance) / 2 for s, t, low, high in pairs]
+    return Camera(np.array([*middles, distance]) @ axes, axes, float(focal), width, height)
 
 
 def project_points(camera: Camera, points: FloatArray) -> FloatArray:

@@ -92,16 +92,24 @@ def light_reaches(light: DepthMap, points: FloatArray, softness: float = 0.0) ->
         From 0 in the shadow to 1 in the light.
     """
     size = len(light.heights)
-    local = points @ light.axes.T
-    start = (local[:, :2] - light.corner) / light.pixel
-    taps = np.linspace(-1, 1, 4) * softness / light.pixel / 2 if softness else np.zeros(1)
+    across, upward, height = light.axes @ points.T
+    taps = np.linspace(-1, 1, 4) * softness / 2 if softness else np.zeros(1)
+    places = [
+        [_pixels((values + tap - start) / light.pixel, size) for tap in taps]
+        for values, start in zip((across, upward), light.corner.tolist(), strict=True)
+    ]
+    heights = light.heights.ravel()
+    # The pixel under a point may lie a little higher than the point itself.
+    limit = height + light.pixel
     total = np.zeros(len(points))
-    for right in taps:
-        column = np.clip(start[:, 0] + right, 0, size - 1).astype(np.int64)
-        for up in taps:
-            row = np.clip(start[:, 1] + up, 0, size - 1).astype(np.int64)
-            total += light.heights[row, column] <= local[:, 2] + light.pixel
+    for row in places[1]:
+        for column in places[0]:
+            total += heights[row * size + column] <= limit
     return total / len(taps) ** 2
+
+
+def _pixels(values: FloatArray, size: int) -> IntArray:
+    return np.clip(values, 0, size - 1).astype(np.int64)
 
 
 def sky_maps(points: FloatArray, triangles: IntArray) -> list[DepthMap]:

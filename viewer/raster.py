@@ -8,6 +8,7 @@ its pixels out without gaps and without overlap.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -104,6 +105,31 @@ def rasterize(points: FloatArray, triangles: IntArray, width: int, height: int) 
     return DepthPicture(found.reshape(height, width), near.reshape(height, width))
 
 
+def close_hairlines(picture: DepthPicture) -> DepthPicture:
+    """
+    Fill gaps of one pixel with what lies beside them.
+
+    Parameters
+    ----------
+    picture : DepthPicture
+        The picture.
+
+    Returns
+    -------
+    DepthPicture
+        Pixels behind both of their neighbours (left and right, or above and below) take the
+        triangle of the first of them: a crack between two triangles, or a joint too narrow to
+        be seen through.
+    """
+    triangles, nearness = picture.triangles.copy(), picture.nearness.copy()
+    for axis in (0, 1):
+        t, n = np.moveaxis(triangles, axis, 0), np.moveaxis(nearness, axis, 0)
+        is_crack = n[1:-1] < 0.99 * np.minimum(n[:-2], n[2:])
+        t[1:-1][is_crack] = t[:-2][is_crack]
+        n[1:-1][is_crack] = n[:-2][is_crack]
+    return DepthPicture(triangles, nearness)
+
+
 def _pixels(
     points: FloatArray, triangles: IntArray, width: int, height: int
 ) -> Iterator[tuple[IntArray, IntArray, IntArray]]:
@@ -115,8 +141,8 @@ def _pixels(
     counts[(x.max(axis=1) < 0) | (x.min(axis=1) > width)] = 0
     sides = _Sides.of(x, y)
     load = np.cumsum(counts * (np.minimum(np.ptp(x, axis=1), width) / 2 + 4))
-    batches = np.searchsorted(load, np.arange(0, load[-1] if len(load) else 0, BATCH))
-    for begin, end in zip(batches, [*batches[1:], len(triangles)], strict=True):
+    starts = np.searchsorted(load, np.arange(0, float(load[-1]) if len(load) else 0, BATCH))
+    for begin, end in pairwise([*starts.tolist(), len(triangles)]):
         chosen: IntArray = np.arange(int(begin), int(end))
         owner, step = _expand(chosen, counts[chosen])
         row = first[owner] + step

@@ -12,7 +12,7 @@ from typing import Literal, get_args
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from ..kernel.arrays import FloatArray, dot, unit
+from ..kernel.arrays import FloatArray, IntArray, dot, sum_by, unit
 from ..kernel.colors import mould_color
 from ..kernel.errors import InputError
 from ..kernel.panels import Panels
@@ -27,7 +27,7 @@ from .light import (
     sky_maps,
     sky_openness,
 )
-from .raster import affine_over_triangles, rasterize
+from .raster import affine_over_triangles, close_hairlines, rasterize
 from .scene import Scene, Sight, look, make_scene
 
 ColorBy = Literal["mould", "radius", "none"]
@@ -40,6 +40,12 @@ BATCH = 1 << 15
 """Samples shaded at a time: what stays in the processor's cache."""
 
 MAX_SIDE = 8000
+
+STRIPES = 14
+"""Bright stripes that a mirrored ray passes in a turn of 2π."""
+
+LEADING = 1.6
+"""Distance of the lines of a legend, in sizes of its type."""
 
 _WHITE = (226, 226, 222)
 _OUTWARDS, _INWARDS = (214, 118, 92), (92, 138, 190)
@@ -90,7 +96,8 @@ def render_image(
     if legend and color_by != "mould":
         raise InputError('a legend lists moulds: it needs color_by="mould"')
     scene = make_scene(panels)
-    camera = _frame([scene], direction, width, height)
+    strip = min(12 * _legend_font(panels, height), width // 2) if legend else 0
+    camera = _frame([scene], direction, width, height, strip)
     image = _take(scene, camera, _panel_colors(panels, color_by), shading)
     if legend:
         _draw_legend(image, panels)
@@ -160,7 +167,11 @@ def _check_options(color_by: str, shading: str, width: int, height: int) -> None
 
 
 def _frame(
-    scenes: list[Scene], direction: Sequence[float] | None, width: int, height: int
+    scenes: list[Scene],
+    direction: Sequence[float] | None,
+    width: int,
+    height: int,
+    strip: int = 0,
 ) -> Camera:
     origin = scenes[0].triangles.origin
     points = np.concatenate(
@@ -171,7 +182,8 @@ def _frame(
         towards = np.array([0.5, -0.8, 0.5] if extent[0] >= extent[1] else [0.8, 0.5, 0.5])
     else:
         towards = np.asarray(direction, float)
-    return frame_scene(points, towards, SUPERSAMPLING * width, SUPERSAMPLING * height)
+    fine = SUPERSAMPLING
+    return frame_scene(points, towards, fine * width, fine * height, fine * strip)
 
 
 def _take(scene: Scene, camera: Camera, colors: FloatArray, shading: Shading) -> Image.Image:
@@ -179,6 +191,7 @@ def _take(scene: Scene, camera: Camera, colors: FloatArray, shading: Shading) ->
     triangles = scene.triangles
     screen = project_points(camera, triangles.points)
     picture = rasterize(screen, triangles.triangles, camera.width, camera.height)
+    picture = close_hairlines(picture)
     lamps = _hang_lamps(scene, camera)
     openness = sky_openness(lamps.sky, triangles.points, triangles.normals)
     shares = np.stack(
@@ -187,18 +200,18 @@ def _take(scene: Scene, camera: Camera, colors: FloatArray, shading: Shading) ->
             for side in openness.T
         ]
     )
-    canvas = _ground_picture(scene, camera, lamps)
     found, nearness = picture.triangles.ravel(), picture.nearness.ravel()
     seen = np.flatnonzero(found >= 0)
+    tones = np.empty((len(seen), 3))
     for begin in range(0, len(seen), BATCH):
         samples = seen[begin : begin + BATCH]
         sight = look(scene, camera, samples, found[samples], nearness[samples])
         light = _light_on(sight, lamps, shares)
         if shading == "zebra":
-            canvas[samples] = _zebra(sight, camera, light)
+            tones[begin : begin + BATCH] = _zebra(sight, camera, light)
         else:
-            canvas[samples] = _studio(sight, colors[sight.panels], light)
-    return _develop(canvas, camera)
+            tones[begin : begin + BATCH] = _studio(sight, colors[sight.panels], light)
+    return _develop(_ground_picture(scene, camera, lamps), camera, seen, tones)
 
 
 @dataclass(frozen=True)
@@ -217,7 +230,7 @@ def _hang_lamps(scene: Scene, camera: Camera) -> _Lamps:
     size = float(np.ptp(coarse.points, axis=0).max())
     return _Lamps(
         sky_maps(coarse.points, coarse.triangles),
-        depth_map(coarse.points, coarse.triangles, sun, SUN_PIXELS),
+        depth_map(coarse.points, coarse.triangles, sun, min(SUN_PIXELS, camera.width)),
         0.012 * size,
     )
 
@@ -246,7 +259,7 @@ def _zebra(sight: Sight, camera: Camera, light: FloatArray) -> FloatArray:
     mirrored = sight.rays - 2 * dot(sight.normals, sight.rays)[:, None] * sight.normals
     right = unit(camera.axes[0])
     angle = np.arcsin(np.clip(mirrored @ right, -1, 1))
-    stripe = 0.5 + 0.5 * np.tanh(3.5 * np.sin(22 * angle))
+    stripe = 0.5 + 0.5 * np.tanh(6 * np.cos(STRIPES * angle))
     tone = 0.06 + 0.84 * stripe
     result = (tone * (0.55 + 0.45 * light[:, 1]))[:, None] * np.array([0.97, 0.99, 1.0])
     joints = 0.35 * sight.joints[:, None]
@@ -254,44 +267,52 @@ def _zebra(sight: Sight, camera: Camera, light: FloatArray) -> FloatArray:
 
 
 def _ground_picture(scene: Scene, camera: Camera, lamps: _Lamps) -> FloatArray:
-    """The ground with its shadows, (samples, 3): smooth, so it is enlarged from few points."""
+    """The ground with its shadows (height, width, 3): smooth, so enlarged from few points."""
     from scipy.ndimage import gaussian_filter
 
-    columns, rows = max(camera.width // 8, 2), max(camera.height // 8, 2)
+    width, height = camera.width // SUPERSAMPLING, camera.height // SUPERSAMPLING
+    columns, rows = max(width // 4, 2), max(height // 4, 2)
     x, y = np.meshgrid(
         (np.arange(columns) + 0.5) * camera.width / columns,
         (np.arange(rows) + 0.5) * camera.height / rows,
     )
     rays = pixel_rays(camera, x.ravel(), y.ravel())
-    height = float(scene.triangles.points[:, 2].min()) - camera.eye[2]
-    meets = rays[:, 2] * height > 0
-    distance = np.divide(height, rays[:, 2], out=np.zeros(len(rays)), where=meets)
+    depth = float(scene.triangles.points[:, 2].min()) - camera.eye[2]
+    is_ground = rays[:, 2] * depth > 0
+    distance = np.divide(depth, rays[:, 2], out=np.zeros(len(rays)), where=is_ground)
     points = camera.eye + distance[:, None] * rays
     upwards = np.broadcast_to(np.array([0.0, 0.0, 1.0]), points.shape)
-    openness = sky_openness(lamps.sky, points, upwards)[:, 0]
+    openness = sky_openness(lamps.sky, points, upwards)[:, 0].reshape(rows, columns)
+    # Each direction of the sky throws its own faint shadow: a blur hides their edges.
+    openness = np.asarray(gaussian_filter(openness, columns / 120), np.float64)
     lifted = points + np.array([0.0, 0.0, 2 * lamps.sun.pixel])
-    sunshine = light_reaches(lamps.sun, lifted, 2 * lamps.softness)
-    light = daylight(upwards, openness, lamps.sun.axes[2], sunshine)
-    light[~meets] = 1.0
+    sunshine = light_reaches(lamps.sun, lifted, 2 * lamps.softness).reshape(rows, columns)
+    sunshine = np.asarray(gaussian_filter(sunshine, columns / 320), np.float64)
+    light = daylight(upwards, openness.ravel(), lamps.sun.axes[2], sunshine.ravel())
+    light[~is_ground] = 1.0
     # Paper white, a little darker towards the lower rim.
     paper = 0.93 - 0.1 * (y.ravel() / camera.height) ** 2
-    picture = (light * paper[:, None]).reshape(rows, columns, 3)
-    picture = np.asarray(gaussian_filter(picture, (1.2, 1.2, 0)), np.float32)
-    size = (camera.width, camera.height)
+    picture = np.asarray((light * paper[:, None]).reshape(rows, columns, 3), np.float32)
     layers = [
-        Image.fromarray(picture[..., channel]).resize(size, Image.Resampling.BICUBIC)
+        Image.fromarray(picture[..., channel]).resize((width, height), Image.Resampling.BICUBIC)
         for channel in range(3)
     ]
-    return np.stack([np.asarray(layer, float).ravel() for layer in layers], axis=1)
+    return np.stack([np.asarray(layer, np.float64) for layer in layers], axis=2)
 
 
-def _develop(canvas: FloatArray, camera: Camera) -> Image.Image:
-    """Means over the samples of each pixel, as sRGB."""
-    fine = np.clip(canvas, 0, 1).reshape(
-        camera.height // SUPERSAMPLING, SUPERSAMPLING, camera.width // SUPERSAMPLING, -1, 3
-    )
-    pixels = np.asarray(fine.mean(axis=(1, 3)), np.float64)
-    return Image.fromarray(np.asarray(np.round(255 * pixels ** (1 / 2.2)), np.uint8))
+def _develop(
+    ground: FloatArray, camera: Camera, seen: IntArray, tones: FloatArray
+) -> Image.Image:
+    """Means over the samples of each pixel, before the ground, as sRGB."""
+    height, width, _ = ground.shape
+    column, row = seen % camera.width // SUPERSAMPLING, seen // camera.width // SUPERSAMPLING
+    pixels = row * width + column
+    weight = 1 / SUPERSAMPLING**2
+    cover = weight * np.bincount(pixels, minlength=height * width)[:, None]
+    front = weight * sum_by(pixels, np.clip(tones, 0, 1), height * width)
+    values = front + (1 - cover) * np.clip(ground.reshape(-1, 3), 0, 1)
+    picture = np.round(255 * values ** (1 / 2.2)).reshape(height, width, 3)
+    return Image.fromarray(np.asarray(picture, np.uint8))
 
 
 def _panel_colors(panels: Panels, color_by: ColorBy) -> FloatArray:
@@ -313,26 +334,35 @@ def _linear(colors: object) -> FloatArray:
     return (np.asarray(colors, float) / 255) ** 2.2
 
 
+def _legend_font(panels: Panels, height: int) -> int:
+    """Size of type, in pixels, at which the moulds fit in the height."""
+    lines = len(np.unique(panels.labels)) + 1
+    return int(np.clip(0.9 * height / lines / LEADING, 9, max(9, height / 45)))
+
+
 def _draw_legend(image: Image.Image, panels: Panels) -> None:
     """Swatch, number, radius and count of each mould, down the right side."""
     labels, first, counts = np.unique(panels.labels, return_index=True, return_counts=True)
-    room = image.height * 0.9 / (len(labels) + 1)
-    size = int(np.clip(room / 1.6, 8, image.height / 45))
-    shown = min(len(labels), int(image.height * 0.9 / (1.6 * size)) - 2)
+    size = _legend_font(panels, image.height)
+    step = LEADING * size
+    shown = min(len(labels), int(0.9 * image.height / step) - 1)
     font, draw = ImageFont.load_default(size), ImageDraw.Draw(image)
-    left, step = image.width - 13 * size, 1.6 * size
-    top = (image.height - step * (shown + 1)) / 2
-    draw.text((left + 2 * size, top), "mould   radius   panels", fill=_INK, font=font)
+    left, top = image.width - 15 * size, (image.height - step * (shown + 1)) / 2
+
+    def write(line: int, column: float, text: str) -> None:
+        place = (left + column * size, top + line * step)
+        draw.text(place, text, fill=_INK, font=font, anchor="ra")
+
+    for column, title in ((5.0, "mould"), (9.2, "radius"), (13.4, "panels")):
+        write(0, column, title)
     moulds = zip(labels.tolist(), first.tolist(), counts.tolist(), strict=True)
     for line, (label, panel, count) in enumerate(list(moulds)[:shown], start=1):
         y = top + line * step
-        color = mould_color(label, int(labels[-1]) + 1)
-        draw.rectangle((left, y + 0.1 * size, left + 1.3 * size, y + 1.1 * size), fill=color)
+        swatch = (left, y, left + 1.4 * size, y + size)
+        draw.rectangle(swatch, fill=mould_color(label, int(labels[-1]) + 1))
         curvature = 2 * abs(float(panels.spheres[panel, 0]))
-        name = "-" if label < 0 else str(label)
-        radius = f"{1 / curvature:.4g}" if curvature > 0 else "plane"
-        for column, text in ((4.5, name), (8.7, radius), (12.3, str(count))):
-            draw.text((left + column * size, y), text, fill=_INK, font=font, anchor="ra")
+        write(line, 5.0, "-" if label < 0 else str(label))
+        write(line, 9.2, f"{1 / curvature:#.4g}" if curvature > 0 else "plane")
+        write(line, 13.4, str(count))
     if shown < len(labels):
-        y = top + (shown + 1) * step
-        draw.text((left, y), f"and {len(labels) - shown} more", fill=_INK, font=font)
+        write(shown + 1, 13.4, f"and {len(labels) - shown} more")

@@ -11,10 +11,10 @@ from ..kernel.spheres import evaluate, normals
 from ..kernel.tessellation import PanelTriangles, surface_rows, tessellate
 from .camera import Camera, pixel_rays
 
-JOINT_WIDTH = 0.008
+JOINT_WIDTH = 0.01
 """Half width of a drawn joint, in mean edges."""
 
-MIN_JOINT = 0.5
+MIN_JOINT = 0.75
 """The same in samples of the picture, for panels that are small there."""
 
 FINE_PANEL = 20.0
@@ -151,9 +151,12 @@ def look(
     points = camera.eye + rays / nearness[:, None] - shift
     slope = dot(normals(rows, points), rays)
     value = evaluate(rows, points)
-    # At its outline a sphere may be missed by a ray that still meets the triangle.
+    # At its outline a sphere may be missed by a ray that still meets the triangle, and a wall
+    # seen edge on be met anywhere: there the point of the triangle has to do.
     root = np.sqrt(np.maximum(slope**2 - 4 * rows[:, 0] * dot(rays, rays) * value, 0))
-    points += (2 * value / (slope + np.copysign(root, slope)))[:, None] * rays
+    divisor = slope + np.copysign(root, slope)
+    is_near = np.abs(2 * value) < scene.edge_length * np.abs(divisor)
+    points += np.divide(2 * value, divisor, out=0 * value, where=is_near)[:, None] * rays
     outwards = unit(normals(rows, points))
     is_inside = dot(outwards, rays) > 0
     joints = _joints(scene, panels, points, camera.focal * nearness)
