@@ -11,8 +11,8 @@ import numpy as np
 from PIL import Image
 
 from spheremesh.kernel.clustering import cluster_radii
+from spheremesh.kernel.cutting import cut_panels
 from spheremesh.kernel.fit import face_planes, fit_spheres
-from spheremesh.kernel.panels import cut_panels
 from spheremesh.kernel.pencil import minimize_angles
 from spheremesh.kernel.sphere_mesh import intersection_angles
 from spheremesh.kernel.surfaces import roof_net

@@ -4,10 +4,11 @@ from numpy.testing import assert_allclose
 
 from spheremesh.kernel.arrays import norm
 from spheremesh.kernel.colors import UNLABELLED, mould_color
+from spheremesh.kernel.cutting import cut_panels
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.fit import face_planes, fit_spheres
 from spheremesh.kernel.mesh import Mesh
-from spheremesh.kernel.panels import Panels, cut_panels, select_panels
+from spheremesh.kernel.panels import Panels, select_panels
 from spheremesh.kernel.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres import from_center_radius, normalize
 from spheremesh.kernel.surfaces import ellipsoid_net, roof_net, torus_net
