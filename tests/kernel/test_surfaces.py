@@ -206,7 +206,7 @@ def test_the_roof_is_a_roof() -> None:
         (vase_net, (5, 5, 1.0, 1.0, np.nan), "between -1 and 1"),
         (enneper_net, (0, 1.0), r"\(n\) must be at least 1"),
         (enneper_net, (5, 0.0), "size must be positive"),
-        (roof_net, (0, 5, 1.0), r"\(around\)"),
+        (roof_net, (0, 5, 1.0), r"\(span\)"),
         (roof_net, (5, 5, 0.0), "length must be positive"),
         (roof_net, (5, 5, np.inf), "length must be positive"),
     ],
