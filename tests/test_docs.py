@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from spheremesh import nodes
 from spheremesh.nodes import NodeWarning
 
 ROOT = Path(__file__).parents[1]
