@@ -51,22 +51,38 @@ def rejection_reasons(
     note(any_corner(~inner_exists), "the thickness leaves no corner on the inner face")
     sides = references[panels.next_corners] - references
     arcs, inner_arcs = panel_arcs(panels), inner_panel_arcs(panels)
-    layers = ((panels.spheres, arcs, "outer"), (panels.inner_spheres, inner_arcs, "inner"))
+    layers = [(panels.spheres, arcs, "outer")]
+    if panels.thickness > 0:
+        layers.append((panels.inner_spheres, inner_arcs, "inner"))
+    has_sides = panels.thickness > 0 or panels.joint_gap > 0
     for rows, layer, name in layers:
         backwards = dot(layer.ends - layer.starts, sides) <= 0
         note(any_corner(backwards), f"an edge of the {name} face vanishes or runs backwards")
         note(_crossing(panels, rows, layer), f"the boundary of the {name} face crosses itself")
-    axis = unit(panels.spheres[:, 1:4])[owners]
-    for parameter in (-1.0, 0.0):
-        points = arc_points(arcs, np.array([parameter]))[:, 0]
-        steep = dot(normals(panels.spheres[owners], points), axis) < np.cos(CAP_ANGLE)
-        note(any_corner(steep), "the cap opens more than 80 degrees: split the face")
+        if has_sides:
+            leans = any_corner(_leaning(rows[owners], layer))
+            note(leans, f"a cutting plane leans over the {name} face: cut it by bisectors")
+        steep = any_corner(_steep(rows[owners], layer))
+        note(steep, f"the cap of the {name} face opens more than 80 degrees: split the face")
     sound = ~np.isin(np.arange(panels.n_panels), list(reasons))
     # The others may reach where the area integral has no origin.
     areas = np.ones(panels.n_panels)
     areas[sound] = panel_areas(select_panels(panels, sound))
     note(areas <= 0, "the boundary runs clockwise about the face normal")
     return reasons
+
+
+def _leaning(rows: FloatArray, arcs: Arcs) -> BoolArray:
+    """Whether panels begin on the wrong side of a plane, or arcs exceed a half circle."""
+    middles = (arcs.starts + arcs.ends) / 2
+    return dot(normals(rows, middles), arcs.rises) <= 0
+
+
+def _steep(rows: FloatArray, arcs: Arcs) -> BoolArray:
+    """Whether arcs reach beyond the largest cap about the local origin."""
+    axis = unit(rows[:, 1:4])[:, None]
+    points = arc_points(arcs, np.array([-1.0, 0.0]))
+    return (dot(normals(rows[:, None], points), axis) < np.cos(CAP_ANGLE)).any(axis=1)
 
 
 def _crossing(panels: Panels, rows: FloatArray, arcs: Arcs) -> BoolArray:

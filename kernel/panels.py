@@ -348,7 +348,7 @@ def panel_areas(panels: Panels) -> FloatArray:
     return patch_areas(panels.spheres, panel_arcs(panels), panels.corner_panels)
 
 
-_LAYERS, _LAYER_WEIGHTS = np.polynomial.legendre.leggauss(8)
+_LAYERS, _LAYER_WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
 def panel_volumes(panels: Panels) -> FloatArray:
@@ -364,7 +364,7 @@ def panel_volumes(panels: Panels) -> FloatArray:
     -------
     (P,) float array
         Volumes, in cubed model units: the areas of the parallel layers between the two faces,
-        integrated over the thickness with 8 Gauss points.
+        integrated over the thickness with 16 Gauss points.
     """
     total = np.zeros(panels.n_panels)
     for node, weight in zip(_LAYERS, _LAYER_WEIGHTS, strict=True):

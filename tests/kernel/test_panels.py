@@ -8,7 +8,12 @@ import pytest
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arcs import arc_points
 from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
-from spheremesh.kernel.circles import intersection_circles
+from spheremesh.kernel.circles import (
+    circle_pencils,
+    face_circles,
+    intersection_circles,
+    pencil_spheres,
+)
 from spheremesh.kernel.clustering import cluster_radii
 from spheremesh.kernel.cutting import (
     EdgeMode,
@@ -24,10 +29,12 @@ from spheremesh.kernel.mesh import face_vector_areas, local_corners, mean_edge_l
 from spheremesh.kernel.panels import (
     Panels,
     inner_panel_arcs,
+    move_origins,
     panel_arcs,
     panel_areas,
     panel_ids,
     panel_volumes,
+    scale_panels,
 )
 from spheremesh.kernel.pencil import minimize_angles
 from spheremesh.kernel.spheres import center_radius, evaluate, normals, recenter
@@ -405,6 +412,34 @@ def test_law_panels_survive_a_far_site(optimum: dict[str, SphereMesh]) -> None:
 # Planes
 
 
+def test_panels_in_another_unit(optimum: dict[str, SphereMesh]) -> None:
+    found = optimum["vase"]
+    size = mean_edge_length(found.mesh)
+    panels, _ = cut_panels(found, thickness=0.01 * size, joint_gap=0.01 * size)
+    scaled = scale_panels(panels, 1000.0)
+    np.testing.assert_allclose(panel_areas(scaled), 1e6 * panel_areas(panels), rtol=1e-12)
+    np.testing.assert_allclose(panel_volumes(scaled), 1e9 * panel_volumes(panels), rtol=1e-11)
+    radii = [np.sqrt(center_radius(p.inner_spheres)[1]) for p in (panels, scaled)]
+    np.testing.assert_allclose(radii[1], 1000 * radii[0], rtol=1e-12)
+
+
+def test_panels_about_other_origins(optimum: dict[str, SphereMesh]) -> None:
+    found = optimum["vase"]
+    size = mean_edge_length(found.mesh)
+    panels, _ = cut_panels(found, thickness=0.01 * size)
+    shift = size * np.array([0.3, -0.2, 0.1])
+    moved = move_origins(panels, panels.origins + shift)
+    owner = panels.corner_panels
+    np.testing.assert_allclose(
+        moved.corners + moved.origins[owner], panels.corners + panels.origins[owner],
+        rtol=0, atol=1e-14 * norm(panels.origins).max(),
+    )  # fmt: skip
+    misses = dot(moved.plane_normals, moved.inner_corners) - moved.plane_offsets
+    assert np.abs(misses).max() < 1e-14 * size * 10
+    assert np.abs(evaluate(moved.spheres[owner], moved.corners)).max() < 1e-14 * size * 10
+    np.testing.assert_allclose(panel_volumes(moved), panel_volumes(panels), rtol=1e-10)
+
+
 def test_nearly_flat_spheres_become_planes_exactly(nets: dict[str, Mesh]) -> None:
     mesh = nets["roof"]
     corners = local_corners(mesh)
@@ -487,6 +522,37 @@ def test_caps_beyond_80_degrees_are_rejected(radius: float, sign: float) -> None
     height = np.sqrt(radius**2 - 1)
     row = [sign * 0.5 / radius, 0, 0, height / radius, -sign * 0.5 / radius]
     assert not cut_panels(SphereMesh(SQUARE, [row]))[1]
+
+
+def test_caps_of_inner_faces_are_rejected_too() -> None:
+    """A joint cuts the larger of two concentric spheres nearer to its great circle."""
+    turns = np.arange(6) * np.pi / 3
+    hexagon = Mesh(np.stack([np.cos(turns), np.sin(turns), 0 * turns], 1), [range(6)])
+    planes, great_spheres = circle_pencils(face_circles(hexagon)[0])
+    cap = np.array([np.radians(82)])
+    found = SphereMesh.from_local(hexagon, pencil_spheres(planes, great_spheres, cap))
+    assert not cut_panels(found, joint_gap=0.1)[1]
+    assert "cap of the inner face" in only_reason(found, joint_gap=0.1, thickness=1.0)
+
+
+def test_walls_that_lean_over_are_rejected(nets: dict[str, Mesh]) -> None:
+    """Spheres of random curvature meet in planes of any tilt; without walls that is no harm."""
+    mesh = nets["torus"]
+    planes, great_spheres = circle_pencils(face_circles(mesh)[0])
+    angles = np.random.default_rng(0).uniform(-0.3, 0.3, mesh.n_faces)
+    found = SphereMesh.from_local(mesh, pencil_spheres(planes, great_spheres, angles))
+    size = mean_edge_length(mesh)
+    for lengths in ({"thickness": 0.01 * size}, {"joint_gap": 0.01 * size}):
+        panels, rejected = cut_panels(found, "intersection", **lengths)
+        assert any("leans over" in r.reason for r in rejected)
+        for rows, arcs in (
+            (panels.spheres, panel_arcs(panels)),
+            (panels.inner_spheres, inner_panel_arcs(panels)),
+        ):
+            upwards = normals(rows[panels.corner_panels], (arcs.starts + arcs.ends) / 2)
+            assert (dot(upwards, arcs.rises) > 0).all()
+    _, rejected = cut_panels(found, "intersection")
+    assert not any("leans over" in r.reason for r in rejected)
 
 
 def test_a_mould_as_small_as_its_face_is_rejected_not_warned_about() -> None:
