@@ -5,10 +5,12 @@ This module imports OCP, which takes more than a second: others import it inside
 """
 
 import io
+import re
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.BRep import BRep_Builder
@@ -175,6 +177,10 @@ def write_document(document: TDocStd_Document, path: Path, header: StepHeader) -
         path.write_bytes(_part21(model))
 
 
+_INSTANCE: Final = re.compile(rb"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\(')\d+',\s*'((?:[^']|'')*)'")
+"""Identifier and name of an instance: OpenCASCADE numbers them on and on within a process."""
+
+
 def _part21(model: StepData_StepModel) -> bytes:
     """
     Text of a STEP file with all digits.
@@ -182,6 +188,7 @@ def _part21(model: StepData_StepModel) -> bytes:
     OpenCASCADE's own format has 12 decimals in a direction: arcs of more than 100 m radius miss
     their corners by more than its tolerance, and a valid solid is read back as an invalid one.
     Its way to drop zeros cuts longer numbers short; here the usual ones go by replacement.
+    Instances are identified by their names, so that equal parts give equal text.
     """
     writer = StepData_StepWriter(model)
     numbers = writer.FloatWriter()
@@ -194,6 +201,7 @@ def _part21(model: StepData_StepModel) -> bytes:
     header, separator, data = stream.getvalue().partition(b"DATA;")
     for number in (b"0.", b"1."):
         data = data.replace(number + 14 * b"0", number)
+    data = _INSTANCE.sub(rb"\1\2','\2'", data)
     return header + separator + data.replace(b" = ", b"=")
 
 
