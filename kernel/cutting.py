@@ -5,10 +5,12 @@ Neighbours share their cutting plane; their two arcs in it may differ by a gap, 
 measured here. What cannot be made is listed with its reason.
 """
 
+from dataclasses import replace
 from typing import Literal, get_args
 
 import numpy as np
 
+from .arcs import Arcs, sphere_arcs
 from .arrays import FloatArray, IntArray, dot, norm, unit
 from .errors import InputError
 from .mesh import face_centroids, local_corners, mean_edge_length
@@ -110,6 +112,39 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
         plane_normals = np.where(use[:, None], radical, plane_normals)
         plane_offsets = np.where(use, constant + dot(radical, middles), plane_offsets)
     return plane_normals, plane_offsets
+
+
+def edge_arcs(sphere_mesh: SphereMesh, edges: EdgeMode) -> Arcs:
+    """
+    Arc of each half-edge on the sphere of its face.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+    edges : {"bisector", "intersection"}
+        In which planes the arcs lie, see `cutting_planes`.
+
+    Returns
+    -------
+    Arcs
+        H arcs in model coordinates, from corner to corner. The two arcs of an interior edge
+        differ by its gap; where two spheres meet in a circle and are cut there, they coincide.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Fig. 26 (a), (c) and (d).
+    """
+    sphere_mesh = flatten_nearly_plane(sphere_mesh)
+    mesh, topology = sphere_mesh.mesh, sphere_mesh.mesh.topology
+    rows = sphere_mesh.local_spheres[topology.corner_faces]
+    plane_normals, plane_offsets = cutting_planes(sphere_mesh, edges)
+    corners, _ = corner_points(
+        rows, plane_normals, plane_offsets, mesh.offsets, local_corners(mesh)
+    )
+    arcs = sphere_arcs(rows, plane_normals, corners, corners[topology.next_corners])
+    origins = face_centroids(mesh)[topology.corner_faces]
+    return replace(arcs, starts=arcs.starts + origins, ends=arcs.ends + origins)
 
 
 def edge_gaps(sphere_mesh: SphereMesh, edges: EdgeMode) -> FloatArray:
