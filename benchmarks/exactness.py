@@ -61,7 +61,8 @@ def measure(shapes: list[TopoDS_Shape]) -> FloatArray:
             faces.Next()
         volume = GProp_GProps()
         BRepGProp.VolumeProperties_s(shape, volume)
-        values[i] = sum(sorted(areas)[-2:]), volume.Mass()
+        # A solid lists its outer and inner face before its walls.
+        values[i] = sum(areas[:2]), volume.Mass()
     print(f"  valid {valid} of {len(shapes)}")
     return values
 
