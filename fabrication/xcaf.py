@@ -200,7 +200,8 @@ def _part21(model: StepData_StepModel) -> bytes:
     writer.Print(stream)
     header, separator, data = stream.getvalue().partition(b"DATA;")
     for number in (b"0.", b"1."):
-        data = data.replace(number + 14 * b"0", number)
+        for end in (b",", b")"):
+            data = data.replace(number + 14 * b"0" + end, number + end)
     data = _INSTANCE.sub(rb"\1\2','\2'", data)
     return header + separator + data.replace(b" = ", b"=")
 

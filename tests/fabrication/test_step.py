@@ -42,7 +42,7 @@ from spheremesh.kernel.panels import (
     panel_volumes,
     select_panels,
 )
-from spheremesh.kernel.surfaces import roof_net, torus_net
+from spheremesh.kernel.surfaces import catenoid_net, roof_net, torus_net
 
 
 def curved(mesh: Mesh, angles: FloatArray | float) -> SphereMesh:
@@ -114,7 +114,14 @@ def is_valid(shape: TopoDS_Shape) -> bool:
 # Shapes
 
 
+def catenoid() -> SphereMesh:
+    """Corners at round numbers, give or take rounding errors."""
+    mesh = catenoid_net(12, 8, 3.0, 8.0)
+    return curved(mesh, np.random.default_rng(3).uniform(-0.02, 0.02, mesh.n_faces))
+
+
 CASES = {
+    "round numbers": (catenoid(), 0.02, 0.0),
     "mixed": (mixed(), 0.02, 0.0),
     "mixed with joints": (mixed(), 0.02, 0.01),
     "dome": (curved(torus_net(8, 6, 10.0, 3.0), 0.3), 0.02, 0.0),
@@ -274,7 +281,13 @@ def test_round_trip(
         np.testing.assert_allclose(areas, 1e6 * panel_areas(panels), rtol=1e-8)
 
 
-ROUND_TRIPS = {"1 mm": 1e-8, "1 km": 1e-8, "1 km, nearly flat": 1e-8, "radius 0.75 edge": 1e-6}
+ROUND_TRIPS = {
+    "round numbers": 1e-8,
+    "1 mm": 1e-8,
+    "1 km": 1e-8,
+    "1 km, nearly flat": 1e-8,
+    "radius 0.75 edge": 1e-6,
+}
 
 
 @pytest.mark.parametrize("case", ROUND_TRIPS)
