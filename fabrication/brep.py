@@ -43,7 +43,14 @@ from OCP.TopoDS import (
 
 from ..kernel.arcs import ArcCircles, Arcs, arc_circles
 from ..kernel.arrays import FloatArray, IntArray, dot, norm, unit
-from ..kernel.panels import Panels, inner_panel_arcs, move_origins, panel_arcs, scale_panels
+from ..kernel.errors import InputError
+from ..kernel.panels import (
+    Panels,
+    inner_panel_arcs,
+    move_origins,
+    panel_arcs,
+    scale_panels,
+)
 from ..kernel.spheres import center_radius, signed_distance
 from ..kernel.tolerances import EPSILON
 
@@ -84,6 +91,11 @@ def panel_shapes(
         P shapes, each placed by a translation to the origin of its panel. Faces are oriented
         along N, solids outwards.
 
+    Raises
+    ------
+    InputError
+        If a panel has numbers that are not finite, at which OpenCASCADE would crash.
+
     Notes
     -----
     A solid has the outer face, the concentric inner face and a plane wall per edge. The shape
@@ -92,6 +104,9 @@ def panel_shapes(
     panels = scale_panels(panels, scale)
     panels = move_origins(panels, _rounded(panels.origins))
     tolerances = _tolerances(panels)
+    broken = [panels.ids[i] for i in np.flatnonzero(~np.isfinite(tolerances))]
+    if broken:
+        raise InputError(f"panel {broken[0]} ({len(broken)} in all) is not finite")
     outer = _layer(panels, panels.spheres, panel_arcs(panels), tolerances, pcurves=pcurves)
     shapes: Iterable[TopoDS_Shape] = outer.faces
     if panels.thickness > 0:

@@ -4,7 +4,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -517,6 +517,10 @@ def test_what_cannot_be_written(panels: Panels, tmp_path: Path) -> None:
     nothing = select_panels(panels, np.zeros(panels.n_panels, bool))
     with pytest.raises(InputError, match="no panels"):
         write_step(nothing, target)
+    corners = panels.corners.copy()
+    corners[20] = np.nan
+    with pytest.raises(InputError, match=r"panel P0005 \(1 in all\) is not finite"):
+        write_step(replace(panels, corners=corners), target)
     with pytest.raises(InputError, match="unknown units 'furlong'"):
         write_step(panels, target, "furlong")
     with pytest.raises(InputError, match="unknown units 'mile'"):
