@@ -37,6 +37,9 @@ ENERGY_ROUNDING: Final = 1e-13
 LINEAR_SOLVE: Final = 1e-6
 """Relative residual to which the linear system of a Newton step is solved."""
 
+APEX_SOLVE: Final = 1e-13
+"""Relative residual to which the well conditioned system of smoothed apexes is solved."""
+
 PARALLEL_PLANES: Final = 1e-6
 """Cutting planes that meet at a smaller angle (radians) are in line."""
 

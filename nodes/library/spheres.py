@@ -1,12 +1,19 @@
 """A sphere for every face to start from."""
 
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
-from ...kernel import fit
+from ...kernel import central, fit
 from ...kernel.mesh import Mesh
 from ...kernel.sphere_mesh import SphereMesh
 from ..node import node
 from ..ports import Port
+
+
+class PrincipalSpheres(NamedTuple):
+    """Two sphere meshes, one per direction."""
+
+    first: SphereMesh
+    second: SphereMesh
 
 
 @node
@@ -45,3 +52,60 @@ def fit_spheres(mesh: Mesh, ring: Annotated[int, Port(min=0, max=10)] = 1) -> Sp
         On circular faces spheres through the circle, else the best of all (Pratt's norm).
     """
     return fit.fit_spheres(mesh, ring)
+
+
+@node
+def central_spheres(mesh: Mesh) -> SphereMesh:
+    """
+    Spheres of the mean curvature at each face of a circular mesh, a start close to the optimum.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Every face needs a circumcircle; quads along curvature lines are best.
+
+    Returns
+    -------
+    SphereMesh
+        Discrete central spheres: a Möbius map of the mesh maps them along.
+    """
+    return central.central_spheres(mesh)
+
+
+@node
+def smoothed_spheres(mesh: Mesh) -> SphereMesh:
+    """
+    Spheres through the circle of each face and an apex above it, placed by smoothing.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Faces of any degree; those without a circumcircle take the best circle.
+
+    Returns
+    -------
+    SphereMesh
+        Spheres somewhat flatter than the central ones.
+    """
+    return central.smoothed_spheres(mesh)
+
+
+@node
+def principal_spheres(mesh: Mesh) -> PrincipalSpheres:
+    """
+    Spheres that follow the curvature of a circular quad mesh in one direction each.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Quads, every one with a circumcircle.
+
+    Returns
+    -------
+    first : SphereMesh
+        Spheres of the curvature across two opposite sides of each quad, in the same direction
+        along every strip of quads.
+    second : SphereMesh
+        Those across the other two sides.
+    """
+    return PrincipalSpheres(*central.principal_spheres(mesh))
