@@ -31,11 +31,11 @@ install: $(INSTALLED)
 
 $(INSTALLED):
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "spheremesh needs Python 3.11 or newer: make PYTHON=python3.12 ...")'
-	test -x $(BIN)/python || $(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install -q --upgrade pip setuptools
-	$(BIN)/python -m pip install -q -e . --group dev
-	rm -f .venv/installed-*
-	touch $@
+	@echo 'installing spheremesh and what it needs into .venv'
+	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	@$(BIN)/python -m pip install -qq --upgrade pip setuptools
+	@$(BIN)/python -m pip install -qq -e . --group dev
+	@rm -f .venv/installed-* && touch $@
 
 # OCP (the STEP kernel) needs two system libraries on Linux that slim images lack.
 system: install

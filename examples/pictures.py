@@ -7,41 +7,42 @@ The pictures of the README: a roof on eight moulds, and the reflections that pro
 import sys
 from pathlib import Path
 
-import numpy as np
 from PIL import Image
 
-from spheremesh.kernel.clustering import cluster_radii
-from spheremesh.kernel.fit import face_planes, fit_spheres
-from spheremesh.kernel.panels import cut_panels
-from spheremesh.kernel.pencil import minimize_angles
-from spheremesh.kernel.sphere_mesh import intersection_angles
-from spheremesh.kernel.surfaces import roof_net
+from spheremesh.nodes import (
+    cluster_radii,
+    face_planes,
+    fit_spheres,
+    minimize_angles,
+    panels,
+    roof_mesh,
+)
 from spheremesh.viewer.render import compare_image, render_image
 
 
 def roof() -> Image.Image:
-    """A roof of 1440 spherical panels, made on eight moulds."""
-    smooth, _ = minimize_angles(fit_spheres(roof_net(24, 60, 80.0)))
-    clustered, moulds = cluster_radii(smooth, 8)
-    panels, _ = cut_panels(clustered, labels=moulds.labels)
-    return render_image(panels, direction=(0.5, -0.85, 0.5), height=800, legend=True)
+    """The roof of 1440 spherical panels, made on eight moulds."""
+    smooth = minimize_angles(fit_spheres(roof_mesh()))
+    clusters = cluster_radii(smooth.sphere_mesh, 8)
+    made = panels(clusters.sphere_mesh, labels=clusters.labels)
+    return render_image(made.panels, direction=(0.5, -0.85, 0.5), height=800, legend=True)
 
 
 def roof_zebra() -> Image.Image:
     """Reflected stripes on plane panels, and on spherical ones with the same corners."""
-    mesh = roof_net(24, 60, 80.0)
-    plane = face_planes(mesh)
-    smooth, _ = minimize_angles(plane)
-    before, after = (
-        np.degrees(intersection_angles(spheres).mean()) for spheres in (plane, smooth)
+    planes = face_planes(roof_mesh())
+    smooth = minimize_angles(planes)
+    angles = smooth.report["angles_deg"]
+    return compare_image(
+        panels(planes).panels,
+        panels(smooth.sphere_mesh).panels,
+        captions=(
+            f"plane panels: {angles['planar']['mean']:.1f}° between neighbours, on average",
+            f"spherical panels: {angles['spherical']['mean']:.1f}°, on the same mesh",
+        ),
+        direction=(0.72, -0.7, 0.55),
+        height=560,
     )
-    captions = (
-        f"plane panels: {before:.1f}° between neighbours",
-        f"spherical panels: {after:.1f}°",
-    )
-    left, right = cut_panels(plane)[0], cut_panels(smooth)[0]
-    direction = (0.72, -0.7, 0.55)
-    return compare_image(left, right, captions=captions, direction=direction, height=560)
 
 
 def main(folder: Path) -> None:

@@ -20,7 +20,8 @@ import numpy as np
 from ..kernel.arrays import FloatArray
 from ..kernel.colors import UNLABELLED, mould_color
 from ..kernel.errors import InputError
-from ..kernel.panels import Panels, RejectedPanel, panel_areas
+from ..kernel.panel_checks import RejectedPanel
+from ..kernel.panels import Panels, panel_areas
 from ..kernel.spheres import center_radius
 from .brep_audit import verify_breps
 from .brep_layout import read_brep_streams

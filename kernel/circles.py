@@ -197,7 +197,7 @@ def sphere_through_points(points: FloatArray) -> FloatArray:
     return np.concatenate([a[..., None], b, constant[..., None]], -1)
 
 
-def sphere_through_circle(
+def angle_through_points(
     planes: FloatArray, great_spheres: FloatArray, points: FloatArray
 ) -> FloatArray:
     """

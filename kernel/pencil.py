@@ -219,7 +219,8 @@ def minimize_angles(
     ----------
     sphere_mesh : SphereMesh
         Mesh and spheres to start from. The smoother of these, put into the pencils, and the
-        face planes is the start; the result does not depend on it.
+        face planes is the start; the result does not depend on it, but for faces without
+        a weighted edge, which keep it.
     target_angle : float
         Angle at which neighbours shall meet, in radians from 0 to π/2.
     edge_weights : (E,) array_like of float, optional

@@ -476,3 +476,34 @@ def angle(s: FloatArray, t: FloatArray) -> FloatArray:
     opening = minkowski(s - t, s - t)
     closing = minkowski(s + t, s + t)
     return 2 * np.arctan2(np.sqrt(np.maximum(opening, 0)), np.sqrt(np.maximum(closing, 0)))
+
+
+def meet_lines(
+    rows: FloatArray, points: FloatArray, directions: FloatArray
+) -> tuple[FloatArray, BoolArray]:
+    """
+    Where lines meet spheres, nearest to a point of the line.
+
+    Parameters
+    ----------
+    rows : (n, 5) float array
+        Rows, planes included.
+    points : (n, 3) float array
+        Points p of the lines ``p + s u``.
+    directions : (n, 3) float array
+        Unit directions u.
+
+    Returns
+    -------
+    parameters : (n,) float array
+        The root s of least magnitude, in the form without cancellation; 0 where there is none.
+    exists : (n,) bool array
+        Whether the line meets the sphere.
+    """
+    slope = dot(normals(rows, points), directions)
+    value = evaluate(rows, points)
+    discriminant = slope**2 - 4 * rows[:, 0] * value
+    denominator = slope + np.copysign(np.sqrt(np.maximum(discriminant, 0)), slope)
+    exists = (discriminant >= 0) & ((denominator != 0) | (value == 0))
+    use = exists & (denominator != 0)
+    return np.divide(2 * value, denominator, out=np.zeros_like(slope), where=use), exists

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from spheremesh import nodes
 from spheremesh.nodes import NodeWarning
 
 ROOT = Path(__file__).parents[1]
@@ -28,3 +29,24 @@ def test_page_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
 def test_links_lead_somewhere(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8")):
         assert "://" in target or (page.parent / target).exists(), target
+
+
+def test_readme_tells_the_angles_that_come_out() -> None:
+    table = re.findall(
+        r"^\| `(\w+_mesh)` \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$",
+        (ROOT / "README.md").read_text(encoding="utf-8"),
+        re.M,
+    )
+    assert len(table) >= 5
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", NodeWarning)
+        for name, *printed in table:
+            optimum = nodes.minimize_angles(nodes.fit_spheres(getattr(nodes, name)()))
+            clusters = nodes.cluster_radii(optimum.sphere_mesh, k=8)
+            angles = optimum.report["angles_deg"]
+            means = [
+                angles["planar"]["mean"],
+                angles["spherical"]["mean"],
+                clusters.report["angles_deg"]["mean"],
+            ]
+            assert [f"{mean:.2f}" for mean in means] == printed, name

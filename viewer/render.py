@@ -341,7 +341,7 @@ def _legend_font(panels: Panels, height: int) -> int:
 
 
 def _draw_legend(image: Image.Image, panels: Panels) -> None:
-    """Swatch, number, radius and count of each mould, down the right side."""
+    """Swatch, number (from 1, as in `mould_name`), radius and count of each mould."""
     labels, first, counts = np.unique(panels.labels, return_index=True, return_counts=True)
     size = _legend_font(panels, image.height)
     step = LEADING * size
@@ -361,7 +361,7 @@ def _draw_legend(image: Image.Image, panels: Panels) -> None:
         swatch = (left, y, left + 1.4 * size, y + size)
         draw.rectangle(swatch, fill=mould_color(label, int(labels[-1]) + 1))
         curvature = 2 * abs(float(panels.spheres[panel, 0]))
-        write(line, 5.0, "-" if label < 0 else str(label))
+        write(line, 5.0, "-" if label < 0 else str(label + 1))
         write(line, 9.2, f"{1 / curvature:#.4g}" if curvature > 0 else "plane")
         write(line, 13.4, str(count))
     if shown < len(labels):

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 from ...fabrication import rhino, schedule, step
 from ...fabrication.files import replacing
-from ...kernel import panels as cutting
+from ...kernel import cutting
 from ...kernel.arrays import IntArray
 from ...kernel.errors import name_ids
 from ...kernel.panels import Panels

@@ -16,15 +16,9 @@ from spheremesh.fabrication.opennurbs import CRC, brep_streams, edge_streams
 from spheremesh.kernel.arcs import arc_points
 from spheremesh.kernel.arrays import FloatArray
 from spheremesh.kernel.circles import circle_pencils, face_circles, pencil_spheres
+from spheremesh.kernel.cutting import EdgeMode, cut_panels
 from spheremesh.kernel.mesh import Mesh
-from spheremesh.kernel.panels import (
-    EdgeMode,
-    Panels,
-    cut_panels,
-    panel_arcs,
-    panel_areas,
-    select_panels,
-)
+from spheremesh.kernel.panels import Panels, panel_arcs, panel_areas, select_panels
 from spheremesh.kernel.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres import normals, signed_distance
 from spheremesh.kernel.surfaces import roof_net, vase_net

@@ -19,8 +19,9 @@ from spheremesh.fabrication.brep_layout import read_brep_streams
 from spheremesh.fabrication.rhino import TEXT_KEYS, panel_text, refused_breps, write_3dm
 from spheremesh.kernel.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.kernel.colors import mould_color
+from spheremesh.kernel.cutting import cut_panels
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.panels import Panels, cut_panels, panel_areas, select_panels
+from spheremesh.kernel.panels import Panels, panel_areas, select_panels
 from spheremesh.kernel.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres import signed_distance
 from spheremesh.kernel.surfaces import roof_net

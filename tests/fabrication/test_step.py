@@ -34,11 +34,10 @@ from spheremesh.fabrication.step import StepSchema, panels_to_cadquery, write_st
 from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.kernel.colors import Color, mould_color
+from spheremesh.kernel.cutting import EdgeMode, cut_panels
 from spheremesh.kernel.errors import InputError, MissingLibraryError
 from spheremesh.kernel.panels import (
-    EdgeMode,
     Panels,
-    cut_panels,
     panel_areas,
     panel_volumes,
     select_panels,

@@ -4,7 +4,7 @@ import numpy as np
 
 from spheremesh.kernel.arcs import sphere_arcs
 from spheremesh.kernel.circles import circle_pencils, face_circles, pencil_spheres
-from spheremesh.kernel.panels import cut_panels
+from spheremesh.kernel.cutting import cut_panels
 from spheremesh.kernel.sphere_mesh import SphereMesh
 from spheremesh.kernel.surfaces import vase_net
 

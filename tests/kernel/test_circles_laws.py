@@ -13,12 +13,12 @@ from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
 from spheremesh.kernel.circles import (
     Circles,
     PencilKind,
+    angle_through_points,
     circle_pencils,
     face_circles,
     intersection_circles,
     pencil_kind,
     pencil_spheres,
-    sphere_through_circle,
     sphere_through_points,
 )
 from spheremesh.kernel.errors import InputError
@@ -274,7 +274,7 @@ def test_law_b5_sphere_through_circle_and_point(
     plane, great = circle_pencils(circles)
     miss = np.hypot(evaluate(plane, point), evaluate(great, point))
     assume(miss > 1e-2)
-    t = sphere_through_circle(plane, great, point)
+    t = angle_through_points(plane, great, point)
     assert -np.pi / 2 < t <= np.pi / 2
     row = pencil_spheres(plane, great, t)
     tolerance = 1e-12 * (1 + 50 / radius)

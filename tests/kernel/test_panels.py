@@ -15,17 +15,19 @@ from spheremesh.kernel.circles import (
     pencil_spheres,
 )
 from spheremesh.kernel.clustering import cluster_radii
-from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.fit import face_planes
-from spheremesh.kernel.mesh import face_vector_areas, local_corners, mean_edge_length
-from spheremesh.kernel.panels import (
+from spheremesh.kernel.cutting import (
     EdgeMode,
-    Panels,
     cut_panels,
     cutting_planes,
     edge_gaps,
     flatten_nearly_plane,
     gap_report,
+)
+from spheremesh.kernel.errors import InputError
+from spheremesh.kernel.fit import face_planes
+from spheremesh.kernel.mesh import face_vector_areas, local_corners, mean_edge_length
+from spheremesh.kernel.panels import (
+    Panels,
     inner_panel_arcs,
     move_origins,
     panel_arcs,

@@ -2,10 +2,11 @@ import numpy as np
 import pytest
 
 from spheremesh.kernel.arrays import dot, norm, sum_by
+from spheremesh.kernel.cutting import cut_panels
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.fit import face_planes, fit_spheres
 from spheremesh.kernel.mesh import Mesh
-from spheremesh.kernel.panels import Panels, cut_panels, panel_areas, panel_volumes
+from spheremesh.kernel.panels import Panels, panel_areas, panel_volumes
 from spheremesh.kernel.pencil import minimize_angles
 from spheremesh.kernel.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres import from_center_radius, normalize, signed_distance

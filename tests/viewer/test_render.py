@@ -3,11 +3,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from spheremesh.kernel.arrays import norm
-from spheremesh.kernel.colors import NEUTRAL, mould_color
+from spheremesh.kernel.colors import UNLABELLED, mould_color
+from spheremesh.kernel.cutting import cut_panels
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.fit import face_planes, fit_spheres
 from spheremesh.kernel.mesh import Mesh
-from spheremesh.kernel.panels import Panels, cut_panels, select_panels
+from spheremesh.kernel.panels import Panels, select_panels
 from spheremesh.kernel.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres import from_center_radius, normalize
 from spheremesh.kernel.surfaces import ellipsoid_net, roof_net, torus_net
@@ -68,7 +69,7 @@ def test_moulds_are_painted_in_their_colours() -> None:
         assert (cosine > 0.99).mean() > 0.1
     grey = pixels(ball(), direction=FRONT)
     assert not subject(grey).any()
-    assert mould_color(-1, 2) == NEUTRAL
+    assert mould_color(-1, 2) == UNLABELLED
 
 
 def test_curvature_is_red_outside_and_blue_inside() -> None:

@@ -1,0 +1,218 @@
+"""Measures of meshes and sphere meshes: how flat, how circular, how upright, how near."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .arcs import arc_points
+from .arrays import BoolArray, FloatArray, IntArray, dot, norm
+from .circles import face_circles
+from .cutting import cutting_planes, edge_arcs, flatten_nearly_plane
+from .errors import InputError
+from .fit import face_planes, fit_spheres
+from .mesh import Mesh, face_centroids, face_normals, local_corners
+from .pencil import pencil_angles
+from .sphere_mesh import SphereMesh, intersection_angles
+from .spheres import project
+
+
+def planarity(mesh: Mesh) -> FloatArray:
+    """
+    How far the corners of each face lie off its plane.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Returns
+    -------
+    (F,) float array
+        Largest distance of a corner from the plane through the centroid across the vector
+        area, in model units; zero for triangles.
+    """
+    faces = mesh.topology.corner_faces
+    heights = np.abs(dot(local_corners(mesh), face_normals(mesh)[faces]))
+    return np.maximum.reduceat(heights, mesh.offsets[:-1])
+
+
+def circularity(mesh: Mesh) -> FloatArray:
+    """
+    How far the corners of each face lie off its best-fit circle.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Returns
+    -------
+    (F,) float array
+        Largest distance of a corner from the circle, in model units; zero for triangles.
+
+    Raises
+    ------
+    InputError
+        If a face has no area.
+    """
+    return face_circles(mesh)[1]
+
+
+def beam_tilt(sphere_mesh: SphereMesh) -> FloatArray:
+    """
+    Angle between the plane in which two spheres meet and the plane that bisects them.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+
+    Returns
+    -------
+    (E,) float array
+        Radians over the interior edges, from 0 (upright) to π/2 (tangential). Where spheres
+        share no circle, because they are the same or one is a plane, the beam is upright.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Fig. 26 and 28.
+    """
+    flat = flatten_nearly_plane(sphere_mesh)
+    upright, _ = cutting_planes(flat, "bisector")
+    circle, _ = cutting_planes(flat, "intersection")
+    first = sphere_mesh.mesh.topology.edge_corners
+    n, m = upright[first], circle[first]
+    angles = 2 * np.arctan2(norm(n - m), norm(n + m))
+    return np.minimum(angles, np.pi - angles)
+
+
+def spiky_faces(sphere_mesh: SphereMesh) -> BoolArray:
+    """
+    Faces that bulge to the wrong side.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+
+    Returns
+    -------
+    (F,) bool array
+        True where the sphere bulges against the one fitted to the face's surroundings and
+        meets a neighbour at a larger angle than the planes of the two faces do.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Fig. 27.
+    """
+    mesh = sphere_mesh.mesh
+    circles, _ = face_circles(mesh)
+    own = np.sin(pencil_angles(sphere_mesh, circles))
+    around = np.sin(pencil_angles(fit_spheres(mesh), circles))
+    is_sharper = intersection_angles(sphere_mesh) > intersection_angles(face_planes(mesh))
+    has_sharp_edge = np.zeros(mesh.n_faces, bool)
+    has_sharp_edge[mesh.topology.edge_faces[is_sharper]] = True
+    return (own * around < 0) & has_sharp_edge
+
+
+@dataclass(frozen=True)
+class AngleHistogram:
+    """
+    Angles between neighbours, counted in bins.
+
+    Attributes
+    ----------
+    bounds : (n + 1,) float array
+        Bounds of the bins, in radians.
+    spheres, planes : (n,) int array
+        Number of interior edges per bin, between the spheres and between the face planes.
+    """
+
+    bounds: FloatArray
+    spheres: IntArray
+    planes: IntArray
+
+
+def angle_histogram(sphere_mesh: SphereMesh, n_bins: int = 20) -> AngleHistogram:
+    """
+    Count the angles between neighbouring spheres, and between the planes they replace.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+    n_bins : int
+        Number of bins, from 0 to the largest angle of either kind.
+
+    Returns
+    -------
+    AngleHistogram
+        The counts; both sum to the number of interior edges.
+
+    Raises
+    ------
+    InputError
+        If `n_bins` is below 1.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Fig. 28, bottom row.
+    """
+    if n_bins < 1:
+        raise InputError(f"a histogram needs at least 1 bin, not {n_bins}")
+    spheres = intersection_angles(sphere_mesh)
+    planes = intersection_angles(face_planes(sphere_mesh.mesh))
+    largest = max(spheres.max(initial=0.0), planes.max(initial=0.0))
+    bounds = np.linspace(0.0, largest if largest > 0 else np.pi, n_bins + 1)
+    return AngleHistogram(
+        bounds,
+        np.histogram(spheres, bounds)[0].astype(np.int64),
+        np.histogram(planes, bounds)[0].astype(np.int64),
+    )
+
+
+def deviation(sphere_mesh: SphereMesh, reference: Mesh) -> FloatArray:
+    """
+    How far the panels stand off a reference surface.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+    reference : Mesh
+        The surface to compare with; its polygons count as fans of triangles.
+
+    Returns
+    -------
+    (F,) float array
+        Largest distance of a point of the panel from the reference, in model units, over its
+        corners, nine points of each edge and the crown of the panel.
+    """
+    from igl import (  # pyright: ignore[reportMissingTypeStubs]
+        point_mesh_squared_distance,  # pyright: ignore[reportUnknownVariableType]
+    )
+
+    mesh = sphere_mesh.mesh
+    shift = reference.vertices.mean(axis=0)
+    arcs = edge_arcs(sphere_mesh, "bisector")
+    samples = arc_points(arcs, np.linspace(-1, 1, 9)).reshape(-1, 3)
+    centroids = face_centroids(mesh)
+    crowns = centroids + project(sphere_mesh.local_spheres, np.zeros_like(centroids))
+    points = np.concatenate([samples, crowns]) - shift
+    faces = np.concatenate([np.repeat(mesh.topology.corner_faces, 9), np.arange(mesh.n_faces)])
+    distance: Any = point_mesh_squared_distance
+    squares, _, _ = distance(points, reference.vertices - shift, _fans(reference))
+    result = np.zeros(mesh.n_faces)
+    np.maximum.at(result, faces, np.sqrt(np.asarray(squares, np.float64)))
+    return result
+
+
+def _fans(mesh: Mesh) -> IntArray:
+    """Triangles (T, 3) of the faces, each a fan from its first corner."""
+    first = np.repeat(mesh.offsets[:-1], mesh.degrees - 2)
+    steps = np.arange(len(first)) - np.repeat(
+        np.cumsum(mesh.degrees - 2) - (mesh.degrees - 2), mesh.degrees - 2
+    )
+    corners = np.stack([first, first + steps + 1, first + steps + 2], 1)
+    return mesh.corners[corners]

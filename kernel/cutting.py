@@ -1,0 +1,309 @@
+"""
+Cutting panels out of the spheres of a mesh, by one plane per edge.
+
+Neighbours share their cutting plane; their two arcs in it may differ by a gap, which is
+measured here. What cannot be made is listed with its reason.
+"""
+
+from dataclasses import replace
+from typing import Literal, get_args
+
+import numpy as np
+
+from .arcs import Arcs, sphere_arcs
+from .arrays import FloatArray, IntArray, dot, norm, unit
+from .errors import InputError
+from .mesh import face_centroids, local_corners, mean_edge_length
+from .panel_checks import RejectedPanel, rejection_reasons
+from .panels import Panels, corner_points, panel_ids, select_panels
+from .sphere_mesh import SphereMesh
+from .spheres import angle, evaluate, meet_lines, offset, recenter
+from .tolerances import PLANE_SAGITTA, SAME_PLANE
+
+EdgeMode = Literal["bisector", "intersection"]
+
+
+def flatten_nearly_plane(sphere_mesh: SphereMesh) -> SphereMesh:
+    """
+    Replace spheres that bulge less than a workshop can tell by planes.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+
+    Returns
+    -------
+    SphereMesh
+        The same, with A = 0 where the bulge ``L² / 8r`` of a face of size L is below
+        `PLANE_SAGITTA` L. To be applied before cutting, so that neighbours agree.
+    """
+    mesh = sphere_mesh.mesh
+    corners = local_corners(mesh)
+    size = 2 * np.maximum.reduceat(norm(corners), mesh.offsets[:-1])
+    rows = sphere_mesh.local_spheres.copy()
+    is_flat = size * np.abs(rows[:, 0]) / 4 < PLANE_SAGITTA
+    direction = unit(rows[:, 1:4])
+    # The corners of a face average to the local origin: the plane through it is the mean one,
+    # shifted by the sphere's own mean miss.
+    heights = np.add.reduceat(
+        evaluate(rows[mesh.topology.corner_faces], corners), mesh.offsets[:-1]
+    )
+    flat = np.zeros_like(rows)
+    flat[:, 1:4] = direction
+    flat[:, 4] = heights / mesh.degrees
+    rows[is_flat] = flat[is_flat]
+    return SphereMesh.from_local(mesh, rows)
+
+
+def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray, FloatArray]:
+    """
+    Plane that cuts each panel along each of its edges.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh, its nearly plane faces flattened (`flatten_nearly_plane`).
+    edges : {"bisector", "intersection"}
+        ``bisector``: the plane through the two vertices that bisects the two spheres' normals.
+        ``intersection``: the plane of the circle in which the two spheres meet; where they
+        are the same sphere or one is a plane, the bisecting one. Boundary edges are cut by the
+        plane through their vertices and the normal of their sphere.
+
+    Returns
+    -------
+    plane_normals : (H, 3) float array
+        Unit normals that point into the face of their corner; zero where two faces fold back
+        onto each other, which no plane bisects.
+    plane_offsets : (H,) float array
+        Offsets of ``n·x = d`` in the coordinates local to the face.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Fig. 26 (a) and (d).
+    """
+    mesh, topology = sphere_mesh.mesh, sphere_mesh.mesh.topology
+    faces, twins = topology.corner_faces, topology.twins
+    starts = local_corners(mesh)
+    ends = starts[topology.next_corners]
+    middles = (starts + ends) / 2
+    rows = recenter(sphere_mesh.local_spheres[faces], middles)
+    upright = unit(rows[:, 1:4])
+    other = rows[twins]
+    is_interior = twins >= 0
+    upright = np.where(is_interior[:, None], upright + upright[twins], upright)
+    # No plane bisects two faces that fold back onto each other.
+    upright[norm(upright) < SAME_PLANE] = 0
+    plane_normals = unit(np.cross(upright, ends - starts))
+    plane_offsets = dot(plane_normals, middles)
+    if edges == "intersection":
+        radical = other[:, :1] * rows[:, 1:4] - rows[:, :1] * other[:, 1:4]
+        constant = other[:, 0] * rows[:, 4] - rows[:, 0] * other[:, 4]
+        length = norm(radical)
+        scale = np.abs(rows[:, 0]) + np.abs(other[:, 0])
+        # A plane meets a sphere in its own plane, which cannot cut it.
+        curved = (rows[:, 0] != 0) & (other[:, 0] != 0)
+        distinct = (length > SAME_PLANE * scale) & (angle(rows, other) > SAME_PLANE)
+        use = is_interior & curved & distinct
+        use &= upright.any(axis=1)
+        side = np.where(dot(radical, plane_normals) < 0, -1.0, 1.0)
+        divisor = np.where(use, side * length, 1.0)
+        radical, constant = radical / divisor[:, None], constant / divisor
+        plane_normals = np.where(use[:, None], radical, plane_normals)
+        plane_offsets = np.where(use, constant + dot(radical, middles), plane_offsets)
+    return plane_normals, plane_offsets
+
+
+def edge_arcs(sphere_mesh: SphereMesh, edges: EdgeMode) -> Arcs:
+    """
+    Arc of each half-edge on the sphere of its face.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+    edges : {"bisector", "intersection"}
+        In which planes the arcs lie, see `cutting_planes`.
+
+    Returns
+    -------
+    Arcs
+        H arcs in model coordinates, from corner to corner. The two arcs of an interior edge
+        differ by its gap; where two spheres meet in a circle and are cut there, they coincide.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Fig. 26 (a), (c) and (d).
+    """
+    sphere_mesh = flatten_nearly_plane(sphere_mesh)
+    mesh, topology = sphere_mesh.mesh, sphere_mesh.mesh.topology
+    rows = sphere_mesh.local_spheres[topology.corner_faces]
+    plane_normals, plane_offsets = cutting_planes(sphere_mesh, edges)
+    corners, _ = corner_points(
+        rows, plane_normals, plane_offsets, mesh.offsets, local_corners(mesh)
+    )
+    arcs = sphere_arcs(rows, plane_normals, corners, corners[topology.next_corners])
+    origins = face_centroids(mesh)[topology.corner_faces]
+    return replace(arcs, starts=arcs.starts + origins, ends=arcs.ends + origins)
+
+
+def edge_gaps(sphere_mesh: SphereMesh, edges: EdgeMode) -> FloatArray:
+    """
+    Largest distance between the two arcs of each interior edge.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+    edges : {"bisector", "intersection"}
+        How panels are cut, see `cutting_planes`.
+
+    Returns
+    -------
+    (E,) float array
+        Gaps at the ends and in the middle of the edges, the larger of them, in model units.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Fig. 26 (d).
+    """
+    sphere_mesh = flatten_nearly_plane(sphere_mesh)
+    mesh, topology = sphere_mesh.mesh, sphere_mesh.mesh.topology
+    rows = sphere_mesh.local_spheres[topology.corner_faces]
+    plane_normals, plane_offsets = cutting_planes(sphere_mesh, edges)
+    starts = local_corners(mesh)
+    ends = starts[topology.next_corners]
+    points, _ = corner_points(rows, plane_normals, plane_offsets, mesh.offsets, starts)
+    shifts = points - starts
+    middles = (starts + ends) / 2
+    rises = unit(np.cross(ends - starts, plane_normals))
+    feet = middles + (plane_offsets - dot(plane_normals, middles))[:, None] * plane_normals
+    heights, _ = meet_lines(rows, feet, rises)
+
+    first, second = topology.edge_corners, topology.twins[topology.edge_corners]
+    following = topology.next_corners
+    middle_gap = np.abs(heights[first] - heights[second])
+    start_gap = norm(shifts[first] - shifts[following[second]])
+    end_gap = norm(shifts[following[first]] - shifts[second])
+    return np.maximum(middle_gap, np.maximum(start_gap, end_gap))
+
+
+def gap_report(sphere_mesh: SphereMesh, edges: EdgeMode) -> dict[str, float]:
+    """
+    Summary of the gaps between neighbouring arcs.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+    edges : {"bisector", "intersection"}
+        How panels are cut.
+
+    Returns
+    -------
+    dict of str to float
+        ``max`` and ``mean`` in model units, ``relative_to_edge`` the maximum over the mean
+        edge length; zeros for a mesh without interior edges.
+    """
+    gaps = edge_gaps(sphere_mesh, edges)
+    largest = float(gaps.max(initial=0.0))
+    mean = float(gaps.mean()) if len(gaps) else 0.0
+    edge = mean_edge_length(sphere_mesh.mesh)
+    return {"max": largest, "mean": mean, "relative_to_edge": largest / edge}
+
+
+def cut_panels(
+    sphere_mesh: SphereMesh,
+    edges: EdgeMode = "bisector",
+    thickness: float = 0.0,
+    joint_gap: float = 0.0,
+    labels: IntArray | None = None,
+) -> tuple[Panels, tuple[RejectedPanel, ...]]:
+    """
+    Cut a panel out of the sphere of every face.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+    edges : {"bisector", "intersection"}
+        How panels are cut, see `cutting_planes`.
+    thickness : float
+        Distance of the inner from the outer face, against N, in model units.
+    joint_gap : float
+        Width of the joint between neighbours, in model units; every cutting plane, those of
+        the boundary included, moves into the panel by half of it.
+    labels : (F,) int array, optional
+        Mould of each face.
+
+    Returns
+    -------
+    panels : Panels
+        The panels that can be made.
+    rejected : tuple of RejectedPanel
+        All others, each with its reason.
+
+    Raises
+    ------
+    InputError
+        If thickness or gap is negative or not finite, or the thickness reaches the centre of
+        a sphere.
+    """
+    _check_options(sphere_mesh, edges, thickness, joint_gap, labels)
+    sphere_mesh = flatten_nearly_plane(sphere_mesh)
+    mesh, topology = sphere_mesh.mesh, sphere_mesh.mesh.topology
+    rows = sphere_mesh.local_spheres
+    inner_rows = _inner_spheres(rows, thickness, panel_ids(mesh.n_faces))
+    plane_normals, plane_offsets = cutting_planes(sphere_mesh, edges)
+    plane_offsets = plane_offsets + joint_gap / 2
+    faces = topology.corner_faces
+    references = local_corners(mesh)
+    corners, exists = corner_points(
+        rows[faces], plane_normals, plane_offsets, mesh.offsets, references
+    )
+    inner_corners, inner_exists = corner_points(
+        inner_rows[faces], plane_normals, plane_offsets, mesh.offsets, corners
+    )
+    beyond = np.append(faces, -1)[topology.twins]
+    panels = Panels(
+        panel_ids(mesh.n_faces), np.arange(mesh.n_faces),
+        np.full(mesh.n_faces, -1) if labels is None else np.asarray(labels, np.int64),
+        face_centroids(mesh), rows, inner_rows, mesh.offsets, plane_normals, plane_offsets,
+        corners, inner_corners, beyond, float(thickness), float(joint_gap),
+    )  # fmt: skip
+    reasons = rejection_reasons(panels, references, exists, inner_exists)
+    rejected = tuple(
+        RejectedPanel(panels.ids[face], face, reason)
+        for face, reason in sorted(reasons.items())
+    )
+    keep = np.ones(mesh.n_faces, bool)
+    keep[list(reasons)] = False
+    return select_panels(panels, keep), rejected
+
+
+def _check_options(
+    sphere_mesh: SphereMesh,
+    edges: str,
+    thickness: float,
+    joint_gap: float,
+    labels: IntArray | None,
+) -> None:
+    if edges not in get_args(EdgeMode):
+        raise InputError(f"edges must be bisector or intersection, not {edges!r}")
+    for name, value in (("thickness", thickness), ("joint gap", joint_gap)):
+        if not (np.isfinite(value) and value >= 0):
+            raise InputError(f"{name} must be a length of at least 0, not {value}")
+    count = sphere_mesh.mesh.n_faces
+    if labels is not None and len(labels) != count:
+        raise InputError(f"labels must name a mould for each of the {count} faces")
+
+
+def _inner_spheres(rows: FloatArray, thickness: float, ids: tuple[str, ...]) -> FloatArray:
+    sharpest = int(np.argmin(rows[:, 0]))
+    if 1 + 2 * rows[sharpest, 0] * thickness <= 0:
+        radius = -1 / (2 * rows[sharpest, 0])
+        raise InputError(
+            f"thickness {thickness:g} is not less than the smallest inner radius {radius:.6g} "
+            f"(panel {ids[sharpest]}); use thinner panels or larger moulds"
+        )
+    return offset(rows, -thickness)

@@ -1,0 +1,136 @@
+"""What keeps a panel from being made: crossing boundaries, lost corners, caps too deep."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .arcs import Arcs, arc_points
+from .arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
+from .panels import Panels, inner_panel_arcs, panel_arcs, panel_areas, select_panels
+from .spheres import evaluate, normals
+from .tolerances import CAP_ANGLE, CROSSING, PARALLEL_PLANES
+
+
+@dataclass(frozen=True)
+class RejectedPanel:
+    """
+    A panel that cannot be made.
+
+    Attributes
+    ----------
+    id : str
+        Name of the panel.
+    face_id : int
+        Its face.
+    reason : str
+        What is wrong, for a person.
+    """
+
+    id: str
+    face_id: int
+    reason: str
+
+
+def rejection_reasons(
+    panels: Panels, references: FloatArray, exists: BoolArray, inner_exists: BoolArray
+) -> dict[int, str]:
+    """Why panels cannot be made; the first reason that applies."""
+    owners = panels.corner_panels
+    reasons: dict[int, str] = {}
+
+    def note(is_bad: BoolArray, reason: str) -> None:
+        for panel in np.flatnonzero(is_bad):
+            reasons.setdefault(int(panel), reason)
+
+    def any_corner(is_bad: BoolArray) -> BoolArray:
+        return np.logical_or.reduceat(is_bad, panels.offsets[:-1])
+
+    is_fold = (panels.plane_normals == 0).all(axis=1)
+    note(any_corner(is_fold), "the face folds back onto a neighbour")
+    note(any_corner(~exists), "two cutting planes do not meet on the sphere at a corner")
+    note(any_corner(~inner_exists), "the thickness leaves no corner on the inner face")
+    sides = references[panels.next_corners] - references
+    arcs, inner_arcs = panel_arcs(panels), inner_panel_arcs(panels)
+    layers = [(panels.spheres, arcs, "outer")]
+    if panels.thickness > 0:
+        layers.append((panels.inner_spheres, inner_arcs, "inner"))
+    has_sides = panels.thickness > 0 or panels.joint_gap > 0
+    for rows, layer, name in layers:
+        backwards = dot(layer.ends - layer.starts, sides) <= 0
+        note(any_corner(backwards), f"an edge of the {name} face vanishes or runs backwards")
+        note(_crossing(panels, rows, layer), f"the boundary of the {name} face crosses itself")
+        if has_sides:
+            leans = any_corner(_leaning(rows[owners], layer))
+            note(leans, f"a cutting plane leans over the {name} face: cut it by bisectors")
+        steep = any_corner(_steep(rows[owners], layer))
+        note(steep, f"the cap of the {name} face opens more than 80 degrees: split the face")
+    sound = ~np.isin(np.arange(panels.n_panels), list(reasons))
+    # The others may reach where the area integral has no origin.
+    areas = np.ones(panels.n_panels)
+    areas[sound] = panel_areas(select_panels(panels, sound))
+    note(areas <= 0, "the boundary runs clockwise about the face normal")
+    return reasons
+
+
+def _leaning(rows: FloatArray, arcs: Arcs) -> BoolArray:
+    """Whether panels begin on the wrong side of a plane, or arcs exceed a half circle."""
+    middles = (arcs.starts + arcs.ends) / 2
+    return dot(normals(rows, middles), arcs.rises) <= 0
+
+
+def _steep(rows: FloatArray, arcs: Arcs) -> BoolArray:
+    """Whether arcs reach beyond the largest cap about the local origin."""
+    axis = unit(rows[:, 1:4])[:, None]
+    points = arc_points(arcs, np.array([-1.0, 0.0]))
+    return (dot(normals(rows[:, None], points), axis) < np.cos(CAP_ANGLE)).any(axis=1)
+
+
+def _crossing(panels: Panels, rows: FloatArray, arcs: Arcs) -> BoolArray:
+    """Whether two arcs of a panel meet elsewhere than in their common corner."""
+    result = np.zeros(panels.n_panels, bool)
+    for degree in np.unique(panels.degrees):
+        members = np.flatnonzero(panels.degrees == degree)
+        first = panels.offsets[members]
+        for i in range(degree):
+            for j in range(i + 1, degree):
+                result[members] |= _arcs_meet(rows[members], panels, arcs, first + i, first + j)
+    return result
+
+
+def _arcs_meet(
+    rows: FloatArray, panels: Panels, arcs: Arcs, first: IntArray, second: IntArray
+) -> BoolArray:
+    n, m = panels.plane_normals[first], panels.plane_normals[second]
+    direction = np.cross(n, m)
+    square = dot(direction, direction)
+    is_parallel = square < PARALLEL_PLANES**2
+    weight = np.where(is_parallel, 1.0, square)[:, None]
+    foot = (
+        panels.plane_offsets[first][:, None] * np.cross(m, direction)
+        + panels.plane_offsets[second][:, None] * np.cross(direction, n)
+    ) / weight
+    direction = unit(direction)
+    slope = dot(normals(rows, foot), direction)
+    value = evaluate(rows, foot)
+    discriminant = slope**2 - 4 * rows[:, 0] * value
+    is_real = (discriminant >= 0) & ~is_parallel
+    half = (slope + np.copysign(np.sqrt(np.maximum(discriminant, 0)), slope)) / 2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        near, far = value / half, half / rows[:, 0]
+    meets = np.zeros(len(first), bool)
+    for root in (near, far):
+        is_finite = is_real & np.isfinite(root)
+        point = foot + np.where(is_finite, root, 0.0)[:, None] * direction
+        meets |= is_finite & _inside(arcs, first, point) & _inside(arcs, second, point)
+    return meets
+
+
+def _inside(arcs: Arcs, ids: IntArray, points: FloatArray) -> BoolArray:
+    """Whether points of the circles of arcs lie strictly between the ends of the arcs."""
+    half = (arcs.ends[ids] - arcs.starts[ids]) / 2
+    relative = points - (arcs.starts[ids] + arcs.ends[ids]) / 2
+    along = dot(relative, half) / dot(half, half)
+    across = dot(relative, arcs.rises[ids])
+    sagitta = arcs.sagittas[ids]
+    on_this_side = np.abs(across - sagitta) <= np.abs(sagitta) + CROSSING * norm(half)
+    return (np.abs(along) < 1 - CROSSING) & on_this_side
