@@ -44,13 +44,7 @@ from OCP.TopoDS import (
 from ..kernel.arcs import ArcCircles, Arcs, arc_circles
 from ..kernel.arrays import FloatArray, IntArray, dot, norm, unit
 from ..kernel.errors import InputError
-from ..kernel.panels import (
-    Panels,
-    inner_panel_arcs,
-    move_origins,
-    panel_arcs,
-    scale_panels,
-)
+from ..kernel.panels import Panels, inner_panel_arcs, move_origins, panel_arcs, scale_panels
 from ..kernel.spheres import center_radius, signed_distance
 from ..kernel.tolerances import EPSILON
 
