@@ -304,7 +304,7 @@ def bend_vectors(local: LocalMap, points: FloatArray) -> tuple[FloatArray, Float
     offset = points - local.origin
     vectors = local.direction + local.strength * offset
     sizes = norm(np.asarray(points, float)) + norm(local.origin)
-    return vectors, 8 * EPSILON * (1 + local.strength * sizes)
+    return vectors, _ROUNDING * (1 + local.strength * sizes)
 
 
 def move_origin(local: LocalMap, origin: FloatArray) -> LocalMap:
@@ -377,7 +377,7 @@ def after(second: LocalMap, first: LocalMap) -> LocalMap:
         if norm(vector) <= 1024 * rounding:
             continue
         found = _follow(start, move_origin(second, start.image))
-        if best is None or found.strength < best.strength / 2:
+        if best is None or found.strength < best.strength / 16:
             best = found
     if best is None:
         raise InputError(
@@ -390,7 +390,11 @@ def after(second: LocalMap, first: LocalMap) -> LocalMap:
 def _follow(first: LocalMap, second: LocalMap) -> LocalMap:
     bend = first.strength * first.direction
     turned = first.rotation.T @ (second.strength * second.direction)
+    bends = first.strength + first.scale * second.strength
+    reach = 1 + bends * float(norm(first.origin) + norm(first.image) / first.scale)
     bend = bend + first.scale * turned
+    # An inversion undone leaves no bend but rounding.
+    bend = np.where(norm(bend) <= _ROUNDING * reach * bends, 0.0, bend)
     return make_local(
         first.origin, second.image, first.scale * second.scale,
         second.rotation @ first.rotation, bend,

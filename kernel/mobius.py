@@ -184,7 +184,7 @@ def reflection(row: ArrayLike) -> FloatArray:
     mirror = np.asarray(row, float)
     if mirror.shape != (5,) or not np.isfinite(mirror).all():
         raise InputError("a mirror must be one row of 5 finite numbers")
-    if kind(mirror) not in {int(Kind.SPHERE), int(Kind.PLANE)}:
+    if int(kind(mirror)) not in {int(Kind.SPHERE), int(Kind.PLANE)}:
         raise InputError(
             "only real spheres and planes are mirrors, not points or imaginary ones"
         )
