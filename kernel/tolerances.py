@@ -59,3 +59,12 @@ COINCIDENT: Final = 1e-6
 """Vertices of separate meshes closer than this, in mean edges, are one (1 µm per m)."""
 EXACT_BREP: Final = 1e-12
 """How far the parts of a Brep may lie apart, relative to the radius of its sphere."""
+
+LORENTZ: Final = 1e-9
+"""How far a transform may miss the Lorentz group, relative to its squared size."""
+
+TRANSFORM_DIGITS: Final = 1e-6
+"""A transform whose rotation is rounded by more (radians) is refused."""
+
+AT_INFINITY: Final = 1e-6
+"""Vertices this close, in mean edges, to the point sent to infinity have no usable image."""

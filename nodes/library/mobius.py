@@ -1,0 +1,117 @@
+"""Möbius transforms: they keep spheres, circles and the angles between them."""
+
+from typing import Annotated, TypeVar
+
+import numpy as np
+
+from ...kernel import mobius
+from ...kernel.arrays import FloatArray
+from ...kernel.errors import InputError, name_ids
+from ...kernel.mesh import Mesh
+from ...kernel.sphere_mesh import SphereMesh
+from ..node import node
+from ..ports import Port
+
+Geometry = TypeVar("Geometry", SphereMesh, Mesh, FloatArray)
+
+
+@node
+def inversion(center: FloatArray, radius: Annotated[float, Port(min=0)] = 1.0) -> FloatArray:
+    """
+    Inversion in a sphere: turns the model inside out about a point.
+
+    Parameters
+    ----------
+    center : (3,) float array
+        The point that is sent to infinity; spheres through it become planes.
+    radius : float
+        Radius of the sphere that stays in place.
+
+    Returns
+    -------
+    (5, 5) float array
+        The transform, for `apply_mobius` and `compose`.
+    """
+    return mobius.inversion(center, radius)
+
+
+@node
+def similarity(
+    scale: Annotated[float, Port(min=0)] = 1.0,
+    rotation: FloatArray | None = None,
+    translation: FloatArray | None = None,
+) -> FloatArray:
+    """
+    Scaling, then rotation, both about the origin, then translation.
+
+    Parameters
+    ----------
+    scale : float
+        Factor, more than 0.
+    rotation : (3,) or (3, 3) float array, optional
+        An axis whose length is the angle in degrees: (0, 0, 90) is a quarter turn about z,
+        counter-clockwise seen from above. Or an orthogonal matrix. No rotation by default.
+    translation : (3,) float array, optional
+        Shift; none by default.
+
+    Returns
+    -------
+    (5, 5) float array
+        The transform, for `apply_mobius` and `compose`.
+    """
+    if rotation is not None and np.shape(rotation) == (3,):
+        rotation = mobius.rotation_about(np.radians(rotation))
+    return mobius.similarity(scale, rotation, translation)
+
+
+@node
+def compose(transforms: list[FloatArray]) -> FloatArray:
+    """
+    One transform that does what several do one after another.
+
+    Parameters
+    ----------
+    transforms : list of (5, 5) float array
+        Transforms, the first is applied first.
+
+    Returns
+    -------
+    (5, 5) float array
+        The transform.
+    """
+    return mobius.compose(transforms)
+
+
+@node
+def apply_mobius(geometry: Geometry, transform: FloatArray) -> Geometry:
+    """
+    Carry geometry through a transform; the angles between spheres stay as they are.
+
+    Parameters
+    ----------
+    geometry : SphereMesh, Mesh, (N, 3) or (N, 5) float array
+        A sphere mesh, a mesh (its vertices are carried along), points or rows of spheres.
+    transform : (5, 5) float array
+        The transform.
+
+    Returns
+    -------
+    SphereMesh, Mesh, (N, 3) or (N, 5) float array
+        The same kind, elements in the same order. Where the transform turns right into left,
+        as every inversion does, faces run the other way round: outside stays outside.
+    """
+    if isinstance(geometry, SphereMesh):
+        return mobius.map_sphere_mesh(geometry, transform)
+    if isinstance(geometry, Mesh):
+        return mobius.map_mesh(geometry, transform)
+    rows = np.asarray(geometry, float)
+    if rows.ndim != 2 or rows.shape[1] not in {3, 5}:
+        raise InputError(
+            f"geometry must be points (N, 3) or rows of spheres (N, 5), not {rows.shape}"
+        )
+    bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
+    if len(bad):
+        raise InputError(f"rows {name_ids(bad.tolist())} of the geometry are not finite")
+    if rows.shape[1] == 3:
+        return mobius.map_points(rows, transform)
+    return mobius.map_spheres(rows, transform)
