@@ -1,5 +1,5 @@
 """
-The pictures of the README: a roof on eight moulds, and the reflections that prove it smooth.
+The pictures of README and docs, each drawn by one function.
 
     python examples/pictures.py docs/images
 """
@@ -7,15 +7,21 @@ The pictures of the README: a roof on eight moulds, and the reflections that pro
 import sys
 from pathlib import Path
 
+import numpy as np
 from PIL import Image
 
+from spheremesh import Mesh, SphereMesh
+from spheremesh.kernel.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.nodes import (
+    apply_mobius,
     cluster_radii,
     face_planes,
     fit_spheres,
+    inversion,
     minimize_angles,
     panels,
     roof_mesh,
+    torus_mesh,
 )
 from spheremesh.viewer.render import compare_image, render_image
 
@@ -45,9 +51,38 @@ def roof_zebra() -> Image.Image:
     )
 
 
+def pencil() -> Image.Image:
+    """Halves of nine spheres through one circle, from a dome over the plane to a bowl."""
+    turns = np.linspace(0, np.pi, 49)
+    half = np.stack([np.cos(turns), np.sin(turns), np.zeros(49)], axis=1)
+    angles = np.linspace(-1.2, 1.2, 9)
+    points = np.tile(half, (len(angles), 1))
+    mesh = Mesh(points, np.arange(len(points)).reshape(len(angles), 49))
+    rows = pencil_spheres(*circle_pencils(face_circles(mesh)[0]), angles)
+    spheres = SphereMesh.from_local(mesh, rows)
+    made = panels(spheres, labels=np.arange(len(angles)))
+    return render_image(made.panels, direction=(0.25, -1.0, 0.3), width=1000, height=700)
+
+
+def mobius() -> Image.Image:
+    """A panelled torus, and its image in an inversion."""
+    start = fit_spheres(torus_mesh(n_around=48, n_across=24))
+    torus = minimize_angles(start).sphere_mesh
+    image = apply_mobius(torus, inversion(center=[4.2, 1.0, 1.5], radius=4.0))
+    sheet = Image.new("RGB", (1600, 560))
+    for place, shape in enumerate((torus, image)):
+        made = panels(shape).panels
+        picture = render_image(made, color_by="radius", width=800, height=560)
+        sheet.paste(picture, (800 * place, 0))
+    return sheet
+
+
+PICTURES = {"roof": roof, "roof-zebra": roof_zebra, "pencil": pencil, "mobius": mobius}
+
+
 def main(folder: Path) -> None:
-    """Draw and write both pictures."""
-    for name, draw in (("roof", roof), ("roof-zebra", roof_zebra)):
+    """Draw and write every picture."""
+    for name, draw in PICTURES.items():
         path = folder / f"{name}.png"
         draw().save(path, optimize=True)
         print(f"{path}: {path.stat().st_size // 1000} kB")

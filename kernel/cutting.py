@@ -13,7 +13,7 @@ import numpy as np
 from .arcs import Arcs, sphere_arcs
 from .arrays import FloatArray, IntArray, dot, norm, unit
 from .errors import InputError
-from .mesh import face_centroids, local_corners, mean_edge_length
+from .mesh import face_centroids, face_normals, local_corners, mean_edge_length
 from .panel_checks import RejectedPanel, rejection_reasons
 from .panels import Panels, corner_points, panel_ids, select_panels
 from .sphere_mesh import SphereMesh
@@ -65,7 +65,7 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
     sphere_mesh : SphereMesh
         The sphere mesh, its nearly plane faces flattened (`flatten_nearly_plane`).
     edges : {"bisector", "intersection"}
-        ``bisector``: the plane through the two vertices that bisects the two spheres' normals.
+        ``bisector``: the plane through the two vertices that bisects the two faces of the mesh.
         ``intersection``: the plane of the circle in which the two spheres meet; where they
         are the same sphere or one is a plane, the bisecting one. Boundary edges are cut by the
         plane through their vertices and the normal of their sphere.
@@ -88,10 +88,11 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
     ends = starts[topology.next_corners]
     middles = (starts + ends) / 2
     rows = recenter(sphere_mesh.local_spheres[faces], middles)
-    upright = unit(rows[:, 1:4])
     other = rows[twins]
     is_interior = twins >= 0
-    upright = np.where(is_interior[:, None], upright + upright[twins], upright)
+    across = face_normals(mesh)[faces]
+    bisecting = across + across[twins]
+    upright = np.where(is_interior[:, None], bisecting, unit(rows[:, 1:4]))
     # No plane bisects two faces that fold back onto each other.
     upright[norm(upright) < SAME_PLANE] = 0
     plane_normals = unit(np.cross(upright, ends - starts))

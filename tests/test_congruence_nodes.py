@@ -10,7 +10,7 @@ from spheremesh.nodes import NodeWarning, envelope, sphere_congruence, torus_mes
 
 def test_a_congruence_in_a_graph() -> None:
     graph = Graph()
-    mesh = graph.add(torus_mesh, n_around=64, n_across=32)
+    mesh = graph.add(torus_mesh, n_around=64, n_across=32, major_radius=3.0)
     spheres = graph.add(sphere_congruence, mesh=mesh, kind="tangent", offset=0.8)
     surfaces = graph.add(envelope, mesh=mesh, spheres=spheres)
     plus, is_real = graph.run(surfaces.points_plus, surfaces.is_real)
@@ -20,7 +20,7 @@ def test_a_congruence_in_a_graph() -> None:
 
 
 def test_kinds_and_offsets_per_vertex() -> None:
-    mesh = torus_mesh(12, 6)
+    mesh = torus_mesh(12, 6, major_radius=3.0)
     assert sphere_congruence(mesh).shape == (72, 5)
     assert not np.allclose(
         sphere_congruence(mesh, "principal"),
@@ -31,7 +31,7 @@ def test_kinds_and_offsets_per_vertex() -> None:
 
 
 def test_spheres_that_do_not_meet_are_counted() -> None:
-    mesh = torus_mesh(24, 12)
+    mesh = torus_mesh(24, 12, major_radius=3.0)
     with pytest.warns(NodeWarning, match=r"% of the faces have no real envelope"):
         result = envelope(mesh, sphere_congruence(mesh, "tangent", 0.2))
     assert not result.is_real.any()
@@ -39,7 +39,7 @@ def test_spheres_that_do_not_meet_are_counted() -> None:
 
 
 def test_four_spheres_without_common_points_are_counted() -> None:
-    mesh = torus_mesh(24, 12)
+    mesh = torus_mesh(24, 12, major_radius=3.0)
     rows = sphere_congruence(mesh, "tangent", 2.0)
     rows[0] *= np.array([0.5, 1, 1, 1, 0])
     rows[0, 4] = rows[0, 1:4] @ mesh.vertices[0] - 2.0

@@ -59,7 +59,7 @@ def write_mesh(mesh: Mesh | SphereMesh, path: WritePath) -> str:
 
 @node
 def torus_mesh(
-    n_around: Count = 48, n_across: Count = 24, major_radius: Length = 3.0,
+    n_around: Count = 48, n_across: Count = 24, major_radius: Length = 2.0,
     minor_radius: Length = 1.0,
 ) -> Mesh:  # fmt: skip
     """

@@ -18,7 +18,7 @@ from spheremesh.kernel.circles import circle_pencils, face_circles, pencil_spher
 from spheremesh.kernel.cutting import edge_arcs, edge_gaps
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.fit import face_planes, fit_spheres
-from spheremesh.kernel.mesh import mean_edge_length
+from spheremesh.kernel.mesh import face_normals, mean_edge_length
 from spheremesh.kernel.pencil import minimize_angles, pencil_angles
 from spheremesh.kernel.sphere_mesh import intersection_angles
 from spheremesh.kernel.spheres import signed_distance
@@ -75,9 +75,7 @@ def test_tilt_of_two_spheres_in_closed_form() -> None:
     rows = spheres.spheres
     centers = rows[:, 1:4] / (2 * rows[:, :1])
     circle_normal = centers[1] - centers[0]
-    normals = rows[:, 1:4] - 2 * rows[:, :1] * np.array([0, 0.5, 0.0])
-    normals /= norm(normals)[:, None]
-    bisector_normal = np.cross(normals.sum(0), [0, 1.0, 0])
+    bisector_normal = np.cross(face_normals(mesh).sum(0), [0, 1.0, 0])
     cosine = abs(circle_normal @ bisector_normal) / (
         norm(circle_normal) * norm(bisector_normal)
     )

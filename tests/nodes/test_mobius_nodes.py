@@ -24,7 +24,7 @@ rows = apply_mobius(np.array([[0.5, 0, 0, 0, -0.5], [0, 1, 0, 0, 3]]), turned)
 np.testing.assert_allclose(rows[1], [0, 1, 0, 0, 3], atol=1e-15)
 assert rows.shape == (2, 5)
 
-net = torus_mesh(12, 6)
+net = torus_mesh(12, 6, major_radius=3.0)
 assert isinstance(apply_mobius(net, both), sm.Mesh)
 carried = apply_mobius(face_planes(net), similarity())
 assert isinstance(carried, sm.SphereMesh)
