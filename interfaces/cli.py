@@ -152,9 +152,10 @@ def _errors() -> Generator[None]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             yield
-    except (SpheremeshError, GraphError, NodeError) as error:
+    except (SpheremeshError, GraphError, NodeError, OSError) as error:
         cause = error.cause if isinstance(error, NodeError) else error
-        if not isinstance(cause, SpheremeshError | GraphError):
+        # An OSError is the disk's or the system's: full, too many files, a broken pipe.
+        if not isinstance(cause, SpheremeshError | GraphError | OSError):
             raise
         message = " ".join(str(cause).split())
         click.echo(f"spheremesh: {message}", err=True)

@@ -34,21 +34,37 @@ class RejectedPanel:
 def rejection_reasons(
     panels: Panels, references: FloatArray, exists: BoolArray, inner_exists: BoolArray
 ) -> dict[int, str]:
-    """Why panels cannot be made; the first reason that applies."""
+    """
+    Why panels cannot be made; of several reasons the first.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels with H corners, sound or not.
+    references : (H, 3) float array
+        Vertices of the mesh faces, local to the panels.
+    exists, inner_exists : (H,) bool array
+        Whether the corners of the outer and of the inner faces were found.
+
+    Returns
+    -------
+    dict of int to str
+        Reason by panel; panels that can be made do not occur.
+    """
     owners = panels.corner_panels
     reasons: dict[int, str] = {}
 
-    def note(is_bad: BoolArray, reason: str) -> None:
+    def _note(is_bad: BoolArray, reason: str) -> None:
         for panel in np.flatnonzero(is_bad):
             reasons.setdefault(int(panel), reason)
 
-    def any_corner(is_bad: BoolArray) -> BoolArray:
+    def _any_corner(is_bad: BoolArray) -> BoolArray:
         return np.logical_or.reduceat(is_bad, panels.offsets[:-1])
 
     is_fold = (panels.plane_normals == 0).all(axis=1)
-    note(any_corner(is_fold), "the face folds back onto a neighbour")
-    note(any_corner(~exists), "two cutting planes do not meet on the sphere at a corner")
-    note(any_corner(~inner_exists), "the thickness leaves no corner on the inner face")
+    _note(_any_corner(is_fold), "the face folds back onto a neighbour")
+    _note(_any_corner(~exists), "two cutting planes do not meet on the sphere at a corner")
+    _note(_any_corner(~inner_exists), "the thickness leaves no corner on the inner face")
     sides = references[panels.next_corners] - references
     arcs, inner_arcs = panel_arcs(panels), inner_panel_arcs(panels)
     layers = [(panels.spheres, arcs, "outer")]
@@ -57,18 +73,18 @@ def rejection_reasons(
     has_sides = panels.thickness > 0 or panels.joint_gap > 0
     for rows, layer, name in layers:
         backwards = dot(layer.ends - layer.starts, sides) <= 0
-        note(any_corner(backwards), f"an edge of the {name} face vanishes or runs backwards")
-        note(_crossing(panels, rows, layer), f"the boundary of the {name} face crosses itself")
+        _note(_any_corner(backwards), f"an edge of the {name} face vanishes or runs backwards")
+        _note(_crossing(panels, rows, layer), f"the boundary of the {name} face crosses itself")
         if has_sides:
-            leans = any_corner(_leaning(rows[owners], layer))
-            note(leans, f"a cutting plane leans over the {name} face: cut it by bisectors")
-        steep = any_corner(_steep(rows[owners], layer))
-        note(steep, f"the cap of the {name} face opens more than 80 degrees: split the face")
+            leans = _any_corner(_leaning(rows[owners], layer))
+            _note(leans, f"a cutting plane leans over the {name} face: cut it by bisectors")
+        steep = _any_corner(_steep(rows[owners], layer))
+        _note(steep, f"the cap of the {name} face opens more than 80 degrees: split the face")
     sound = ~np.isin(np.arange(panels.n_panels), list(reasons))
     # The others may reach where the area integral has no origin.
     areas = np.ones(panels.n_panels)
     areas[sound] = panel_areas(select_panels(panels, sound))
-    note(areas <= 0, "the boundary runs clockwise about the face normal")
+    _note(areas <= 0, "the boundary runs clockwise about the face normal")
     return reasons
 
 
