@@ -4,7 +4,7 @@ from typing import Annotated, TypeVar
 
 import numpy as np
 
-from ...kernel import mobius
+from ...kernel import mobius, mobius_maps
 from ...kernel.arrays import FloatArray
 from ...kernel.errors import InputError, name_ids
 from ...kernel.mesh import Mesh
@@ -101,9 +101,9 @@ def apply_mobius(geometry: Geometry, transform: FloatArray) -> Geometry:
         as every inversion does, faces run the other way round: outside stays outside.
     """
     if isinstance(geometry, SphereMesh):
-        return mobius.map_sphere_mesh(geometry, transform)
+        return mobius_maps.map_sphere_mesh(geometry, transform)
     if isinstance(geometry, Mesh):
-        return mobius.map_mesh(geometry, transform)
+        return mobius_maps.map_mesh(geometry, transform)
     rows = np.asarray(geometry, float)
     if rows.ndim != 2 or rows.shape[1] not in {3, 5}:
         raise InputError(
@@ -113,5 +113,5 @@ def apply_mobius(geometry: Geometry, transform: FloatArray) -> Geometry:
     if len(bad):
         raise InputError(f"rows {name_ids(bad.tolist())} of the geometry are not finite")
     if rows.shape[1] == 3:
-        return mobius.map_points(rows, transform)
-    return mobius.map_spheres(rows, transform)
+        return mobius_maps.map_points(rows, transform)
+    return mobius_maps.map_spheres(rows, transform)

@@ -23,17 +23,19 @@ from spheremesh.kernel.mobius import (
     inversion,
     is_orthogonal,
     is_tangent,
+    polar_hyperplane,
+    reflection,
+    rotation_about,
+    similarity,
+)
+from spheremesh.kernel.mobius_maps import (
     map_arcs,
     map_circles,
     map_mesh,
     map_points,
     map_sphere_mesh,
     map_spheres,
-    polar_hyperplane,
-    reflection,
-    rotation_about,
     sent_to_infinity,
-    similarity,
 )
 from spheremesh.kernel.pencil import minimize_angles
 from spheremesh.kernel.sphere_mesh import intersection_angles, vertex_error
