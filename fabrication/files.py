@@ -10,6 +10,26 @@ from pathlib import Path
 from ..kernel.errors import InputError
 
 
+def check_suffix(path: str | os.PathLike[str], *suffixes: str) -> None:
+    """
+    Refuse a file name that does not say what will be in the file.
+
+    Parameters
+    ----------
+    path : path
+        File to write.
+    *suffixes : str
+        What its name may end in, in lower case.
+
+    Raises
+    ------
+    InputError
+        If it ends in something else.
+    """
+    if Path(path).suffix.lower() not in suffixes:
+        raise InputError(f"cannot write {path}: end the name in {' or '.join(suffixes)}")
+
+
 @contextmanager
 def replacing(path: str | os.PathLike[str]) -> Generator[Path]:
     """

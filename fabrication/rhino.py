@@ -21,11 +21,11 @@ from ..kernel.arrays import FloatArray
 from ..kernel.colors import UNLABELLED, mould_color
 from ..kernel.errors import InputError
 from ..kernel.panel_checks import RejectedPanel
-from ..kernel.panels import Panels, panel_areas
+from ..kernel.panels import Panels, neighbor_ids, panel_areas
 from ..kernel.spheres import center_radius
 from .brep_audit import verify_breps
 from .brep_layout import read_brep_streams
-from .files import replacing
+from .files import check_suffix, replacing
 from .opennurbs import brep_streams, edge_streams
 from .units import millimeters_per
 
@@ -33,7 +33,8 @@ VERSIONS: Final = (6, 7, 8)
 """Versions of Rhino whose files can be written."""
 
 TEXT_KEYS: Final = (
-    "id", "face", "mould", "radius", "centre", "area", "thickness", "neighbours", "units",
+    "id", "face", "mould", "bulge", "radius", "center", "area", "thickness", "neighbors",
+    "units",
 )  # fmt: skip
 """Keys of the user text of every panel, see `panel_text`."""
 
@@ -49,8 +50,8 @@ _ANGLE_TOLERANCE = 0.1
 _BLACK = (0, 0, 0)
 _NAMESPACE = uuid5(NAMESPACE_URL, "urn:spheremesh:3dm")
 _NOTE = (
-    "radius: signed; the centre lies at the distance radius along the panel's outward normal, "
-    "so domes have negative radii. neighbours: beyond each edge in order, - at the boundary."
+    "bulge: out for domes, in for dishes, seen along the panel's outward normal. "
+    "neighbors: beyond each edge in order, - where there is no panel."
 )
 
 
@@ -103,6 +104,7 @@ def write_3dm(
     has its colour on its layer and as a material. User text: `panel_text`. Object ids depend
     on the panel's id and the object's role only. Two runs differ in the time of day alone.
     """
+    check_suffix(path, ".3dm")
     if version not in VERSIONS:
         raise InputError(f"unknown Rhino version {version}: use one of {VERSIONS}")
     tolerance = _TOLERANCE / millimeters_per(units)
@@ -171,20 +173,21 @@ def panel_text(panels: Panels, units: str) -> list[dict[str, str]]:
     Returns
     -------
     list of dict of str to str
-        P mappings with the keys `TEXT_KEYS`. ``radius`` is signed: the centre lies at that
-        distance along the outward normal N, so it is negative for domes; ``plane`` for planes,
-        which have the centre ``-``. ``mould`` counts from 01, as the layers do; ``-`` without
-        mould. ``neighbours`` are the panels beyond each edge, in order; ``-`` on the boundary
-        or where the neighbour was rejected. Lengths and areas are in model units.
+        P mappings with the keys `TEXT_KEYS`. ``bulge`` is out, in or flat, seen along the
+        outward normal; ``radius`` is ``plane`` for planes, which have the center ``-``.
+        ``mould`` counts from 01, as the layers do; ``-`` without mould. ``neighbors`` are the
+        panels beyond each edge, in order; ``-`` where there is none. Lengths and areas are in
+        model units.
     """
     centers, radii = _spheres(panels)
-    names = dict(zip(panels.face_ids.tolist(), panels.ids, strict=True))
-    neighbors = [names.get(face, "-") for face in panels.neighbors.tolist()]
+    neighbors = [name or "-" for name in neighbor_ids(panels)]
+    signs: list[float] = np.sign(panels.spheres[:, 0]).tolist()
     starts: list[int] = panels.offsets.tolist()
     lines = zip(
         panels.ids,
         map(str, panels.face_ids.tolist()),
         map(_mould_name, panels.labels.tolist()),
+        [{-1.0: "out", 0.0: "flat", 1.0: "in"}[sign] for sign in signs],
         [f"{r:.12g}" if np.isfinite(r) else "plane" for r in radii.tolist()],
         [" ".join(f"{x:.12g}" for x in c) if c[0] < np.inf else "-" for c in centers.tolist()],
         [f"{area:.12g}" for area in panel_areas(panels).tolist()],
@@ -197,10 +200,9 @@ def panel_text(panels: Panels, units: str) -> list[dict[str, str]]:
 
 
 def _spheres(panels: Panels) -> tuple[FloatArray, FloatArray]:
-    """Centres in model coordinates and signed radii; infinite for planes."""
-    centers, _ = center_radius(panels.spheres)
-    with np.errstate(divide="ignore"):
-        return centers + panels.origins, 1 / (2 * panels.spheres[:, 0])
+    """Centres in model coordinates and radii; infinite for planes."""
+    centers, squares = center_radius(panels.spheres)
+    return centers + panels.origins, np.sqrt(squares)
 
 
 def _mould_name(label: int) -> str:

@@ -16,7 +16,7 @@ import numpy as np
 from ..kernel.arcs import arc_circles, arc_lengths, arc_points
 from ..kernel.arrays import FloatArray, IntArray, dot, norm, unit
 from ..kernel.errors import InputError
-from ..kernel.panels import Panels, panel_arcs, panel_areas, panel_volumes
+from ..kernel.panels import Panels, neighbor_ids, panel_arcs, panel_areas, panel_volumes
 from ..kernel.spheres import center_radius
 from .files import replacing
 from .units import millimeters_per
@@ -44,7 +44,7 @@ def schedule_rows(panels: Panels, units: str) -> list[dict[str, Any]]:
         ``radius_mm`` and ``center_mm`` (None for planes), ``area_m2``, ``volume_m3``,
         ``thickness_mm``, ``size_mm`` (length, width and rise of the box around the outer face,
         its length along the first edge's chord), ``edge_lengths_mm``, ``arc_radii_mm`` (None
-        for straight edges), ``sagittas_mm``, ``neighbors`` (ids; None on the boundary) and
+        for straight edges), ``sagittas_mm``, ``neighbors`` (ids; None where there is none) and
         ``corners_mm``. Edge i runs from corner i to the next.
     """
     scale = millimeters_per(units)
@@ -58,7 +58,7 @@ def schedule_rows(panels: Panels, units: str) -> list[dict[str, Any]]:
     sizes = _bounding_sizes(panels) * scale
     lengths, sagittas = arc_lengths(arcs) * scale, arcs.sagittas * scale
     corners = (panels.corners + panels.origins[panels.corner_panels]) * scale
-    names = _neighbor_names(panels)
+    names = neighbor_ids(panels)
 
     rows: list[dict[str, Any]] = []
     for i, name in enumerate(panels.ids):
@@ -183,11 +183,6 @@ def _cell(value: object) -> str:
 
 def _finite(values: FloatArray) -> list[float | None]:
     return [float(value) if np.isfinite(value) else None for value in values]
-
-
-def _neighbor_names(panels: Panels) -> list[str | None]:
-    width = len(panels.ids[0]) - 1 if panels.ids else 0
-    return [f"P{face:0{width}d}" if face >= 0 else None for face in panels.neighbors.tolist()]
 
 
 def _bounding_sizes(panels: Panels) -> FloatArray:

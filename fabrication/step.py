@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final, Literal
 from ..kernel.colors import Color, mould_color, mould_name
 from ..kernel.errors import InputError, MissingLibraryError
 from ..kernel.panels import Panels
-from .files import replacing
+from .files import check_suffix, replacing
 from .units import millimeters_per
 
 if TYPE_CHECKING:
@@ -71,6 +71,7 @@ def write_step(
     and directions with 14 decimals: an arc of radius R meets its corners within ``R / 10¹⁴``.
     """
     target = Path(path)
+    check_suffix(target, ".step", ".stp")
     if panels.n_panels == 0:
         raise InputError(f"there are no panels to write to {target}")
     if schema not in ("AP214IS", "AP242DIS"):

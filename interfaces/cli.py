@@ -8,17 +8,19 @@ Exit codes: 0 done, 1 a library of the system is missing, 2 usage, 3 bad input, 
 """
 
 import json
+import math
 import sys
 import textwrap
 import warnings
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from contextlib import chdir, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import click
 
 if TYPE_CHECKING:
+    from ..nodes.graph import Graph
     from ..nodes.node import Node
     from ..nodes.ports import Port
     from .panel import Progress
@@ -65,14 +67,11 @@ def panel(  # numpydoc ignore=PR01
 
     Reads OBJ, OFF, PLY, STL and .3dm. Without MESH, a demonstration roof is panelled.
     """
-    from .panel import PanelOptions, run_panel
+    from .panel import PanelOptions, panel_graph, run_job
 
     with _errors(), _progress() as progress:
-        report = run_panel(PanelOptions(**options), out, progress)
-    if as_json:
-        click.echo(json.dumps(report, indent=1))
-    else:
-        _print_summary(report, out)
+        report, files = run_job(panel_graph(PanelOptions(**options)), out, progress)
+    _print_report(report, out, files, as_json=as_json)
     if strict and report["panels"]["rejected"]:
         sys.exit(GATE_FAILED)
 
@@ -84,33 +83,57 @@ def panel(  # numpydoc ignore=PR01
 @click.option(
     "-o", "--out", default=".", type=click.Path(path_type=Path), help="Folder for its files."
 )
+@click.option("--strict", is_flag=True, help="Exit with 5 if a panel is rejected.")
 @click.option("--json", "as_json", is_flag=True, help="Print the targets' values as JSON.")
 def run(  # numpydoc ignore=PR01
     graph_file: Path, settings: tuple[str, ...], targets: tuple[str, ...], out: Path, *,
-    as_json: bool,
+    strict: bool, as_json: bool,
 ) -> None:  # fmt: skip
     """
     Run a graph: all of it, or what a target needs.
 
-    Relative paths are read from the working directory and written to the output folder.
+    Relative paths are read from the working directory and written to the output folder. The
+    graph of a panel job writes its report and itself anew.
     """
+    from .panel import is_panel_job, run_job
+
     with _errors(), _progress() as progress:
-        from ..fabrication.files import replacing_all
         from ..nodes.graph import Graph
 
-        graph = Graph.load(graph_file)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            graph = Graph.load(graph_file)
+        for warning in caught:
+            click.echo(f"warning: {warning.message}", err=True)
         graph.set(**dict(_setting(text) for text in settings))
-        names = targets or tuple(step.name for step in graph.ends)
-        here = Path.cwd()
-        with replacing_all(out) as staging, chdir(staging):
-            results = graph.run(*names, on_step=progress, read_from=here)
-        values = (results,) if len(names) == 1 else results
-    for name, value in zip(names, values, strict=True):
-        if not as_json:
-            click.echo(f"{name}: {_text(value)}")
+        if targets or not is_panel_job(graph):
+            _run_targets(graph, targets, out, progress, as_json=as_json)
+            return
+        report, files = run_job(graph, out, progress)
+    _print_report(report, out, files, as_json=as_json)
+    if strict and report["panels"]["rejected"]:
+        sys.exit(GATE_FAILED)
+
+
+def _run_targets(
+    graph: "Graph", targets: tuple[str, ...], out: Path, progress: "Progress", *, as_json: bool
+) -> None:
+    from ..fabrication.files import replacing_all
+
+    names = targets or tuple(step.name for step in graph.ends)
+    here = Path.cwd()
+    with replacing_all(out) as staging, chdir(staging):
+        results = graph.run(*names, on_step=progress, read_from=here)
+    values = (results,) if len(names) == 1 else results
+    for messages in graph.messages.values():
+        for text in messages:
+            click.echo(f"warning: {text}", err=True)
+    plain = {name: _plain(value) for name, value in zip(names, values, strict=True)}
     if as_json:
-        content = {name: _plain(value) for name, value in zip(names, values, strict=True)}
-        click.echo(json.dumps(content, indent=1))
+        click.echo(json.dumps(plain, indent=1, allow_nan=False))
+        return
+    for name, value in plain.items():
+        click.echo(f"{name}: {value if isinstance(value, str) else json.dumps(value)}")
 
 
 @main.command()
@@ -194,20 +217,26 @@ def _setting(text: str) -> tuple[str, Any]:
         return name, value
 
 
-def _print_summary(report: dict[str, Any], out: Path) -> None:
-    angles, panels, moulds = report["angles_deg"], report["panels"], report["moulds"]
+def _print_report(
+    report: dict[str, Any], out: Path, files: tuple[str, ...], *, as_json: bool
+) -> None:
+    """Warnings and rejected panels on standard error; the report, or what matters of it."""
     for text in report["warnings"]:
         click.echo(f"warning: {text}", err=True)
-    for rejected in panels["rejected"]:
+    for rejected in report["panels"]["rejected"]:
         click.echo(f"rejected: {rejected['id']}: {rejected['reason']}", err=True)
-    for path in sorted(out.iterdir()):
-        click.echo(f"  {path}")
-    count = moulds["count"] or panels["written"]
+    if as_json:
+        click.echo(json.dumps(report, indent=1))
+        return
+    for name in files:
+        click.echo(f"  {out / name}")
+    planar, spherical = report["angles_deg"]["planar"], report["angles_deg"]["spherical"]
     click.echo(
-        f"angle between neighbours {angles['planar']['mean']:.2f} degrees with planes, "
-        f"{angles['spherical']['mean']:.2f} with spheres"
+        f"angle between neighbours, mean (largest): {planar['mean']:.2f} ({planar['max']:.1f}) "
+        f"degrees with planes, {spherical['mean']:.2f} ({spherical['max']:.1f}) with spheres"
     )
-    click.echo(f"moulds {count}")
+    click.echo(f"moulds {report['moulds']['count'] or 'not asked for: a radius per panel'}")
+    panels = report["panels"]
     click.echo(f"panels {panels['written']} written, {len(panels['rejected'])} rejected")
 
 
@@ -235,18 +264,18 @@ def _port_facts(port: "Port") -> str:
 
 
 def _plain(value: Any) -> Any:  # noqa: ANN401
-    """A JSON value of a result; what has no JSON form is described."""
+    """A JSON value of a result: no infinities; what has no JSON form is described."""
     if hasattr(value, "_asdict"):
-        return {name: _plain(item) for name, item in value._asdict().items()}
+        value = value._asdict()
     if hasattr(value, "tolist"):
-        return value.tolist()
-    try:
-        json.dumps(value)
-    except TypeError:
-        return type(value).__name__
-    return value
-
-
-def _text(value: Any) -> str:  # noqa: ANN401
-    plain = _plain(value)
-    return plain if isinstance(plain, str) else json.dumps(plain)
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        items = cast("Mapping[str, Any]", value)
+        return {str(name): _plain(item) for name, item in items.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in cast("list[Any]", value)]
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    return type(value).__name__

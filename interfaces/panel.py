@@ -10,7 +10,9 @@ from typing import Any, Literal
 
 from .. import __version__
 from ..fabrication.files import replacing_all
-from ..kernel.mesh import Mesh
+from ..kernel.errors import InputError
+from ..kernel.mesh import Mesh, mean_edge_length
+from ..kernel.sphere_mesh import SphereMesh, vertex_error
 from ..nodes.graph import Graph
 
 Progress = Callable[[str, str], None]
@@ -93,14 +95,35 @@ def panel_graph(options: PanelOptions) -> Graph:
     return graph
 
 
-def run_panel(options: PanelOptions, folder: Path, progress: Progress) -> dict[str, Any]:
+def is_panel_job(graph: Graph) -> bool:
+    """
+    Whether a graph is the main job, perhaps with other values and further steps.
+
+    Parameters
+    ----------
+    graph : Graph
+        A graph.
+
+    Returns
+    -------
+    bool
+        Whether it has the steps that the report is made of.
+    """
+    steps = {name: step.node.name for name, step in graph.steps.items()}
+    needed = {"optimum": "minimize_angles", "panels": "panels", "step": "write_step"}
+    return "mesh" in steps and needed.items() <= steps.items()
+
+
+def run_job(
+    graph: Graph, folder: Path, progress: Progress
+) -> tuple[dict[str, Any], tuple[str, ...]]:
     """
     Run the main job and write all of its files, or none.
 
     Parameters
     ----------
-    options : PanelOptions
-        What is asked for.
+    graph : Graph
+        A graph as made by `panel_graph`. Relative paths are read from the working directory.
     folder : Path
         Where the files go; made if it does not exist.
     progress : callable
@@ -108,30 +131,42 @@ def run_panel(options: PanelOptions, folder: Path, progress: Progress) -> dict[s
 
     Returns
     -------
-    dict
+    report : dict
         The report, as written to ``report.json``.
+    files : tuple of str
+        Names of the files written.
 
     Raises
     ------
     InputError, NodeError, GraphError
-        If the input cannot be used; nothing is written then.
+        If the input cannot be used or no panel can be made; nothing is written then.
     """
     began = time.perf_counter()
     clock = _StepClock(progress)
-    graph = panel_graph(options)
+    here = Path.cwd()
     with replacing_all(folder) as staging:
         with chdir(staging):
-            graph.run(*graph.ends, on_step=clock.note)
+            _refuse_nothing(graph.run("panels.report", on_step=clock.note, read_from=here))
+            graph.run(*graph.ends, on_step=clock.note, read_from=here)
+            report = _report(graph, here)
         graph.save(staging / "graph.json")
-        seconds = {
+        report["seconds"] = {
             "total": time.perf_counter() - began,
-            "optimize": clock.seconds["optimum"],
-            "step": clock.seconds["step"],
+            "optimize": clock.seconds.get("optimum", 0.0),
+            "step": clock.seconds.get("step", 0.0),
         }
-        report = _report(graph, options, seconds)
         text = json.dumps(report, indent=1, allow_nan=False) + "\n"
         (staging / "report.json").write_text(text, encoding="utf-8")
-    return report
+        files = tuple(sorted(path.name for path in staging.iterdir()))
+    return report, files
+
+
+def _refuse_nothing(cut: Mapping[str, Any]) -> None:
+    if cut["written"] == 0:
+        rejected = cut["rejected"]
+        shown = "; ".join(f"{panel['id']}: {panel['reason']}" for panel in rejected[:3])
+        more = f"; {len(rejected) - 3} more" if len(rejected) > 3 else ""
+        raise InputError(f"none of the {len(rejected)} panels can be made: {shown}{more}")
 
 
 class _StepClock:
@@ -146,39 +181,43 @@ class _StepClock:
         now = time.perf_counter()
         if state == "running":
             self._began = now
-        else:
+        elif state != "cached":
             self.seconds[step] = now - self._began
         self._progress(step, state)
 
 
-def _report(
-    graph: Graph, options: PanelOptions, seconds: Mapping[str, float]
-) -> dict[str, Any]:
-    mesh: Mesh = graph.run("mesh")
-    optimum: Mapping[str, Any] = graph.run("optimum.report")
-    panels: Mapping[str, Any] = graph.run("panels.report")
-    angles = dict(optimum["angles_deg"])
+def _report(graph: Graph, read_from: Path) -> dict[str, Any]:
+    names = ["mesh", "optimum.report", "optimum.sphere_mesh", "panels.report"]
+    is_clustered = "moulds" in graph.steps
+    if is_clustered:
+        names += ["moulds.report", "moulds.sphere_mesh"]
+    values = dict(zip(names, graph.run(*names, read_from=read_from), strict=True))
+    mesh: Mesh = values["mesh"]
+    built: SphereMesh = values["moulds.sphere_mesh" if is_clustered else "optimum.sphere_mesh"]
+    angles = dict(values["optimum.report"]["angles_deg"])
     moulds: Mapping[str, Any] = {"count": 0, "radii": [], "panels_per_mould": []}
-    if options.moulds is not None:
-        clusters: Mapping[str, Any] = graph.run("moulds.report")
+    if is_clustered:
+        clusters = values["moulds.report"]
         # What is built counts as spherical; what the moulds cost is there to compare.
         angles |= {"spherical": clusters["angles_deg"], "unclustered": angles["spherical"]}
         moulds = {name: clusters[name] for name in moulds}
+    miss = float(vertex_error(built).max())
+    cut = values["panels.report"]
+    source = graph.steps["mesh"]
     return {
         "spheremesh": __version__,
         "input": {
-            "path": str(options.mesh) if options.mesh else "roof_mesh",
+            "path": str(source.inputs.get("path", source.node.name)),
             "vertices": mesh.n_vertices,
             "faces": mesh.n_faces,
-            "units": options.units,
+            "units": graph.units,
         },
         "angles_deg": angles,
-        "vertex_error": dict(optimum["vertex_error"]),
-        "edge_gap": dict(panels["edge_gap"]),
+        "vertex_error": {"max": miss, "relative_to_edge": miss / mean_edge_length(mesh)},
+        "edge_gap": dict(cut["edge_gap"]),
         "moulds": dict(moulds),
         "support": None,
-        "panels": {"written": panels["written"], "rejected": list(panels["rejected"])},
+        "panels": {"written": cut["written"], "rejected": list(cut["rejected"])},
         "beams": {"written": 0, "rejected": []},
-        "seconds": dict(seconds),
         "warnings": [text for messages in graph.messages.values() for text in messages],
     }

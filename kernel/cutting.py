@@ -162,7 +162,8 @@ def edge_gaps(sphere_mesh: SphereMesh, edges: EdgeMode) -> FloatArray:
     Returns
     -------
     (E,) float array
-        Gaps at the ends and in the middle of the edges, the larger of them, in model units.
+        The largest of the gaps at the two ends and in the middle of each edge, in model units;
+        NaN where an arc does not exist.
 
     References
     ----------
@@ -174,12 +175,13 @@ def edge_gaps(sphere_mesh: SphereMesh, edges: EdgeMode) -> FloatArray:
     plane_normals, plane_offsets = cutting_planes(sphere_mesh, edges)
     starts = local_corners(mesh)
     ends = starts[topology.next_corners]
-    points, _ = corner_points(rows, plane_normals, plane_offsets, mesh.offsets, starts)
-    shifts = points - starts
+    points, exists = corner_points(rows, plane_normals, plane_offsets, mesh.offsets, starts)
+    shifts = np.where(exists[:, None], points - starts, np.nan)
     middles = (starts + ends) / 2
     rises = unit(np.cross(ends - starts, plane_normals))
     feet = middles + (plane_offsets - dot(plane_normals, middles))[:, None] * plane_normals
-    heights, _ = meet_lines(rows, feet, rises)
+    heights, exists = meet_lines(rows, feet, rises)
+    heights = np.where(exists, heights, np.nan)
 
     first, second = topology.edge_corners, topology.twins[topology.edge_corners]
     following = topology.next_corners
@@ -189,9 +191,11 @@ def edge_gaps(sphere_mesh: SphereMesh, edges: EdgeMode) -> FloatArray:
     return np.maximum(middle_gap, np.maximum(start_gap, end_gap))
 
 
-def gap_report(sphere_mesh: SphereMesh, edges: EdgeMode) -> dict[str, float]:
+def gap_report(
+    sphere_mesh: SphereMesh, edges: EdgeMode, face_ids: IntArray
+) -> dict[str, float]:
     """
-    Summary of the gaps between neighbouring arcs.
+    Summary of the gaps between the arcs of neighbouring panels.
 
     Parameters
     ----------
@@ -199,18 +203,26 @@ def gap_report(sphere_mesh: SphereMesh, edges: EdgeMode) -> dict[str, float]:
         The sphere mesh.
     edges : {"bisector", "intersection"}
         How panels are cut.
+    face_ids : (P,) int array
+        Faces whose panels are made; edges of others do not count.
 
     Returns
     -------
     dict of str to float
         ``max`` and ``mean`` in model units, ``relative_to_edge`` the maximum over the mean
-        edge length; zeros for a mesh without interior edges.
+        edge length, ``edges`` the number of edges measured; zeros if there are none.
     """
-    gaps = edge_gaps(sphere_mesh, edges)
+    is_made = np.zeros(sphere_mesh.mesh.n_faces, bool)
+    is_made[face_ids] = True
+    between = is_made[sphere_mesh.mesh.topology.edge_faces].all(axis=1)
+    gaps = edge_gaps(sphere_mesh, edges)[between]
     largest = float(gaps.max(initial=0.0))
-    mean = float(gaps.mean()) if len(gaps) else 0.0
-    edge = mean_edge_length(sphere_mesh.mesh)
-    return {"max": largest, "mean": mean, "relative_to_edge": largest / edge}
+    return {
+        "max": largest,
+        "mean": float(gaps.mean()) if len(gaps) else 0.0,
+        "relative_to_edge": largest / mean_edge_length(sphere_mesh.mesh),
+        "edges": len(gaps),
+    }
 
 
 def cut_panels(

@@ -79,7 +79,10 @@ def rejection_reasons(
             leans = _any_corner(_leaning(rows[owners], layer))
             _note(leans, f"a cutting plane leans over the {name} face: cut it by bisectors")
         steep = _any_corner(_steep(rows[owners], layer))
-        _note(steep, f"the cap of the {name} face opens more than 80 degrees: split the face")
+        _note(
+            steep,
+            f"the {name} face reaches more than 80 degrees from its middle: split it",
+        )
     sound = ~np.isin(np.arange(panels.n_panels), list(reasons))
     # The others may reach where the area integral has no origin.
     areas = np.ones(panels.n_panels)

@@ -197,6 +197,24 @@ def panel_ids(n_faces: int) -> tuple[str, ...]:
     return tuple(f"P{face:0{width}d}" for face in range(n_faces))
 
 
+def neighbor_ids(panels: Panels) -> list[str | None]:
+    """
+    Panel beyond each edge, by name.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels with H corners.
+
+    Returns
+    -------
+    list of str or None
+        H names; None on the boundary and where the panel beyond is not among these.
+    """
+    names = dict(zip(panels.face_ids.tolist(), panels.ids, strict=True))
+    return [names.get(face) for face in panels.neighbors.tolist()]
+
+
 def select_panels(panels: Panels, keep: BoolArray) -> Panels:
     """
     Some of the panels.

@@ -153,6 +153,9 @@ class Graph:
             If the node, an input or a type is wrong; the message names both ends.
         """
         found = find_node(node)
+        if name is not None and not isinstance(name, str):  # pyright: ignore[reportUnnecessaryIsInstance]
+            inputs_known = ", ".join(found.inputs)
+            raise GraphError(f"{found.name}: wire inputs by name; they are {inputs_known}")
         if name is None:
             name = _free_name(found.name, self._steps)
         elif name in self._steps:

@@ -56,7 +56,7 @@ def sweep(
         As for `Graph.run`.
     executor : concurrent.futures.Executor, optional
         Runs the combinations. It gets the graph as JSON, so all values must have a form
-        there.
+        there. A process pool must spawn its processes, not fork them.
     **params : iterable
         The values of each slider to combine, the last varying fastest.
 
@@ -75,6 +75,7 @@ def sweep(
         graph.check_params(dict(zip(params, values, strict=True))) for values in product(*axes)
     ]
     if executor is not None:
+        _refuse_fork(executor)
         return list(zip(points, _run_on(executor, graph, targets, points), strict=True))
     before = {name: param.value for name, param in graph.params.items()}
     results: list[Any] = []
@@ -85,6 +86,16 @@ def sweep(
     finally:
         graph.set(**before)
     return list(zip(points, results, strict=True))
+
+
+def _refuse_fork(executor: Executor) -> None:
+    """A forked process inherits the locks of libraries' threads, and waits for ever."""
+    context = getattr(executor, "_mp_context", None)
+    if context is not None and context.get_start_method() == "fork":
+        raise GraphError(
+            "the executor forks its processes, which can hang after a graph has run: give it "
+            "mp_context=multiprocessing.get_context('spawn')"
+        )
 
 
 def _run_on(

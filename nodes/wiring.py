@@ -105,6 +105,9 @@ def own(graph: object, target: Step | Wire | Param) -> None:
     GraphError
         If it is not.
     """
+    if not isinstance(target, Step | Wire | Param):  # pyright: ignore[reportUnnecessaryIsInstance]
+        kind = type(target).__name__
+        raise GraphError(f"a target is a step, an output, a slider or its name, not {kind}")
     owner = target.step if isinstance(target, Wire) else target
     if owner.graph is not graph:
         name = str(target) if isinstance(target, Wire) else target.name

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Literal, NamedTuple
 
 from ...fabrication import rhino, schedule, step
-from ...fabrication.files import replacing
+from ...fabrication.files import check_suffix, replacing
 from ...kernel import cutting
 from ...kernel.arrays import IntArray
 from ...kernel.errors import name_ids
@@ -55,8 +55,9 @@ def panels(
     panels : Panels
         The panels that can be made.
     report : mapping
-        ``edge_gap`` (max, mean, relative_to_edge) between the arcs of neighbours before the
-        joint, ``written`` and ``rejected`` (id and reason of each panel that cannot be made).
+        ``edge_gap`` (max, mean, relative_to_edge, over so many edges) between the arcs of
+        neighbouring panels, at the ends and in the middle, before the joint; ``written`` and
+        ``rejected`` (id and reason of each panel that cannot be made).
     """
     made, rejected = cutting.cut_panels(sphere_mesh, edges, thickness, joint_gap, labels)
     if rejected:
@@ -65,7 +66,7 @@ def panels(
             f"{name_ids([panel.face_id for panel in rejected])} ({rejected[0].reason})"
         )
     report = {
-        "edge_gap": cutting.gap_report(sphere_mesh, edges),
+        "edge_gap": cutting.gap_report(sphere_mesh, edges, made.face_ids),
         "written": made.n_panels,
         "rejected": [{"id": panel.id, "reason": panel.reason} for panel in rejected],
     }
@@ -189,6 +190,7 @@ def render(
     str
         The path.
     """
+    check_suffix(path, ".png")
     image = render_image(
         panels, color_by=color_by, shading=shading, width=width, height=height, legend=legend
     )

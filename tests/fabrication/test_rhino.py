@@ -104,19 +104,20 @@ def test_user_text(model: Any, panels: Panels) -> None:  # noqa: ANN401
         assert float(text["thickness"]) == 0.02
         a, b = panels.spheres[i, 0], panels.spheres[i, 1:4]
         if a == 0:
-            assert (text["radius"], text["centre"]) == ("plane", "-")
+            assert (text["radius"], text["center"], text["bulge"]) == ("plane", "-", "flat")
         else:
-            # From the corner, the centre lies at the signed radius along N.
+            # From the corner, the centre lies at the radius along N, against it for domes.
             corner = panels.corners[panels.offsets[i]]
-            center = np.array(text["centre"].split(), float) - panels.origins[i]
-            along = corner + float(text["radius"]) * (b - 2 * a * corner)
+            center = np.array(text["center"].split(), float) - panels.origins[i]
+            side = {"in": 1.0, "out": -1.0}[text["bulge"]]
+            along = corner + side * float(text["radius"]) * (b - 2 * a * corner)
             assert np.abs(center - along).max() < 1e-8
 
 
 def test_neighbours_are_mutual(panels: Panels) -> None:
     keep = np.arange(panels.n_panels) != 20
     text = {
-        row["id"]: row["neighbours"].split()
+        row["id"]: row["neighbors"].split()
         for row in panel_text(select_panels(panels, keep), "m")
     }
     assert all(len(names) == 4 for names in text.values())
@@ -155,7 +156,7 @@ def test_document(model: Any, path: Path) -> None:  # noqa: ANN401
     assert model.Settings.ModelAngleToleranceDegrees == pytest.approx(0.1)
     assert model.Strings["spheremesh::graph"] == GRAPH
     assert model.Strings["spheremesh::title"] == "Roof"
-    assert "radius: signed" in model.Strings["spheremesh::note"]
+    assert "bulge: out for domes" in model.Strings["spheremesh::note"]
     assert model.Strings["spheremesh::version"]
     assert str(path.parent).encode("utf-16-le") not in path.read_bytes()
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
+import spheremesh as sm
 from spheremesh.fabrication.mesh_files import write_mesh
 from spheremesh.interfaces.cli import main
 from spheremesh.kernel.mesh import Mesh
@@ -79,6 +80,37 @@ def test_run_writes_the_files_of_a_target(panelled: Panelled, tmp_path: Path) ->
     result = CliRunner().invoke(main, arguments)
     assert result.exit_code == 0, result.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["schedule.csv"]
+
+
+def test_a_job_with_moved_sliders_tells_of_itself(panelled: Panelled, tmp_path: Path) -> None:
+    _, out = panelled
+    arguments = ["run", str(out / "graph.json"), "--set", "moulds=2", "-o", str(tmp_path)]
+    result = CliRunner().invoke(main, arguments)
+    assert result.exit_code == 0, result.stderr
+    assert {path.name for path in tmp_path.iterdir()} == FILES
+    report = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
+    graph = json.loads((tmp_path / "graph.json").read_text(encoding="utf-8"))
+    schedule = json.loads((tmp_path / "schedule.json").read_text(encoding="utf-8"))
+    assert report["moulds"]["count"] == len(schedule["moulds"]) == 2
+    assert graph["params"]["moulds"]["value"] == 2
+
+
+def test_every_panel_rejected_is_an_error_that_says_why(vase: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    arguments = ["panel", str(vase), "-o", str(out), "--joint-gap", "5"]
+    _assert_refused(arguments, out, "none of the 72 panels can be made: P0000: ")
+
+
+def test_values_of_targets_are_strict_json(tmp_path: Path) -> None:
+    graph = sm.Graph("flat")
+    planes = graph.add("face_planes", mesh=graph.add("torus_mesh", n_around=8, n_across=6))
+    graph.add("cluster_radii", "few", sphere_mesh=planes, k=2)
+    graph.save(tmp_path / "flat.json")
+    arguments = ["run", str(tmp_path / "flat.json"), "--target", "few.radii", "--json"]
+    result = CliRunner().invoke(main, [*arguments, "-o", str(tmp_path / "out")])
+    assert result.exit_code == 0, result.stderr
+    assert json.loads(result.stdout) == {"few.radii": [None]}
+    assert "1 moulds suffice" in result.stderr
 
 
 def test_nodes_lists_and_explains() -> None:

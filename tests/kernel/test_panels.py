@@ -24,7 +24,7 @@ from spheremesh.kernel.cutting import (
     gap_report,
 )
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.fit import face_planes
+from spheremesh.kernel.fit import face_planes, fit_spheres
 from spheremesh.kernel.mesh import (
     face_normals,
     face_vector_areas,
@@ -43,6 +43,7 @@ from spheremesh.kernel.panels import (
 )
 from spheremesh.kernel.pencil import minimize_angles
 from spheremesh.kernel.spheres import center_radius, evaluate, normals, recenter
+from spheremesh.kernel.surfaces import enneper_net
 
 NETS = ["torus", "ellipsoid", "egg", "vase", "roof"]
 MODES: list[EdgeMode] = ["bisector", "intersection"]
@@ -217,7 +218,7 @@ def test_law_intersection_edges_are_watertight(
     # The smaller the angle, the worse the plane of the circle is defined, not the circle.
     assert np.median(gaps) < 1e-13
     assert gaps.max() < 1e-11
-    report = gap_report(found, "intersection")
+    report = gap_report(found, "intersection", np.arange(found.mesh.n_faces))
     assert report["relative_to_edge"] == pytest.approx(gaps.max(), abs=1e-9)
     panels, _ = cut_panels(found, "intersection")
     first, second = np.array(pairs(panels)).T
@@ -238,7 +239,7 @@ def test_bisector_gaps_are_those_of_the_arcs(optimum: dict[str, SphereMesh], nam
     expected = norm(middles[first] - middles[topology.twins[first]])
     gaps = edge_gaps(found, "bisector")
     np.testing.assert_allclose(gaps, expected, atol=1e-9)
-    report = gap_report(found, "bisector")
+    report = gap_report(found, "bisector", np.arange(found.mesh.n_faces))
     assert report["max"] == pytest.approx(gaps.max(), rel=1e-3, abs=1e-7)
     assert report["mean"] == pytest.approx(gaps.mean(), rel=1e-3, abs=1e-7)
 
@@ -281,8 +282,8 @@ def test_plane_panels_among_curved_ones_are_cut_upright(nets: dict[str, Mesh]) -
 
 def test_meshes_without_interior_edges_have_no_gap() -> None:
     mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
-    report = gap_report(face_planes(mesh), "bisector")
-    assert report == {"max": 0.0, "mean": 0.0, "relative_to_edge": 0.0}
+    report = gap_report(face_planes(mesh), "bisector", np.arange(mesh.n_faces))
+    assert report == {"max": 0.0, "mean": 0.0, "relative_to_edge": 0.0, "edges": 0}
 
 
 # Joints, thickness, measures
@@ -539,7 +540,7 @@ def test_caps_of_inner_faces_are_rejected_too() -> None:
     cap = np.array([np.radians(82)])
     found = SphereMesh.from_local(hexagon, pencil_spheres(planes, great_spheres, cap))
     assert not cut_panels(found, joint_gap=0.1)[1]
-    assert "cap of the inner face" in only_reason(found, joint_gap=0.1, thickness=1.0)
+    assert "inner face reaches" in only_reason(found, joint_gap=0.1, thickness=1.0)
 
 
 def test_walls_that_lean_over_are_rejected(nets: dict[str, Mesh]) -> None:
@@ -686,3 +687,13 @@ def test_names_have_digits_enough() -> None:
 def test_panels_without_moulds_have_no_label(ball: Mesh) -> None:
     panels, _ = cut_panels(on_sphere(ball, 2.0))
     assert (panels.labels == -1).all()
+
+
+def test_gaps_are_those_of_panels_that_are_made() -> None:
+    """Arcs that do not exist are NaN, and edges of rejected panels do not count."""
+    found = minimize_angles(fit_spheres(enneper_net(25, 0.9)))[0]
+    panels, rejected = cut_panels(found, "intersection")
+    assert rejected
+    report = gap_report(found, "intersection", panels.face_ids)
+    assert report["edges"] < len(found.mesh.topology.edge_corners)
+    assert report["relative_to_edge"] < 0.01

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -364,6 +364,10 @@ def test_law_similarities_keep_products(
     np.testing.assert_allclose(product, minkowski(row, other), atol=1e-13 * size * 10)
 
 
+@example(
+    point=np.array([1.125, 0.0, 1.0]), n=np.array([1.0, 0, 0]), m=np.array([1.0, 0, 0]),
+    a=0.0, b=0.0031308,
+)  # fmt: skip
 @given(point=POINTS, n=directions(), m=directions(), a=CURVATURES, b=CURVATURES)
 def test_law_product_is_the_cosine_of_the_normals(
     point: FloatArray, n: FloatArray, m: FloatArray, a: float, b: float
@@ -372,8 +376,11 @@ def test_law_product_is_the_cosine_of_the_normals(
     np.testing.assert_allclose(minkowski(s, t), n @ m, atol=1e-12)
     expected = 2 * np.arctan2(norm(n - m), norm(n + m))
     near_s, near_t = recenter(s, point), recenter(t, point)
-    np.testing.assert_allclose(angle(near_s, near_t), expected, atol=1e-12)
-    np.testing.assert_allclose(angle(near_s, -near_t), np.pi - expected, atol=1e-12)
+    # Seeing a row from elsewhere and back rounds its constant by some ε: at contact, where the
+    # angle is the root of a product with the difference of the curvatures, that much remains.
+    rounding = 1e-12 + np.sqrt(1e-14 * abs(a - b) * (1 + point @ point))
+    np.testing.assert_allclose(angle(near_s, near_t), expected, atol=rounding)
+    np.testing.assert_allclose(angle(near_s, -near_t), np.pi - expected, atol=rounding)
 
 
 def test_rows_may_be_single_or_stacked(assert_spheres_close: Callable[..., None]) -> None:
