@@ -692,7 +692,8 @@ def test_panels_without_moulds_have_no_label(ball: Mesh) -> None:
 def test_gaps_are_those_of_panels_that_are_made() -> None:
     """Arcs that do not exist are NaN, and edges of rejected panels do not count."""
     found = minimize_angles(fit_spheres(enneper_net(25, 0.9)))[0]
-    panels, rejected = cut_panels(found, "intersection")
+    edge = mean_edge_length(found.mesh)
+    panels, rejected = cut_panels(found, "intersection", 0.02 * edge, 0.01 * edge)
     assert rejected
     report = gap_report(found, "intersection", panels.face_ids)
     assert report["edges"] < len(found.mesh.topology.edge_corners)
