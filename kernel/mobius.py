@@ -99,6 +99,7 @@ def similarity(
 
     Examples
     --------
+    >>> from spheremesh.kernel.mobius_maps import map_points
     >>> lift = similarity(translation=[0, 0, 1])
     >>> map_points(np.zeros((1, 3)), lift).tolist()
     [[0.0, 0.0, 1.0]]
@@ -141,6 +142,7 @@ def inversion(center: ArrayLike, radius: float) -> FloatArray:
 
     Examples
     --------
+    >>> from spheremesh.kernel.mobius_maps import map_points
     >>> map_points(np.array([[0.5, 0, 0]]), inversion([0, 0, 0], 1)).tolist()
     [[2.0, 0.0, 0.0]]
     """
