@@ -13,7 +13,7 @@ demo: system
 
 test: lint
 	$(BIN)/python -m pytest -q -n 2 --dist loadfile
-	$(BIN)/python -m pytest -q -p no:cacheprovider --doctest-modules $(PACKAGES)
+	$(BIN)/python -m pytest -q -p no:cacheprovider --doctest-modules --pyargs $(addprefix spheremesh.,$(PACKAGES))
 
 lint: system
 	$(BIN)/ruff check .
