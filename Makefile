@@ -5,6 +5,8 @@ PACKAGES := kernel nodes fabrication viewer interfaces
 # The editable install links files, so it is made anew when the list of files or pyproject.toml changes.
 STATE := $(shell { find $(PACKAGES) -name '*.py' | LC_ALL=C sort; cat pyproject.toml; } | cksum | cut -d' ' -f1)
 INSTALLED := .venv/installed-$(STATE)
+# The root folder is a package; pytest must not import it by the name of the clone.
+PYTEST = $(BIN)/python -m pytest -q -c pyproject.toml --rootdir tests
 
 .PHONY: demo test lint bench install system clean
 
@@ -12,8 +14,8 @@ demo: system
 	$(BIN)/spheremesh panel -o out/demo --moulds 8 --thickness 0.02
 
 test: lint
-	$(BIN)/python -m pytest -q -n 2 --dist loadfile
-	$(BIN)/python -m pytest -q -p no:cacheprovider --doctest-modules --pyargs $(addprefix spheremesh.,$(PACKAGES))
+	$(PYTEST) -n 2 --dist loadfile tests
+	$(PYTEST) -p no:cacheprovider --doctest-modules --pyargs $(addprefix spheremesh.,$(PACKAGES))
 
 lint: system
 	$(BIN)/ruff check .
