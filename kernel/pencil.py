@@ -20,7 +20,7 @@ from .arrays import FloatArray, IntArray, dot, sum_by
 from .circles import Circles, circle_pencils, face_circles, pencil_spheres
 from .errors import InputError
 from .mesh import Mesh, face_centroids, mean_edge_length
-from .solvers import solve_symmetric, symmetric_pattern
+from .solvers.symmetric import solve_symmetric, symmetric_pattern
 from .sphere_mesh import SphereMesh
 from .spheres import minkowski
 from .tolerances import ANGLE_STEP, DAMPING, ENERGY_ROUNDING

@@ -1,12 +1,12 @@
-"""Linear systems with one unknown per face and one entry per edge."""
+"""Symmetric systems with one unknown per face and one entry per edge."""
 
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from .arrays import FloatArray, IntArray
-from .tolerances import LINEAR_SOLVE
+from ..arrays import FloatArray, IntArray
+from ..tolerances import LINEAR_SOLVE
 
 MAX_ITERATIONS = 400
 

@@ -1,0 +1,1 @@
+"""The terms of energy (6) and their table."""

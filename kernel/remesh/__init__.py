@@ -1,0 +1,1 @@
+"""Quadrilateral sphere meshes from congruences of spheres (Sec. 6.4)."""

@@ -1,0 +1,1 @@
+"""Solvers of least-squares problems and of the linear systems in them."""
