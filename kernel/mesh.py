@@ -114,6 +114,29 @@ class Mesh:
         return np.diff(self.offsets)
 
 
+def with_vertices(mesh: Mesh, vertices: FloatArray) -> Mesh:
+    """
+    The same faces on other points.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    vertices : (V, 3) float array
+        New points; finite.
+
+    Returns
+    -------
+    Mesh
+        Shares faces and topology with `mesh`.
+    """
+    result = Mesh.__new__(Mesh)
+    object.__setattr__(result, "vertices", read_only(vertices.copy()))
+    for name in ("corners", "offsets", "topology"):
+        object.__setattr__(result, name, getattr(mesh, name))
+    return result
+
+
 def _compress(
     faces: IntArray | Iterable[Sequence[int] | IntArray],
 ) -> tuple[IntArray, IntArray]:

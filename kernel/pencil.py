@@ -243,7 +243,7 @@ def minimize_angles(
     Meshes with Spherical Faces, Sec. 4.2, eq. (9).
     """
     mesh = sphere_mesh.mesh
-    weights = _check_options(mesh, target_angle, edge_weights)
+    weights = check_angle_options(mesh, target_angle, edge_weights)
     circles, miss = face_circles(mesh)
     planes, great_spheres = circle_pencils(circles)
     coupling = couple_pencils(mesh, circles, weights)
@@ -290,7 +290,31 @@ def pencil_angles(sphere_mesh: SphereMesh, circles: Circles) -> FloatArray:
     return np.arctan2(minkowski(rows, great_spheres), minkowski(rows, planes))
 
 
-def _check_options(mesh: Mesh, target: float, edge_weights: ArrayLike | None) -> FloatArray:
+def check_angle_options(
+    mesh: Mesh, target: float, edge_weights: ArrayLike | None
+) -> FloatArray:
+    """
+    Check what is asked of the angles.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    target : float
+        Target angle, in radians.
+    edge_weights : (E,) array_like of float, optional
+        Weight of each interior edge; 1 by default.
+
+    Returns
+    -------
+    (E,) float array
+        The weights.
+
+    Raises
+    ------
+    InputError
+        If the target lies outside [0, π/2], or a weight is negative or not finite.
+    """
     if not 0 <= target <= np.pi / 2:
         raise InputError(
             f"the target angle must lie between 0 and 90 degrees, not {np.degrees(target):g}"

@@ -68,3 +68,24 @@ TRANSFORM_DIGITS: Final = 1e-6
 
 AT_INFINITY: Final = 1e-6
 """Vertices this close, in mean edges, to the point sent to infinity have no usable image."""
+
+STEP_MODEL: Final = 0.01
+"""A Gauss-Newton step is solved until its model would gain no more than this share."""
+
+ROUNDED_DIRECTION: Final = 1e-28
+"""A squared gradient below this share of the first is rounding."""
+
+AT_BOUND: Final = 1e-9
+"""Vertices this close to the bound of their displacement, relative to it, lie on it."""
+
+ENERGY_CHANGE: Final = 1e-6
+"""A descent has converged when a step lowers the energy by less than this share."""
+
+STAGE_CHANGE: Final = 1e-4
+"""A descent that others follow may end at this relative change of the energy."""
+
+LEAST_ENERGY: Final = 1e-16
+"""An energy as good as zero: no residual above 1e-8 of a mean edge is left."""
+
+COMMON_VERTEX: Final = 1e-6
+"""Spheres this close to a vertex, in mean edges, pass through it."""

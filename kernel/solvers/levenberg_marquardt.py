@@ -48,7 +48,8 @@ class Descent(Generic[State]):
     state : object
         The best state found.
     status : {"converged", "stalled", "exhausted"}
-        ``converged``: the energy fell by less than the tolerance asked for; ``stalled``: no
+        ``converged``: the energy fell by less than the tolerance asked for, or is as good as
+        zero; ``stalled``: no
         step, however short, lowers the energy although the linear model says so;
         ``exhausted``: the number of iterations is used up.
     history : (n + 1, terms) float array
@@ -70,6 +71,7 @@ def levenberg_marquardt(
     move: Callable[[State, FloatArray], State],
     tolerance: float = 1e-6,
     max_iterations: int = 100,
+    least_energy: float = 0.0,
 ) -> Descent[State]:
     """
     Minimise a sum of squares.
@@ -89,6 +91,8 @@ def levenberg_marquardt(
         A step that lowers the energy by a smaller share ends the minimisation.
     max_iterations : int
         Largest number of linear systems to solve.
+    least_energy : float
+        An energy that is as good as zero.
 
     Returns
     -------
@@ -110,6 +114,8 @@ def levenberg_marquardt(
     state = start
     history = [energies(state)]
     damping, growth = FIRST_DAMPING, 2.0
+    if history[0].sum() <= least_energy:
+        return Descent(state, "converged", np.array(history), 0)
     solve = linearize(state)
     for iteration in range(1, max_iterations + 1):
         energy = float(history[-1].sum())
@@ -125,7 +131,8 @@ def levenberg_marquardt(
             agreement = fall / promised
             state = moved
             history.append(terms)
-            if fall <= tolerance * energy and agreement > 0.25:
+            has_settled = fall <= tolerance * energy and agreement > 0.25
+            if has_settled or energy - fall <= least_energy:
                 return Descent(state, "converged", np.array(history), iteration)
             damping = max(DAMPING, damping * max(0.1, 1 - (2 * agreement - 1) ** 3))
             growth = 2.0

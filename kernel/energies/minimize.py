@@ -1,0 +1,228 @@
+"""Minimising energy (6): from a setting and weights to the best unknowns."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray, dot, sum_by
+from ..solvers.blocks import Block, JacobianPattern, Layout, jacobian_pattern
+from ..solvers.levenberg_marquardt import DampedStep, Descent, levenberg_marquardt
+from ..solvers.normal_equations import damped_step, linearization
+from ..tolerances import LEAST_ENERGY
+from .freedom import Freedom, active_vertices, moved, tangent_to_spheres
+from .setting import WIDTHS, Group, Setting, Unknowns
+from .table import TERMS, EnergyWeights, Term
+
+
+@dataclass(frozen=True)
+class EnergyProblem:
+    """
+    A weighted sum of terms over a setting.
+
+    Attributes
+    ----------
+    setting : Setting
+        What stays fixed.
+    freedom : Freedom
+        Which way the unknowns may move.
+    terms : tuple of Term
+        Terms of positive weight.
+    weights : tuple of float
+        Their λ.
+    pattern : JacobianPattern
+        Where derivatives go.
+    """
+
+    setting: Setting
+    freedom: Freedom
+    terms: tuple[Term, ...]
+    weights: tuple[float, ...]
+    pattern: JacobianPattern
+
+
+def energy_problem(setting: Setting, freedom: Freedom, weights: EnergyWeights) -> EnergyProblem:
+    """
+    Collect the terms that have a weight and the unknowns that they need.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed.
+    freedom : Freedom
+        Which way the unknowns may move; vertices are unknown if they may move at all.
+    weights : EnergyWeights
+        Weights of the terms.
+
+    Returns
+    -------
+    EnergyProblem
+        Dual normals are unknown if there is a weight on the support.
+    """
+    n_vertices = setting.n_vertices if freedom.tolerance > 0 else 0
+    n_nodes = len(setting.node_vertices) if weights.support > 0 else 0
+    layout = Layout((setting.n_faces, n_vertices, n_nodes), WIDTHS)
+    chosen = [
+        (term, getattr(weights, term.name), term.blocks(setting))
+        for term in TERMS
+        if getattr(weights, term.name) > 0
+    ]
+    # A term whose unknowns all stay as they are is a constant.
+    chosen = [
+        (term, weight, blocks)
+        for term, weight, blocks in chosen
+        if any(layout.counts[block.group] for block in blocks)
+    ]
+    terms, values, blocks = zip(*chosen, strict=True) if chosen else ((), (), ())
+    return EnergyProblem(setting, freedom, terms, values, jacobian_pattern(layout, blocks))
+
+
+def term_energies(problem: EnergyProblem, unknowns: Unknowns) -> FloatArray:
+    """
+    Weighted energy of each term.
+
+    Parameters
+    ----------
+    problem : EnergyProblem
+        The problem.
+    unknowns : Unknowns
+        The values.
+
+    Returns
+    -------
+    (terms,) float array
+        ``λ² |r|²``.
+    """
+    return np.array(
+        [
+            weight**2 * float((term.residuals(problem.setting, unknowns) ** 2).sum())
+            for term, weight in zip(problem.terms, problem.weights, strict=True)
+        ]
+    )
+
+
+def weighted_residuals(problem: EnergyProblem, unknowns: Unknowns) -> FloatArray:
+    """
+    All residuals, each times the weight of its term.
+
+    Parameters
+    ----------
+    problem : EnergyProblem
+        The problem.
+    unknowns : Unknowns
+        The values.
+
+    Returns
+    -------
+    (m,) float array
+        Term after term.
+    """
+    return np.concatenate(
+        [
+            weight * term.residuals(problem.setting, unknowns)
+            for term, weight in zip(problem.terms, problem.weights, strict=True)
+        ]
+    )
+
+
+def weighted_entries(
+    problem: EnergyProblem, unknowns: Unknowns
+) -> list[tuple[FloatArray, ...]]:
+    """
+    Derivatives of the weighted residuals, block by block.
+
+    Parameters
+    ----------
+    problem : EnergyProblem
+        The problem.
+    unknowns : Unknowns
+        The values.
+
+    Returns
+    -------
+    list of tuples of (m, width) float arrays
+        As in `JacobianPattern.blocks`: groups that do not take part are left out.
+    """
+    counts = problem.pattern.layout.counts
+    result: list[tuple[FloatArray, ...]] = []
+    for term, weight in zip(problem.terms, problem.weights, strict=True):
+        tables = zip(
+            term.blocks(problem.setting), term.jacobian(problem.setting, unknowns), strict=True
+        )
+        result.append(tuple(weight * table for block, table in tables if counts[block.group]))
+    return result
+
+
+def minimize_energy(
+    problem: EnergyProblem, start: Unknowns, max_iterations: int, change: float
+) -> Descent[Unknowns]:
+    """
+    Minimise the energy by Levenberg-Marquardt.
+
+    Parameters
+    ----------
+    problem : EnergyProblem
+        The problem.
+    start : Unknowns
+        Where to start.
+    max_iterations : int
+        Largest number of linear systems.
+    change : float
+        Relative fall of the energy at which the descent ends.
+
+    Returns
+    -------
+    Descent
+        Its history has one column per term of the problem.
+    """
+
+    def _energies(unknowns: Unknowns) -> FloatArray:
+        return term_energies(problem, unknowns)
+
+    def _linearize(unknowns: Unknowns) -> Callable[[float], DampedStep]:
+        residuals = weighted_residuals(problem, unknowns)
+        entries = _free_entries(problem, unknowns, residuals)
+        linear = linearization(problem.pattern, residuals, entries)
+        return lambda damping: damped_step(linear, damping)
+
+    def _move(unknowns: Unknowns, step: FloatArray) -> Unknowns:
+        spheres, displacements, normals = problem.pattern.layout.split(step)
+        return moved(problem.freedom, unknowns, (spheres, displacements, normals))
+
+    return levenberg_marquardt(
+        start, _energies, _linearize, _move, change, max_iterations, LEAST_ENERGY
+    )
+
+
+def _free_entries(
+    problem: EnergyProblem, unknowns: Unknowns, residuals: FloatArray
+) -> list[tuple[FloatArray, ...]]:
+    """Derivatives by what may move: the rest is projected away."""
+    entries = weighted_entries(problem, unknowns)
+    freedom, pattern = problem.freedom, problem.pattern
+    n_vertices = pattern.layout.counts[Group.VERTEX]
+    vertices = freedom.vertices
+    if n_vertices:
+        descent, row = np.zeros((n_vertices, 3)), 0
+        for blocks, tables in zip(pattern.blocks, entries, strict=True):
+            part = residuals[row : row + len(tables[0])]
+            row += len(part)
+            for block, table in zip(blocks, tables, strict=True):
+                if block.group == Group.VERTEX:
+                    descent -= sum_by(block.ids, part[:, None] * table, n_vertices)
+        vertices = active_vertices(freedom, unknowns.displacements, descent)
+
+    def _project(block: Block, table: FloatArray) -> FloatArray:
+        if block.group == Group.VERTEX:
+            return np.einsum("mi,mij->mj", table, vertices[block.ids])
+        if block.group == Group.SPHERE:
+            return tangent_to_spheres(freedom, unknowns, block.ids, table)
+        normals = unknowns.normals[block.ids]
+        return table - dot(table, normals)[:, None] * normals
+
+    return [
+        tables
+        if term.is_gauge
+        else tuple(_project(block, table) for block, table in zip(blocks, tables, strict=True))
+        for term, blocks, tables in zip(problem.terms, pattern.blocks, entries, strict=True)
+    ]

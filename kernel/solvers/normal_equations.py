@@ -1,0 +1,133 @@
+"""
+Damped Gauss-Newton steps of large sparse problems.
+
+``(JᵀJ + μ σ I) x = -Jᵀr`` is solved by conjugate gradients on J itself, never forming ``JᵀJ``,
+with the inverted diagonal blocks as preconditioner. Where these do not settle and the problem
+is small enough, the matrix is formed and factorised.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arrays import FloatArray, dot
+from .blocks import JacobianPattern, Layout, diagonal_blocks, jacobian_matrix
+from .conjugate_gradients import truncated_step
+from .factorization import solve_definite
+from .levenberg_marquardt import DampedStep
+from .products import normal_product
+
+MAX_ITERATIONS = 300
+MAX_OPERATIONS = 10**10
+"""Entries of J visited by the conjugate gradients of one step: a large problem gets rougher
+steps, and more of them."""
+MAX_FACTORIZED = 100_000
+"""Unknowns up to which a factorisation costs less than the iterations that it saves."""
+
+
+@dataclass(frozen=True)
+class Linearization:
+    """
+    A least-squares problem near a point.
+
+    Attributes
+    ----------
+    layout : Layout
+        The unknowns.
+    jacobian : (m, n) csr_array
+        Derivatives of the residuals.
+    residuals : (m,) float array
+        Residuals.
+    blocks : tuple of (count, width, width) float arrays
+        Diagonal blocks of ``JᵀJ``.
+    """
+
+    layout: Layout
+    jacobian: Any
+    residuals: FloatArray
+    blocks: tuple[FloatArray, ...]
+
+
+def linearization(
+    pattern: JacobianPattern,
+    residuals: FloatArray,
+    entries: Sequence[Sequence[FloatArray]],
+) -> Linearization:
+    """
+    Collect what a step needs.
+
+    Parameters
+    ----------
+    pattern : JacobianPattern
+        Where the entries go.
+    residuals : (m,) float array
+        Residuals.
+    entries : sequence of sequences of (m, width) float arrays
+        Derivatives, block by block.
+
+    Returns
+    -------
+    Linearization
+        Ready for `damped_step`.
+    """
+    return Linearization(
+        pattern.layout,
+        jacobian_matrix(pattern, entries),
+        residuals,
+        diagonal_blocks(pattern, entries),
+    )
+
+
+def damped_step(problem: Linearization, damping: float) -> DampedStep:
+    """
+    Step that minimises ``|r + J x|² + μ σ |x|²``.
+
+    Parameters
+    ----------
+    problem : Linearization
+        The problem.
+    damping : float
+        μ; the scale σ is the mean of the diagonal of ``JᵀJ``.
+
+    Returns
+    -------
+    DampedStep
+        Step and the energy of the linear model after it. Unknowns on which no residual depends
+        do not move.
+    """
+    jacobian, multiply = problem.jacobian, normal_product(problem.jacobian)
+    traces = [float(np.trace(blocks, axis1=1, axis2=2).sum()) for blocks in problem.blocks]
+    shift = damping * sum(traces) / int(problem.layout.starts[-1])
+    right = -(jacobian.T @ problem.residuals)
+    inverse = _block_inverse(problem.blocks, shift)
+
+    def _product(vector: FloatArray) -> FloatArray:
+        return multiply(vector) + shift * vector
+
+    def _precondition(vector: FloatArray) -> FloatArray:
+        return inverse @ vector
+
+    budget = MAX_OPERATIONS // max(2 * jacobian.nnz, 1)
+    step, is_settled = truncated_step(
+        _product, _precondition, right, int(min(MAX_ITERATIONS, budget))
+    )
+    if not is_settled and len(right) <= MAX_FACTORIZED:
+        step = solve_definite(jacobian.T @ jacobian, shift, right)
+    model = problem.residuals + jacobian @ step
+    return DampedStep(step, float(dot(model, model)))
+
+
+def _block_inverse(blocks: tuple[FloatArray, ...], shift: float) -> Any:  # noqa: ANN401
+    from scipy.sparse import block_diag, bsr_array
+
+    inverses = [np.linalg.inv(table + shift * np.eye(table.shape[1])) for table in blocks]
+    return block_diag(
+        [
+            bsr_array((table, np.arange(len(table)), np.arange(len(table) + 1)))
+            for table in inverses
+            if len(table)
+        ],
+        format="csr",
+    )
