@@ -68,3 +68,15 @@ TRANSFORM_DIGITS: Final = 1e-6
 
 AT_INFINITY: Final = 1e-6
 """Vertices this close, in mean edges, to the point sent to infinity have no usable image."""
+
+NODE_TORSION: Final = 1.7453292519943296e-3
+"""Torsion (0.1 degrees) beyond which a node is not called free of torsion."""
+
+AXIS_LEAN: Final = 1.0471975511965976
+"""A node axis that leans more (60 degrees) from the normal carries no beams."""
+
+MIRROR_REACH: Final = 1e5
+"""Mirror points farther than this, in mean edges, count as being at infinity."""
+
+MIRROR_LEAST: Final = 1e-6
+"""Mirror points nearer than this, in mean edges, do not tell the direction of an axis."""
