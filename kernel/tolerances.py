@@ -80,3 +80,6 @@ MIRROR_REACH: Final = 1e5
 
 MIRROR_LEAST: Final = 1e-6
 """Mirror points nearer than this, in mean edges, do not tell the direction of an axis."""
+
+BEAM_TILT: Final = 1.0471975511965976
+"""A beam whose plane tilts more (60 degrees) from the bisecting plane does not stand."""

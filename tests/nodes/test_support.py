@@ -5,7 +5,9 @@ import json
 import numpy as np
 import pytest
 
+from spheremesh.kernel.errors import InputError
 from spheremesh.nodes import (
+    annulus_support,
     central_spheres,
     face_planes,
     minimize_angles,
@@ -30,3 +32,13 @@ def test_support_structure_warns_of_invalid_nodes() -> None:
     inside = ~sphere_mesh.mesh.topology.is_boundary_vertex
     assert found.report["torsion_deg"]["max"] == found.torsion[inside].max()
     assert found.report["valid"] == int(np.sum(found.is_valid))
+
+
+def test_annulus_support_reports_and_warns() -> None:
+    sphere_mesh = minimize_angles(central_spheres(roof_mesh())).sphere_mesh
+    with pytest.warns(UserWarning, match="annuli cannot be made"):
+        found = annulus_support(sphere_mesh, depth=0.2)
+    assert json.loads(json.dumps(found.report, allow_nan=False)) == found.report
+    assert found.report["made"] == found.annuli.n_annuli
+    with pytest.raises(InputError, match="either a depth or a power"):
+        annulus_support(sphere_mesh)
