@@ -1,5 +1,6 @@
 """Array types and the few operations on rows of vectors that NumPy has no short name for."""
 
+from collections.abc import Iterator
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -84,6 +85,32 @@ def sum_by(ids: IntArray, values: FloatArray, size: int) -> FloatArray:
         return np.bincount(ids, values, size).astype(np.float64, copy=False)
     columns = [sum_by(ids, column, size) for column in values.T]
     return np.stack(columns, axis=1)
+
+
+def batches_by_count(ids: IntArray, size: int) -> Iterator[tuple[IntArray, IntArray]]:
+    """
+    Groups of equal size, gathered so that each batch is one array.
+
+    Parameters
+    ----------
+    ids : (m,) int array
+        Group of each row, in ``[0, size)``.
+    size : int
+        Number of groups.
+
+    Yields
+    ------
+    groups : (n,) int array
+        Groups that have k rows each.
+    rows : (n, k) int array
+        Their rows, in order.
+    """
+    counts = np.bincount(ids, minlength=size)
+    order = np.argsort(ids, kind="stable")
+    starts = np.cumsum(counts) - counts
+    for count in np.unique(counts[counts > 0]).tolist():
+        chosen = np.flatnonzero(counts == count)
+        yield chosen, order[starts[chosen][:, None] + np.arange(count)]
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:

@@ -9,14 +9,13 @@ Points are null vectors of the Minkowski product that are orthogonal to the rows
 spheres, so planes and points at infinity are nothing special.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by
+from .arrays import BoolArray, FloatArray, batches_by_count, dot, norm, sum_by
 from .errors import InputError, name_ids
 from .mesh import Mesh, face_centroids, local_corners, mean_edge_length
 from .sphere_mesh import SphereMesh
@@ -125,7 +124,7 @@ def envelope(mesh: Mesh, spheres: ArrayLike, order: EnvelopeOrder = "nearest") -
     rows = _rows_at_corners(mesh, np.asarray(spheres, float), size)
     plus = np.full((mesh.n_faces, 3), np.nan)
     minus, is_real = plus.copy(), np.zeros(mesh.n_faces, bool)
-    for faces, corners in _batches(mesh.topology.corner_faces, mesh.n_faces):
+    for faces, corners in batches_by_count(mesh.topology.corner_faces, mesh.n_faces):
         found, exists = _common_points(pentaspherical(rows[corners]))
         first, second = _finite_points(found)
         if order == "nearest":
@@ -227,7 +226,7 @@ def mirror_points(sphere_mesh: SphereMesh) -> MirrorPoints:
         sphere_mesh.local_spheres[mesh.topology.corner_faces], local_corners(mesh)
     ) * np.array([size, 1.0, 1.0, 1.0, 1 / size])
     relative = np.full((mesh.n_vertices, 3), np.nan)
-    for vertices, corners in _batches(mesh.corners, mesh.n_vertices):
+    for vertices, corners in batches_by_count(mesh.corners, mesh.n_vertices):
         if corners.shape[1] < 3:
             continue
         system = np.concatenate([rows[corners, 1:4], -rows[corners, :1]], -1)
@@ -336,7 +335,7 @@ def ribaucour_residuals(sphere_mesh: SphereMesh) -> tuple[FloatArray, FloatArray
     mirrored = mirror_points(sphere_mesh).points[mesh.corners]
     plus = np.zeros(mesh.n_faces)
     minus = np.zeros(mesh.n_faces)
-    for faces, corners in _batches(mesh.topology.corner_faces, mesh.n_faces):
+    for faces, corners in batches_by_count(mesh.topology.corner_faces, mesh.n_faces):
         plus[faces] = _off_circle(mesh.vertices[mesh.corners[corners]])
         minus[faces] = _off_circle(mirrored[corners])
     return plus, minus
@@ -356,13 +355,3 @@ def _off_circle(points: FloatArray) -> FloatArray:
 
 def _are_finite(rows: FloatArray) -> BoolArray:
     return np.asarray(np.isfinite(rows).all(axis=1), np.bool_)
-
-
-def _batches(ids: IntArray, size: int) -> Iterator[tuple[IntArray, IntArray]]:
-    """Ids that occur equally often, (n,), with the places (n, k) where they do."""
-    counts = np.bincount(ids, minlength=size)
-    order = np.argsort(ids, kind="stable")
-    starts = np.cumsum(counts) - counts
-    for count in np.unique(counts[counts > 0]).tolist():
-        chosen = np.flatnonzero(counts == count)
-        yield chosen, order[starts[chosen][:, None] + np.arange(count)]

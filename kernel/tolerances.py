@@ -89,3 +89,18 @@ LEAST_ENERGY: Final = 1e-16
 
 COMMON_VERTEX: Final = 1e-6
 """Spheres this close to a vertex, in mean edges, pass through it."""
+
+NODE_TORSION: Final = 1.7453292519943296e-3
+"""Torsion (0.1 degrees) beyond which a node is not called free of torsion."""
+
+AXIS_LEAN: Final = 1.0471975511965976
+"""A node axis that leans more (60 degrees) from the normal carries no beams."""
+
+MIRROR_REACH: Final = 1e5
+"""Mirror points farther than this, in mean edges, count as being at infinity."""
+
+MIRROR_LEAST: Final = 1e-6
+"""Mirror points nearer than this, in mean edges, do not tell the direction of an axis."""
+
+BEAM_TILT: Final = 1.0471975511965976
+"""A beam whose plane tilts more (60 degrees) from the bisecting plane does not stand."""

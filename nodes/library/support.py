@@ -1,0 +1,121 @@
+"""Nodes and beams that carry the panels."""
+
+from collections.abc import Mapping
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
+
+from ...kernel import annulus_support as annulus
+from ...kernel import support
+from ...kernel.annuli import Annuli
+from ...kernel.arrays import BoolArray, FloatArray
+from ...kernel.beam_checks import RejectedBeam
+from ...kernel.errors import name_ids
+from ...kernel.mesh import mean_edge_length
+from ...kernel.sphere_mesh import SphereMesh
+from ..node import node, warn
+from ..ports import Port
+
+
+class Nodes(NamedTuple):
+    """The nodes of a support structure, one per vertex."""
+
+    axes: FloatArray
+    torsion: FloatArray
+    is_valid: BoolArray
+    report: Mapping[str, Any]
+
+
+@node
+def support_structure(sphere_mesh: SphereMesh) -> Nodes:
+    """
+    Find the axis of every node and how far its beams miss it.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+
+    Returns
+    -------
+    axes : (V, 2, 3) float array
+        Two points of each node axis: the vertex and its mirror image in the plane of the
+        centres of its spheres. Where that is farther than 100,000 mean edges (planes) or
+        at the vertex itself, the point of the axis one mean edge inside. On the boundary the
+        axis lies in the planes of the beams that are there, as near to the normal as they let.
+    torsion : (V,) float array
+        Largest angle between the plane of a beam and the axis, in degrees.
+    is_valid : (V,) bool array
+        Where the torsion is at most 0.1 degrees and the axis leans at most 60 degrees from
+        the normal.
+    report : mapping
+        ``torsion_deg`` (mean and max over interior vertices, ``boundary_max``),
+        ``mirror_miss`` (largest distance of a mirror point from its spheres, in mean edges),
+        ``beam_tilt_deg`` (p95, max), ``axes_without_mirror``, ``edges_without_circle``,
+        ``valid`` and ``invalid`` (id, vertex and reason).
+    """
+    found = support.support_structure(sphere_mesh)
+    report = support.support_report(sphere_mesh, found)
+    is_valid = np.ones(len(found.torsion), bool)
+    if report["invalid"]:
+        bad = [entry["vertex"] for entry in report["invalid"]]
+        is_valid[bad] = False
+        warn(
+            f"{len(bad)} of {len(is_valid)} nodes are not valid: vertices {name_ids(bad)} "
+            f"({report['invalid'][0]['reason']})"
+        )
+    return Nodes(found.axes, np.degrees(found.torsion), is_valid, report)
+
+
+class AnnulusSet(NamedTuple):
+    """The annuli that can be made, and what was found on the way."""
+
+    annuli: Annuli
+    report: Mapping[str, Any]
+
+
+@node
+def annulus_support(
+    sphere_mesh: SphereMesh,
+    depth: Annotated[float | None, Port(min=0)] = None,
+    kappa: float | None = None,
+    max_tilt: Annotated[float, Port(unit="deg", min=0, max=90)] = 60.0,
+) -> AnnulusSet:
+    """
+    Put a flat annulus under every edge, in the plane in which its two spheres meet.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+    depth : float, optional
+        Depth of the annuli, measured on the node axes. Give this or `kappa`.
+    kappa : float, optional
+        Power R² - r² of the two circles of every annulus: all are concentric. The ends reach
+        from a vertex towards its mirror point; the flatter the arc, the less deep.
+    max_tilt : float
+        Annuli whose plane tilts more from the plane that bisects the faces are rejected.
+
+    Returns
+    -------
+    annuli : Annuli
+        One per edge, the boundary included, named ``B0000`` and on.
+    report : mapping
+        ``kappa_max`` (largest admissible power; None where all arcs are straight),
+        ``tilt_deg`` (p95, max), ``corner_mismatch`` between the ends at a node (max,
+        relative_to_edge), ``axis_angle_deg`` (how far node axes miss the planes),
+        ``end_depth`` (min, max), ``outward`` (ends that reach to the outer side), ``made``
+        and ``rejected`` (id and reason).
+    """
+    found = annulus.annulus_support(sphere_mesh, depth, kappa, np.radians(max_tilt))
+    report = annulus.annulus_report(found, mean_edge_length(sphere_mesh.mesh))
+    _warn_of_rejected(found.rejected, "annuli")
+    return AnnulusSet(found.annuli, report)
+
+
+def _warn_of_rejected(rejected: tuple[RejectedBeam, ...], what: str) -> None:
+    if rejected:
+        warn(
+            f"{len(rejected)} {what} cannot be made: edges "
+            f"{name_ids([beam.edge_id for beam in rejected])} ({rejected[0].reason})"
+        )
