@@ -12,10 +12,16 @@ import numpy as np
 
 from .arrays import BoolArray, FloatArray, IntArray, sum_by
 from .circles import circle_pencils, face_circles, pencil_spheres
+from .energies.table import EnergyWeights
 from .errors import InputError
+from .mesh import Mesh
+from .optimization import Conditions, Optimization, move_vertices
 from .pencil import pencil_angles
 from .sphere_mesh import SphereMesh
 from .tolerances import SAME_CURVATURE
+
+RELAXED_CLOSENESS = 0.05
+"""Weight that keeps vertices where they were when nothing else matters."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +111,47 @@ def cluster_radii(
             labels.astype(np.int64), 1 / moulds, np.bincount(labels), chosen != nearest
         )
     return SphereMesh.from_local(sphere_mesh.mesh, rows), clusters
+
+
+def relax_moulds(
+    sphere_mesh: SphereMesh, clusters: RadiusClusters, tolerance: float
+) -> tuple[SphereMesh, Optimization]:
+    """
+    Let vertices and spheres of given radii move to where the angles are smallest.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        Spheres of the moulds' radii, as `cluster_radii` returns them.
+    clusters : RadiusClusters
+        The moulds.
+    tolerance : float
+        How far vertices may move, in mean edges.
+
+    Returns
+    -------
+    sphere_mesh : SphereMesh
+        The same radii, on moved vertices.
+    optimization : Optimization
+        Where its `vertex_miss` exceeds `COMMON_VERTEX`, the vertices could not reach the
+        spheres within the tolerance.
+
+    Raises
+    ------
+    InputError
+        If the tolerance is negative or not finite.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Sec. 4.3.
+    """
+    radii = np.maximum(clusters.radii[clusters.labels], _circle_radii(sphere_mesh.mesh))
+    conditions = Conditions(tolerance=tolerance, fixed_radii=radii)
+    return move_vertices(sphere_mesh, EnergyWeights(closeness=RELAXED_CLOSENESS), conditions)
+
+
+def _circle_radii(mesh: Mesh) -> FloatArray:
+    return np.sqrt(face_circles(mesh)[0].radii_squared)
 
 
 def _centers(curvatures: FloatArray, k: int, seed: int) -> FloatArray:

@@ -32,6 +32,9 @@ from .tolerances import COMMON_VERTEX, ENERGY_CHANGE, STAGE_CHANGE
 
 Corners = Literal["soft", "common", "own"]
 
+SPHERICITY_FACTORS = (10, 100, 1000)
+SUPPORT_FACTORS = (10, 100, 1000, 10_000, 100_000)
+
 
 @dataclass(frozen=True)
 class Conditions:
@@ -159,8 +162,10 @@ def optimize_spheres(
     Notes
     -----
     Regularity and support vanish when all spheres are planes, so they come after a stage of
-    angles alone. Vertices are brought onto their spheres by raising the weight of sphericity
-    and, last, by minimising it alone, which moves everything as little as needed.
+    angles alone. What has to hold exactly, nodes with an axis and vertices on their spheres, is
+    brought about by raising its weight from stage to stage; where neighbours are nearly the
+    same sphere, the residuals of the support are small whatever the torsion. Last, sphericity
+    is minimised alone, which moves everything as little as needed.
 
     References
     ----------
@@ -170,25 +175,56 @@ def optimize_spheres(
     conditions = Conditions() if conditions is None else conditions
     near = _problem(sphere_mesh, conditions)
     if conditions.tolerance == 0:
-        return _finished(_descend(near, _with_angles_first(weights), ENERGY_CHANGE), "soft")
-    moving = replace(
-        near,
-        freedom=replace(
-            near.freedom,
-            tolerance=conditions.tolerance,
-            vertices=vertex_freedom(near.mesh, conditions.interior, conditions.boundary),
-        ),
-    )
-    moving = _tightened(moving, weights)
-    landing = [("landing", EnergyWeights(sphericity=1.0, angle=0.0))]
-    result, report = _finished(_descend(moving, landing, ENERGY_CHANGE), "common")
-    if report.vertex_miss <= COMMON_VERTEX and not _is_rougher_than_planes(result, conditions):
+        return _finished(_tightened(near, weights, ()), "soft")
+    result, report = move_vertices(sphere_mesh, weights, conditions)
+    is_free = weights.regularity == 0 and weights.support == 0
+    is_rough = is_free and _is_rougher_than_planes(result, conditions)
+    if report.vertex_miss <= COMMON_VERTEX and not is_rough:
         return result, report
     allowance = conditions.tolerance * (1 - COMMON_VERTEX)
     near = replace(
         near, setting=replace(near.setting, allowance=allowance), stages=report.stages
     )
-    return _finished(_tightened(near, weights), "own")
+    return _finished(_tightened(near, weights, ("sphericity",)), "own")
+
+
+def move_vertices(
+    sphere_mesh: SphereMesh, weights: EnergyWeights, conditions: Conditions
+) -> tuple[SphereMesh, Optimization]:
+    """
+    Minimise energy (6) with vertices that move onto their spheres.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        Mesh and spheres to start from.
+    weights : EnergyWeights
+        Weights of the terms.
+    conditions : Conditions
+        What has to be respected; its tolerance bounds every displacement.
+
+    Returns
+    -------
+    sphere_mesh : SphereMesh
+        The optimum, on moved vertices.
+    optimization : Optimization
+        Where its `vertex_miss` exceeds `COMMON_VERTEX`, the vertices could not reach common
+        spheres within the tolerance.
+
+    Raises
+    ------
+    InputError
+        If a condition is out of range or does not match the mesh.
+    """
+    problem = _problem(sphere_mesh, conditions)
+    freedom = replace(
+        problem.freedom,
+        tolerance=conditions.tolerance,
+        vertices=vertex_freedom(problem.mesh, conditions.interior, conditions.boundary),
+    )
+    problem = _tightened(replace(problem, freedom=freedom), weights, ("sphericity",))
+    landing = ("landing", EnergyWeights(sphericity=1.0, angle=0.0))
+    return _finished(_descend(problem, landing, ENERGY_CHANGE), "common")
 
 
 @dataclass(frozen=True)
@@ -246,35 +282,31 @@ def _with_radii(
     return SphereMesh.from_local(mesh, rows), is_fixed
 
 
-def _with_angles_first(weights: EnergyWeights) -> list[tuple[str, EnergyWeights]]:
-    angles_alone = replace(weights, regularity=0.0, support=0.0)
-    if angles_alone == weights or weights.angle == 0:
-        return [("energy", weights)]
-    return [("angles", angles_alone), ("energy", weights)]
+def _tightened(problem: _Problem, weights: EnergyWeights, hard: tuple[str, ...]) -> _Problem:
+    """Minimise; then again and again with ten times the weight on what has to hold exactly."""
+    stages = [("energy", weights)]
+    if weights.angle > 0 and (weights.regularity > 0 or weights.support > 0):
+        stages.insert(0, ("angles", replace(weights, regularity=0.0, support=0.0)))
+    factors = SPHERICITY_FACTORS if hard else ()
+    if weights.support > 0:
+        hard, factors = (*hard, "support"), SUPPORT_FACTORS
+    for factor in factors:
+        raised = {name: factor * getattr(weights, name) for name in hard}
+        stages.append((f"{' and '.join(hard)} x {factor}", replace(weights, **raised)))
+    for stage in stages[:-1]:
+        problem = _descend(problem, stage, STAGE_CHANGE)
+    return _descend(problem, stages[-1], ENERGY_CHANGE)
 
 
-def _tightened(problem: _Problem, weights: EnergyWeights) -> _Problem:
-    """Minimise with an ever larger weight on sphericity: each stage starts near its end."""
-    problem = _descend(problem, _with_angles_first(weights), STAGE_CHANGE)
-    for factor, change in ((10, STAGE_CHANGE), (100, STAGE_CHANGE), (1000, ENERGY_CHANGE)):
-        closer = replace(weights, sphericity=factor * weights.sphericity)
-        problem = _descend(problem, [(f"sphericity x {factor}", closer)], change)
-    return problem
-
-
-def _descend(
-    problem: _Problem, stages: list[tuple[str, EnergyWeights]], change: float
-) -> _Problem:
-    for name, weights in stages:
-        terms = energy_problem(problem.setting, problem.freedom, weights)
-        descent = minimize_energy(terms, problem.unknowns, problem.max_iterations, change)
-        energies = {
-            term.name: history
-            for term, history in zip(terms.terms, descent.history.T, strict=True)
-        }
-        stage = Stage(name, descent.status, descent.iterations, energies)
-        problem = replace(problem, unknowns=descent.state, stages=(*problem.stages, stage))
-    return problem
+def _descend(problem: _Problem, stage: tuple[str, EnergyWeights], change: float) -> _Problem:
+    name, weights = stage
+    terms = energy_problem(problem.setting, problem.freedom, weights)
+    descent = minimize_energy(terms, problem.unknowns, problem.max_iterations, change)
+    energies = {
+        term.name: history for term, history in zip(terms.terms, descent.history.T, strict=True)
+    }
+    done = Stage(name, descent.status, descent.iterations, energies)
+    return replace(problem, unknowns=descent.state, stages=(*problem.stages, done))
 
 
 def _finished(problem: _Problem, corners: Corners) -> tuple[SphereMesh, Optimization]:

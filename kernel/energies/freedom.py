@@ -187,9 +187,10 @@ def moved(
         Rows that became imaginary are not finite, so no energy accepts them.
     """
     spheres, displacements, normals = steps
-    result = replace(
-        unknowns, spheres=_normalized(unknowns.spheres + spheres, freedom.has_fixed_radius)
-    )
+    keeps_radius = freedom.has_fixed_radius
+    rows = unknowns.spheres + spheres
+    rows[keeps_radius, 0] = unknowns.spheres[keeps_radius, 0]
+    result = replace(unknowns, spheres=_normalized(rows, keeps_radius))
     if len(displacements):
         free = project_displacements(freedom, unknowns.displacements + displacements)
         result = replace(result, displacements=free)

@@ -220,9 +220,16 @@ def _free_entries(
         normals = unknowns.normals[block.ids]
         return table - dot(table, normals)[:, None] * normals
 
+    def _keep(block: Block, table: FloatArray) -> FloatArray:
+        """A gauge term acts across the tangents; a fixed A is no unknown all the same."""
+        if block.group == Group.SPHERE:
+            table[freedom.has_fixed_radius[block.ids], 0] = 0
+        return table
+
     return [
-        tables
-        if term.is_gauge
-        else tuple(_project(block, table) for block, table in zip(blocks, tables, strict=True))
+        tuple(
+            _keep(block, table) if term.is_gauge else _project(block, table)
+            for block, table in zip(blocks, tables, strict=True)
+        )
         for term, blocks, tables in zip(problem.terms, pattern.blocks, entries, strict=True)
     ]
