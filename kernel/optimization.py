@@ -24,7 +24,7 @@ from .energies.table import EnergyWeights
 from .errors import InputError, name_ids
 from .fit import face_planes
 from .mesh import Mesh, face_centroids, mean_edge_length, with_vertices
-from .pencil import check_angle_options, pencil_angles
+from .pencil import check_angle_options, minimize_angles, pencil_angles
 from .solvers.levenberg_marquardt import Status
 from .sphere_mesh import SphereMesh, intersection_angles, vertex_error
 from .spheres import recenter, rescale
@@ -127,7 +127,7 @@ class Optimization:
         bool
             False if it used up its iterations.
         """
-        return self.stages[-1].status == "converged"
+        return self.stages[-1].status != "exhausted"
 
 
 def optimize_spheres(
@@ -243,6 +243,9 @@ def _problem(sphere_mesh: SphereMesh, conditions: Conditions) -> _Problem:
     tolerance = conditions.tolerance
     if not (np.isfinite(tolerance) and tolerance >= 0):
         raise InputError(f"the tolerance must be finite and at least 0, not {tolerance}")
+    if conditions.target_angle > 0:
+        # At smooth contact the energy of another target is stationary: start in the pencils.
+        sphere_mesh, _ = minimize_angles(sphere_mesh, conditions.target_angle, weights)
     sphere_mesh, is_fixed = _with_radii(sphere_mesh, conditions.fixed_radii)
     return _Problem(
         mesh,

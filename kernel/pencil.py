@@ -7,7 +7,8 @@ edge only the four products of P, Q with P', Q' occur, so an iteration costs a f
 per edge and an F×F system with one entry per edge.
 
 Stage 1 minimises the signed energy ``sum (1 - g)`` with ``g = <<S, S'>>``, which tells smooth
-contact from a spike; stage 2 minimises the paper's ``sum (g² - cos² α)²`` from there.
+contact from a spike; stage 2 minimises the paper's ``sum (g² - cos² α)²`` from there, with
+``g |g|`` for ``g²``, so that 120 degrees are no more taken for 60.
 """
 
 from collections.abc import Callable
@@ -25,7 +26,7 @@ from .sphere_mesh import SphereMesh
 from .spheres import minkowski
 from .tolerances import ANGLE_STEP, DAMPING, ENERGY_ROUNDING
 
-MAX_ITERATIONS = 100
+MAX_ITERATIONS = 1000
 
 
 @dataclass(frozen=True)
@@ -180,7 +181,7 @@ def signed_density(products: FloatArray) -> tuple[FloatArray, FloatArray, FloatA
 
 def angle_density(target: float) -> EdgeEnergy:
     """
-    Density ``(g² - cos² α)²`` of stage 2.
+    Density ``(g |g| - cos² α)²`` of stage 2: the paper's, told from a spike by its sign.
 
     Parameters
     ----------
@@ -201,8 +202,9 @@ def angle_density(target: float) -> EdgeEnergy:
     def _density(
         products: FloatArray,
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        excess = products**2 - aim
-        return excess**2, 4 * products * excess, 4 * excess + 8 * products**2
+        size, side = np.abs(products), np.sign(products)
+        excess = products * size - aim
+        return excess**2, 4 * size * excess, 4 * side * excess + 8 * products**2
 
     return _density
 

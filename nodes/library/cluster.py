@@ -8,6 +8,7 @@ import numpy as np
 from ...kernel import clustering
 from ...kernel.arrays import FloatArray, IntArray
 from ...kernel.sphere_mesh import SphereMesh, intersection_angles
+from ...kernel.tolerances import COMMON_VERTEX
 from ..node import node, warn
 from ..ports import Port
 
@@ -25,10 +26,12 @@ class Clusters(NamedTuple):
 def cluster_radii(
     sphere_mesh: SphereMesh,
     k: Annotated[int, Port(min=1)],
+    relax: bool = True,  # noqa: FBT001, FBT002 - a toggle on the canvas
+    tolerance: Annotated[float, Port(min=0)] = 0.05,
     seed: Annotated[int, Port(min=0)] = 0,
 ) -> Clusters:
     """
-    Give all panels at most k radii; the vertices stay where they are.
+    Give all panels at most k radii.
 
     Parameters
     ----------
@@ -36,37 +39,59 @@ def cluster_radii(
         The sphere mesh.
     k : int
         Number of moulds.
+    relax : bool
+        Whether vertices move, so that the panels of given radii meet more smoothly.
+    tolerance : float
+        How far vertices move at most, in mean edges.
     seed : int
         Seed of the clustering.
 
     Returns
     -------
     sphere_mesh : SphereMesh
-        Spheres through the same circles with the radius of their mould.
+        Spheres with the radius of their mould: through the same circles, or relaxed, through
+        moved vertices.
     labels : (F,) int array
         Mould of each face, 0 the sharpest.
     radii : (k,) float array
         Radii of the moulds, ascending; infinite for a flat one.
     report : mapping
         ``count``, ``radii`` (None for a flat mould), ``panels_per_mould``, ``angles_deg``
-        (mean and max) and ``reassigned`` (faces that are too large for the mould nearest to
-        them).
+        (mean and max), ``unrelaxed_angles_deg``, ``reassigned`` (faces that are too large for
+        the mould nearest to them), ``relaxed`` and ``vertex_move`` (in mean edges).
     """
-    result, clusters = clustering.cluster_radii(sphere_mesh, k, seed)
+    clustered, clusters = clustering.cluster_radii(sphere_mesh, k, seed)
+    result, move = clustered, 0.0
+    if relax and tolerance > 0:
+        relaxed, run = clustering.relax_moulds(clustered, clusters, tolerance)
+        if run.vertex_miss <= COMMON_VERTEX:
+            result, move = relaxed, run.vertex_move
+        else:
+            warn(
+                f"the vertices do not reach the moulds' spheres within {tolerance:g} mean "
+                "edges: they stay where they were"
+            )
     reassigned = np.flatnonzero(clusters.reassigned).tolist()
     if reassigned:
         warn(f"{len(reassigned)} faces are too large for their mould and moved to a larger one")
     if len(clusters.radii) < k:
         warn(f"{len(clusters.radii)} moulds suffice: no more radii differ")
-    angles = np.degrees(intersection_angles(result))
     report = {
         "count": len(clusters.radii),
         "radii": [float(r) if np.isfinite(r) else None for r in clusters.radii],
         "panels_per_mould": clusters.counts.tolist(),
-        "angles_deg": {
-            "mean": float(angles.mean()) if len(angles) else 0.0,
-            "max": float(angles.max(initial=0.0)),
-        },
+        "angles_deg": _angles(result),
+        "unrelaxed_angles_deg": _angles(clustered),
         "reassigned": reassigned,
+        "relaxed": result is not clustered,
+        "vertex_move": move,
     }
     return Clusters(result, clusters.labels, clusters.radii, report)
+
+
+def _angles(sphere_mesh: SphereMesh) -> dict[str, float]:
+    angles = np.degrees(intersection_angles(sphere_mesh))
+    return {
+        "mean": float(angles.mean()) if len(angles) else 0.0,
+        "max": float(angles.max(initial=0.0)),
+    }

@@ -1,19 +1,22 @@
-"""Spheres that meet smoothly."""
+"""Spheres that meet smoothly, at a given angle, or along strips."""
 
 from collections.abc import Mapping
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 
-from ...kernel import pencil
+from ...kernel import optimization, pencil, strips
 from ...kernel.arrays import FloatArray
-from ...kernel.errors import ConvergenceError
+from ...kernel.energies.table import EnergyWeights
+from ...kernel.errors import ConvergenceError, InputError
 from ...kernel.fit import face_planes
-from ...kernel.mesh import mean_edge_length
+from ...kernel.mesh import Mesh, mean_edge_length
 from ...kernel.sphere_mesh import SphereMesh, intersection_angles, vertex_error
-from ...kernel.tolerances import LITTLE_GAIN, VERTEX_MISS
+from ...kernel.tolerances import CIRCULAR, LITTLE_GAIN, VERTEX_MISS
 from ..node import node, warn
 from ..ports import Port
+
+Weight = Annotated[float, Port(min=0)]
 
 
 class Optimum(NamedTuple):
@@ -28,6 +31,7 @@ def minimize_angles(
     sphere_mesh: SphereMesh,
     target_angle: Annotated[float, Port(unit="deg", min=0, max=90)] = 0.0,
     edge_weights: FloatArray | None = None,
+    max_miss: Annotated[float | None, Port(min=0)] = None,
 ) -> Optimum:
     """
     Choose the spheres through the faces' circles that meet their neighbours most smoothly.
@@ -40,6 +44,9 @@ def minimize_angles(
         Angle at which neighbours shall meet.
     edge_weights : (E,) float array, optional
         Weight of each interior edge; 1 for all by default.
+    max_miss : float, optional
+        How far a vertex may lie from the circle of its face, in mean edges; farther off it is
+        an error, by default a warning.
 
     Returns
     -------
@@ -56,29 +63,192 @@ def minimize_angles(
             f"the angles did not come to rest in {sum(run.iterations)} steps (last step "
             f"{run.step:.1e} rad): look for nearly degenerate faces"
         )
-    planar = _angles(face_planes(result.mesh))
-    spherical = _angles(result)
-    miss = float(vertex_error(result).max())
-    relative = miss / mean_edge_length(result.mesh)
+    if max_miss is not None and run.circle_miss > max(max_miss, CIRCULAR):
+        raise ConvergenceError(
+            f"the vertices of some faces lie on no common circle: they miss it by up to "
+            f"{run.circle_miss:.3g} mean edges and {max_miss:g} is allowed; let vertices move "
+            f"by a tolerance of about {run.circle_miss:.2g}"
+        )
+    outcome = _outcome(result, sphere_mesh.mesh)
+    relative = outcome["vertex_error"]["relative_to_edge"]
     if relative > VERTEX_MISS:
         warn(
             f"vertices miss their spheres by up to {relative:.3g} mean edges: the faces are "
             "not circular; panels are exact, but their corners move off the mesh by as much"
         )
-    if target_angle == 0 and spherical["mean"] > (1 - LITTLE_GAIN) * planar["mean"]:
-        warn(
-            f"spheres gain little over planes here ({planar['mean']:.3g} to "
-            f"{spherical['mean']:.3g} degrees): the surface is nearly minimal or flat"
-        )
+    if target_angle == 0:
+        _warn_of_little_gain(outcome)
     report = {
         "converged": run.converged,
         "iterations": list(run.iterations),
         "energies": list(run.energies),
-        "angles_deg": {"planar": planar, "spherical": spherical},
-        "vertex_error": {"max": miss, "relative_to_edge": relative},
+        **outcome,
         "circle_miss": run.circle_miss,
     }
     return Optimum(result, report)
+
+
+@node
+def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
+    sphere_mesh: SphereMesh,
+    sphericity: Weight = 1.0,
+    angle: Weight = 0.1,
+    regularity: Weight = 0.0,
+    support: Weight = 0.0,
+    fairness: Weight = 0.0,
+    closeness: Weight = 0.0,
+    target_angle: Annotated[float, Port(unit="deg", min=0, max=90)] = 0.0,
+    edge_weights: FloatArray | None = None,
+    tolerance: Annotated[float, Port(min=0)] = 0.0,
+    fixed_radii: FloatArray | None = None,
+    interior: Literal["free", "glide"] = "free",
+    boundary: Literal["free", "glide", "fixed"] = "free",
+    max_iterations: Annotated[int, Port(min=1)] = 100,
+) -> Optimum:
+    """
+    Minimise a weighted sum of what a sphere mesh should fulfil.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        Mesh and spheres to start from; those of `minimize_angles` are a good start.
+    sphericity : float
+        Weight of vertices lying on the spheres of their faces.
+    angle : float
+        Weight of neighbours meeting at the target angle.
+    regularity : float
+        Weight of the planes between neighbours standing upright; 3.5 goes with a support.
+    support : float
+        Weight of nodes without torsion; 1 asks for them. It is raised until they have none.
+    fairness : float
+        Weight of moving vertices lying near the mean of their neighbours.
+    closeness : float
+        Weight of moving vertices staying where they were.
+    target_angle : float
+        Angle at which neighbours shall meet.
+    edge_weights : (E,) float array, optional
+        Weight of the angle over each interior edge; 1 for all by default.
+    tolerance : float
+        How far vertices may move, in mean edges. They move until all spheres of a vertex pass
+        through it; where that would be rougher than flat panels, they stay, and each sphere
+        passes within the tolerance of them.
+    fixed_radii : (F,) float array, optional
+        Radius of each face, infinite for a plane, 0 where it is free.
+    interior : {"free", "glide"}
+        Whether moving vertices may leave the tangent plane of the mesh.
+    boundary : {"free", "glide", "fixed"}
+        How boundary vertices move; gliding ones along the boundary.
+    max_iterations : int
+        Largest number of linear systems of each stage.
+
+    Returns
+    -------
+    sphere_mesh : SphereMesh
+        The optimum, on moved vertices if they may move.
+    report : mapping
+        ``converged``; ``stages`` (name, status, iterations, energies of each term);
+        ``corners``: ``soft`` (vertices stay, spheres pass near them), ``common`` (all spheres
+        of a vertex pass through it) or ``own`` (each within the tolerance of it);
+        ``vertex_move`` in mean edges; ``angles_deg`` (mean and max, of the planes and of the
+        spheres) and ``vertex_error`` (max, and relative to the mean edge).
+    """
+    weights = EnergyWeights(
+        sphericity=sphericity, angle=angle, regularity=regularity, support=support,
+        fairness=fairness, closeness=closeness,
+    )  # fmt: skip
+    conditions = optimization.Conditions(
+        np.radians(target_angle), edge_weights, tolerance, fixed_radii, interior, boundary,
+        max_iterations,
+    )  # fmt: skip
+    result, run = optimization.optimize_spheres(sphere_mesh, weights, conditions)
+    outcome = _outcome(result, sphere_mesh.mesh)
+    if not run.converged:
+        warn(
+            f"the optimisation used up its {max_iterations} iterations: the result is its best "
+            "so far; raise max_iterations"
+        )
+    if run.corners == "own":
+        warn(
+            f"no common spheres within a tolerance of {tolerance:g} mean edges are smoother "
+            "than flat panels: vertices stay, and each panel has corners of its own within the "
+            "tolerance of them"
+        )
+    elif outcome["vertex_error"]["relative_to_edge"] > VERTEX_MISS:
+        warn(
+            f"vertices miss their spheres by up to {run.vertex_miss:.3g} mean edges: allow a "
+            "tolerance to let them move"
+        )
+    if target_angle == 0 and support == 0:
+        _warn_of_little_gain(outcome)
+    stages = [
+        {
+            "name": stage.name,
+            "status": stage.status,
+            "iterations": stage.iterations,
+            "energies": {name: list(map(float, e)) for name, e in stage.energies.items()},
+        }
+        for stage in run.stages
+    ]
+    report = {
+        "converged": run.converged,
+        "stages": stages,
+        "corners": run.corners,
+        "vertex_move": run.vertex_move,
+        **outcome,
+    }
+    return Optimum(result, report)
+
+
+@node
+def strip_weights(mesh: Mesh, direction: int | FloatArray = 0) -> FloatArray:
+    """
+    Weights that let spheres join smoothly along strips, and only there.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Quadrilaterals for a direction of the net; any faces for a direction in space.
+    direction : int or float array
+        0: strips run as the first quadrilateral does from its first to its second corner, and
+        1 across; or a vector (3,), or one per face (F, 3), along which they run.
+
+    Returns
+    -------
+    (E,) float array
+        1 on the edges between neighbours of a strip, 0 on all others: for `minimize_angles`
+        and `optimize_spheres`.
+    """
+    if not isinstance(direction, int | np.integer):
+        return strips.strip_weights_along(mesh, direction)
+    if direction not in (0, 1):
+        raise InputError(f"a net has the directions 0 and 1, not {direction}")
+    return strips.strip_weights(mesh, "second" if direction else "first")
+
+
+def _outcome(sphere_mesh: SphereMesh, design: Mesh) -> dict[str, Any]:
+    """What came out, against flat panels on the mesh as it was designed."""
+    miss = float(vertex_error(sphere_mesh).max())
+    return {
+        "angles_deg": {
+            "planar": _angles(face_planes(design)),
+            "spherical": _angles(sphere_mesh),
+        },
+        "vertex_error": {
+            "max": miss,
+            "relative_to_edge": miss / mean_edge_length(sphere_mesh.mesh),
+        },
+    }
+
+
+def _warn_of_little_gain(outcome: Mapping[str, Any]) -> None:
+    planar, spherical = (
+        outcome["angles_deg"][kind]["mean"] for kind in ("planar", "spherical")
+    )
+    if spherical > (1 - LITTLE_GAIN) * planar:
+        warn(
+            f"spheres gain little over planes here ({planar:.3g} to {spherical:.3g} degrees): "
+            "the surface is nearly minimal or flat"
+        )
 
 
 def _angles(sphere_mesh: SphereMesh) -> dict[str, float]:
