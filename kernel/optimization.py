@@ -34,6 +34,9 @@ Corners = Literal["soft", "common", "own"]
 
 SPHERICITY_FACTORS = (10, 100, 1000)
 SUPPORT_FACTORS = (10, 100, 1000, 10_000, 100_000)
+LANDING_SUPPORT = 1000.0
+"""Weight of the support against that of sphericity in the landing: its residuals are products
+of two curvatures, and small."""
 
 
 @dataclass(frozen=True)
@@ -164,8 +167,9 @@ def optimize_spheres(
     Regularity and support vanish when all spheres are planes, so they come after a stage of
     angles alone. What has to hold exactly, nodes with an axis and vertices on their spheres, is
     brought about by raising its weight from stage to stage; where neighbours are nearly the
-    same sphere, the residuals of the support are small whatever the torsion. Last, sphericity
-    is minimised alone, which moves everything as little as needed.
+    same sphere, the residuals of the support are small whatever the torsion. Last, moving
+    vertices land: what has to hold is minimised alone, which Gauss-Newton steps do quickly and
+    without moving anything more than needed.
 
     References
     ----------
@@ -173,7 +177,7 @@ def optimize_spheres(
     """
     weights = EnergyWeights() if weights is None else weights
     conditions = Conditions() if conditions is None else conditions
-    near = _problem(sphere_mesh, conditions)
+    near = _angles_first(_problem(sphere_mesh, conditions), weights)
     if conditions.tolerance == 0:
         return _finished(_tightened(near, weights, ()), "soft")
     result, report = move_vertices(sphere_mesh, weights, conditions)
@@ -216,15 +220,15 @@ def move_vertices(
     InputError
         If a condition is out of range or does not match the mesh.
     """
-    problem = _problem(sphere_mesh, conditions)
+    problem = _angles_first(_problem(sphere_mesh, conditions), weights)
     freedom = replace(
         problem.freedom,
         tolerance=conditions.tolerance,
         vertices=vertex_freedom(problem.mesh, conditions.interior, conditions.boundary),
     )
     problem = _tightened(replace(problem, freedom=freedom), weights, ("sphericity",))
-    landing = ("landing", EnergyWeights(sphericity=1.0, angle=0.0))
-    return _finished(_descend(problem, landing, ENERGY_CHANGE), "common")
+    exact = EnergyWeights(sphericity=1.0, angle=0.0, support=LANDING_SUPPORT * weights.support)
+    return _finished(_descend(problem, ("landing", exact), ENERGY_CHANGE), "common")
 
 
 @dataclass(frozen=True)
@@ -285,14 +289,20 @@ def _with_radii(
     return SphereMesh.from_local(mesh, rows), is_fixed
 
 
+def _angles_first(problem: _Problem, weights: EnergyWeights) -> _Problem:
+    """Leave the planes, on which regularity and support vanish; vertices stay."""
+    if weights.angle == 0 or (weights.regularity == 0 and weights.support == 0):
+        return problem
+    alone = replace(weights, regularity=0.0, support=0.0)
+    return _descend(problem, ("angles", alone), STAGE_CHANGE)
+
+
 def _tightened(problem: _Problem, weights: EnergyWeights, hard: tuple[str, ...]) -> _Problem:
     """Minimise; then again and again with ten times the weight on what has to hold exactly."""
     stages = [("energy", weights)]
-    if weights.angle > 0 and (weights.regularity > 0 or weights.support > 0):
-        stages.insert(0, ("angles", replace(weights, regularity=0.0, support=0.0)))
-    factors = SPHERICITY_FACTORS if hard else ()
+    factors = SPHERICITY_FACTORS if hard else SUPPORT_FACTORS if weights.support > 0 else ()
     if weights.support > 0:
-        hard, factors = (*hard, "support"), SUPPORT_FACTORS
+        hard = (*hard, "support")
     for factor in factors:
         raised = {name: factor * getattr(weights, name) for name in hard}
         stages.append((f"{' and '.join(hard)} x {factor}", replace(weights, **raised)))

@@ -35,11 +35,26 @@ def solve_definite(matrix: Any, shift: float, right: FloatArray) -> FloatArray: 
 
     shifted: Any = csc_array(matrix + shift * eye_array(len(right)))
     if importlib.util.find_spec("sksparse") is not None:
-        return _by_cholmod(shifted, right)
-    return _by_superlu(shifted, right)
+        return solve_by_cholmod(shifted, right)
+    return solve_by_superlu(shifted, right)
 
 
-def _by_superlu(matrix: Any, right: FloatArray) -> FloatArray:  # noqa: ANN401
+def solve_by_superlu(matrix: Any, right: FloatArray) -> FloatArray:  # noqa: ANN401
+    """
+    Solve ``H x = b`` by SuperLU.
+
+    Parameters
+    ----------
+    matrix : (n, n) csc_array
+        Symmetric, positive definite H.
+    right : (n,) float array
+        Vector b.
+
+    Returns
+    -------
+    (n,) float array
+        The solution.
+    """
     from scipy.sparse import linalg
 
     solver: Any = linalg
@@ -52,6 +67,23 @@ def _by_superlu(matrix: Any, right: FloatArray) -> FloatArray:  # noqa: ANN401
     return np.asarray(factors.solve(right), np.float64)
 
 
-def _by_cholmod(matrix: Any, right: FloatArray) -> FloatArray:  # noqa: ANN401
+def solve_by_cholmod(matrix: Any, right: FloatArray) -> FloatArray:  # noqa: ANN401
+    """
+    Solve ``H x = b`` by CHOLMOD; needs scikit-sparse 0.4.
+
+    Parameters
+    ----------
+    matrix : (n, n) csc_array
+        Symmetric, positive definite H.
+    right : (n,) float array
+        Vector b.
+
+    Returns
+    -------
+    (n,) float array
+        The solution.
+    """
+    from scipy.sparse import csc_matrix
+
     cholmod: Any = importlib.import_module("sksparse.cholmod")
-    return np.asarray(cholmod.cho_factor(matrix).solve(right), np.float64)
+    return np.asarray(cholmod.cholesky(csc_matrix(matrix))(right), np.float64)
