@@ -7,6 +7,7 @@ from ...fabrication import rhino, schedule, step
 from ...fabrication.files import check_suffix, replacing
 from ...kernel import cutting
 from ...kernel.arrays import IntArray
+from ...kernel.beams import Beams
 from ...kernel.errors import name_ids
 from ...kernel.panels import Panels
 from ...kernel.sphere_mesh import SphereMesh
@@ -75,19 +76,20 @@ def panels(
 
 @node
 def write_step(
-    panels: Panels,
-    path: WritePath,
+    panels: Panels | None = None,
+    path: WritePath = "model.step",
     units: Units = "m",
     step_units: Literal["mm", "m"] = "mm",
     schema: Literal["AP214IS", "AP242DIS"] = "AP214IS",
+    beams: Beams | None = None,
 ) -> str:
     """
-    Write panels to a STEP file: exact solids, or faces where they have no thickness.
+    Write panels and beams to a STEP file: exact solids, or faces without thickness.
 
     Parameters
     ----------
-    panels : Panels
-        The panels.
+    panels : Panels, optional
+        The panels; these or beams are needed.
     path : path
         Ends in .step or .stp.
     units : str
@@ -96,42 +98,47 @@ def write_step(
         Units of the file.
     schema : {"AP214IS", "AP242DIS"}
         Application protocol.
+    beams : Beams, optional
+        The beams, with mitred ends.
 
     Returns
     -------
     str
         The path.
     """
-    return str(step.write_step(panels, path, units, step_units, schema))
+    return str(step.write_step(panels, path, units, step_units, schema, beams=beams))
 
 
 @node
 def write_3dm(
-    panels: Panels,
-    path: WritePath,
+    panels: Panels | None = None,
+    path: WritePath = "model.3dm",
     units: Units = "m",
     version: Annotated[int, Port(min=6, max=8)] = 8,
+    beams: Beams | None = None,
 ) -> str:
     """
-    Write panels to a Rhino file: exact trimmed spheres, layers per mould, user text.
+    Write panels and beams to a Rhino file: exact trimmed spheres, layers per mould, user text.
 
     Parameters
     ----------
-    panels : Panels
-        The panels.
+    panels : Panels, optional
+        The panels; these or beams are needed.
     path : path
         Ends in .3dm.
     units : str
         Model units; those of the file.
     version : int
         Rhino version of the file.
+    beams : Beams, optional
+        The beams, as extrusions of their flat contours, and the node axes.
 
     Returns
     -------
     str
         The path. The document carries the graph that is running.
     """
-    return str(rhino.write_3dm(panels, path, units, running_graph(), version))
+    return str(rhino.write_3dm(panels, path, units, running_graph(), version, beams=beams))
 
 
 @node
