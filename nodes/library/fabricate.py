@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, NamedTuple
 
-from ...fabrication import rhino, schedule, step
+from ...fabrication import dxf, rhino, schedule, step
 from ...fabrication.files import check_suffix, replacing
 from ...kernel import cutting
 from ...kernel.arrays import IntArray
@@ -139,6 +139,42 @@ def write_3dm(
         The path. The document carries the graph that is running.
     """
     return str(rhino.write_3dm(panels, path, units, running_graph(), version, beams=beams))
+
+
+@node
+def write_dxf(
+    beams: Beams,
+    path: WritePath,
+    units: Units = "m",
+    sheet: tuple[float, float] = (3000.0, 1500.0),
+    spacing: Length = 10.0,
+) -> str:
+    """
+    Write cutting drawings of beams: exact contours, nested on sheets, in millimetres.
+
+    Parameters
+    ----------
+    beams : Beams
+        The beams.
+    path : path
+        Ends in .dxf.
+    units : str
+        Model units.
+    sheet : (float, float)
+        Width and height of the sheets, in millimetres.
+    spacing : float
+        Distance between pieces and from the rim, in millimetres.
+
+    Returns
+    -------
+    str
+        The path. Layers: CUT, ENGRAVE (ids, nodes, bevels of the ends in degrees) and SHEET.
+    """
+    file = dxf.write_dxf(beams, path, units, sheet, spacing)
+    if file.oversize:
+        shown = ", ".join(file.oversize[:8])
+        warn(f"{len(file.oversize)} beams are larger than the sheet: {shown}")
+    return str(file.path)
 
 
 @node
