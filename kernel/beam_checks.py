@@ -99,12 +99,12 @@ def inner_reasons(annuli: "Annuli", size: float) -> dict[int, str]:
     backwards = dot(outer_chords, inner_chords) <= 0
     for row in np.flatnonzero(backwards).tolist():
         reasons.setdefault(row, "the lines of the two ends cross within the depth")
-    sides = dot(annuli.corners[:, :, 1] - annuli.corners[:, :, 0], annuli.end_directions)
-    for row in np.flatnonzero(sides[:, 0] * sides[:, 1] < 0).tolist():
-        reasons.setdefault(row, "the two arcs cross: one end reaches inside, one outside")
     heights = norm(annuli.corners[:, :, 1] - annuli.corners[:, :, 0]).min(axis=1)
     for row in np.flatnonzero(heights <= DEGENERATE * size).tolist():
         reasons.setdefault(
             row, "the arc is straight, and a constant power gives it no depth: give a depth"
         )
+    sides = dot(annuli.corners[:, :, 1] - annuli.corners[:, :, 0], annuli.end_directions)
+    for row in np.flatnonzero(sides[:, 0] * sides[:, 1] < 0).tolist():
+        reasons.setdefault(row, "the two arcs cross: one end reaches inside, one outside")
     return reasons
