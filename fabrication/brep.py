@@ -16,29 +16,19 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from OCP.BRep import BRep_Builder
 from OCP.Geom import (
-    Geom_Circle,
-    Geom_Curve,
     Geom_Line,
     Geom_Plane,
     Geom_SphericalSurface,
     Geom_Surface,
 )
 from OCP.Geom2d import Geom2d_BSplineCurve
-from OCP.gp import gp_Ax2, gp_Ax3, gp_Dir, gp_Pnt, gp_Pnt2d, gp_Trsf, gp_Vec
-from OCP.TColgp import TColgp_Array1OfPnt2d
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
-from OCP.TopAbs import TopAbs_Orientation
-from OCP.TopLoc import TopLoc_Location
+from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt
 from OCP.TopoDS import (
     TopoDS_Edge,
     TopoDS_Face,
     TopoDS_Shape,
-    TopoDS_Shell,
-    TopoDS_Solid,
     TopoDS_Vertex,
-    TopoDS_Wire,
 )
 
 from ..kernel.arcs import ArcCircles, Arcs, arc_circles
@@ -47,11 +37,20 @@ from ..kernel.errors import InputError
 from ..kernel.panels import Panels, inner_panel_arcs, move_origins, panel_arcs, scale_panels
 from ..kernel.spheres import center_radius, signed_distance
 from ..kernel.tolerances import EPSILON
-
-CONFUSION = 1e-7
-"""Distance below which OpenCASCADE takes points for one; meant for millimetres."""
-
-_BUILDER = BRep_Builder()
+from .brep_parts import (
+    BUILDER,
+    CONFUSION,
+    arc_curves,
+    circle_axes,
+    make_edge,
+    make_face,
+    make_solid,
+    make_spline,
+    make_vertex,
+    placement,
+    quintic_poles,
+    rounded_origins,
+)
 
 
 @dataclass(frozen=True)
@@ -96,7 +95,7 @@ def panel_shapes(
     of a panel of n edges takes 0.1 n ms with, half of it without curves in parameters.
     """
     panels = scale_panels(panels, scale)
-    panels = move_origins(panels, _rounded(panels.origins))
+    panels = move_origins(panels, rounded_origins(panels.origins))
     tolerances = _tolerances(panels)
     broken = [panels.ids[i] for i in np.flatnonzero(~np.isfinite(tolerances))]
     if broken:
@@ -109,26 +108,13 @@ def panel_shapes(
         walls = _walls(panels, outer, inner, tolerances)
         bounds = panels.offsets.tolist()
         shapes = [
-            _solid([face, inner_face.Reversed(), *walls[first:last]])
+            make_solid([face, inner_face.Reversed(), *walls[first:last]])
             for face, inner_face, first, last in zip(
                 outer.faces, inner.faces, bounds, bounds[1:], strict=False
             )
         ]
     places = panels.origins.tolist()
-    return [shape.Located(_place(x)) for shape, x in zip(shapes, places, strict=True)]
-
-
-def _rounded(origins: FloatArray) -> FloatArray:
-    """Origins with the decimals that leave the farthest ten digits."""
-    farthest = float(np.abs(origins).max(initial=0.0))
-    decimals = 10 - int(np.ceil(np.log10(farthest))) if farthest > 0 else 0
-    return np.round(origins, decimals)
-
-
-def _place(origin: list[float]) -> TopLoc_Location:
-    translation = gp_Trsf()
-    translation.SetTranslation(gp_Vec(*origin))
-    return TopLoc_Location(translation)
+    return [shape.Located(placement(x)) for shape, x in zip(shapes, places, strict=True)]
 
 
 def _tolerances(panels: Panels) -> FloatArray:
@@ -159,14 +145,14 @@ def _layer(
     frames = _frames(rows, arcs, panels.offsets)
     circles = arc_circles(arcs)
     vertices = [
-        _vertex(point, tolerance)
+        make_vertex(point, tolerance)
         for point, tolerance in zip(arcs.starts.tolist(), corner_tolerances, strict=True)
     ]
     following: list[int] = panels.next_corners.tolist()
     ends = [vertices[corner] for corner in following]
-    curves, lengths = _curves(arcs, circles)
+    curves, lengths = arc_curves(arcs, circles)
     edges = [
-        _edge(*parts)
+        make_edge(*parts)
         for parts in zip(curves, vertices, ends, lengths, corner_tolerances, strict=True)
     ]
     surfaces = _surfaces(rows, frames)
@@ -219,34 +205,6 @@ def _surfaces(rows: FloatArray, frames: FloatArray) -> list[Geom_Surface]:
     return surfaces
 
 
-def _curves(arcs: Arcs, circles: ArcCircles) -> tuple[list[Geom_Curve], list[float]]:
-    """Curves from parameter 0 at the starts of arcs, and the parameters of their ends."""
-    starts, chords = arcs.starts, arcs.ends - arcs.starts
-    x_axes, _ = _circle_axes(arcs, circles)
-    curves: list[Geom_Curve] = []
-    for start, chord, center, axis, x, radius in zip(
-        starts.tolist(), chords.tolist(), circles.centers.tolist(), circles.axes.tolist(),
-        x_axes.tolist(), circles.radii.tolist(), strict=True,
-    ):  # fmt: skip
-        if radius == np.inf:
-            curves.append(Geom_Line(gp_Pnt(*start), gp_Dir(*chord)))
-        else:
-            axes = gp_Ax2(gp_Pnt(*center), gp_Dir(*axis), gp_Dir(*x))
-            curves.append(Geom_Circle(axes, radius))
-    lengths = np.where(np.isinf(circles.radii), norm(chords), circles.sweeps)
-    return curves, lengths.tolist()
-
-
-def _circle_axes(arcs: Arcs, circles: ArcCircles) -> tuple[FloatArray, FloatArray]:
-    """Unit vectors from the centres to the starts, and along the arcs at their starts."""
-    half = circles.sweeps[:, None] / 2
-    along = unit(arcs.ends - arcs.starts)
-    outward = np.copysign(1.0, arcs.sagittas)[:, None] * arcs.rises
-    x = np.cos(half) * outward - np.sin(half) * along
-    y = np.sin(half) * outward + np.cos(half) * along
-    return x, y
-
-
 def _walls(
     panels: Panels, outer: _Layer, inner: _Layer, tolerances: FloatArray
 ) -> list[TopoDS_Face]:
@@ -254,7 +212,7 @@ def _walls(
     corner_tolerances = tolerances[panels.corner_panels].tolist()
     rises = panels.corners - panels.inner_corners
     posts = [
-        _edge(Geom_Line(gp_Pnt(*foot), gp_Dir(*rise)), bottom, top, height, tolerance)
+        make_edge(Geom_Line(gp_Pnt(*foot), gp_Dir(*rise)), bottom, top, height, tolerance)
         for foot, rise, height, bottom, top, tolerance in zip(
             panels.inner_corners.tolist(), rises.tolist(), norm(rises).tolist(),
             inner.vertices, outer.vertices, corner_tolerances, strict=True,
@@ -269,38 +227,10 @@ def _walls(
         inner.edges, next_posts, outer.edges, posts, corner_tolerances, strict=True,
     ):  # fmt: skip
         plane = Geom_Plane(gp_Ax3(gp_Pnt(*corner), gp_Dir(*normal), gp_Dir(*chord)))
-        walls.append(_face(plane, (low, right, high.Reversed(), left.Reversed()), tolerance))
+        walls.append(
+            make_face(plane, (low, right, high.Reversed(), left.Reversed()), tolerance)
+        )
     return walls
-
-
-def _vertex(point: list[float], tolerance: float) -> TopoDS_Vertex:
-    vertex = TopoDS_Vertex()
-    _BUILDER.MakeVertex(vertex, gp_Pnt(*point), tolerance)
-    return vertex
-
-
-def _edge(
-    curve: Geom_Curve, start: TopoDS_Vertex, end: TopoDS_Vertex, length: float, tolerance: float
-) -> TopoDS_Edge:
-    edge = TopoDS_Edge()
-    _BUILDER.MakeEdge(edge, curve, tolerance)
-    _BUILDER.Add(edge, start.Oriented(TopAbs_Orientation.TopAbs_FORWARD))
-    _BUILDER.Add(edge, end.Oriented(TopAbs_Orientation.TopAbs_REVERSED))
-    _BUILDER.Range(edge, 0.0, length)
-    return edge
-
-
-def _face(surface: Geom_Surface, ring: Iterable[TopoDS_Shape], tolerance: float) -> TopoDS_Face:
-    """Face to the left of a closed chain of oriented edges."""
-    wire = TopoDS_Wire()
-    _BUILDER.MakeWire(wire)
-    for edge in ring:
-        _BUILDER.Add(wire, edge)
-    wire.Closed(theIsClosed=True)
-    face = TopoDS_Face()
-    _BUILDER.MakeFace(face, surface, tolerance)
-    _BUILDER.Add(face, wire)
-    return face
 
 
 def _patch(
@@ -313,23 +243,11 @@ def _patch(
 ) -> TopoDS_Shape:
     """Face along N; is_inward: N points to the centre, unlike the surface's own normal."""
     ring = [edge.Reversed() for edge in reversed(edges)] if is_inward else edges
-    face = _face(surface, ring, tolerance)
+    face = make_face(surface, ring, tolerance)
     for edge, curve in zip(edges, curves_2d, strict=True):
         if curve is not None:
-            _BUILDER.UpdateEdge(edge, curve, face, tolerance)
+            BUILDER.UpdateEdge(edge, curve, face, tolerance)
     return face.Reversed() if is_inward else face
-
-
-def _solid(faces: Iterable[TopoDS_Shape]) -> TopoDS_Solid:
-    shell = TopoDS_Shell()
-    _BUILDER.MakeShell(shell)
-    for face in faces:
-        _BUILDER.Add(shell, face)
-    shell.Closed(theIsClosed=True)
-    solid = TopoDS_Solid()
-    _BUILDER.MakeSolid(solid)
-    _BUILDER.Add(solid, shell)
-    return solid
 
 
 def _parameter_curves(
@@ -343,7 +261,7 @@ def _parameter_curves(
     """
     result: list[Geom2d_BSplineCurve | None] = [None] * len(rows)
     curved = np.flatnonzero(np.isfinite(circles.radii))
-    x, y = (axes[curved] for axes in _circle_axes(arcs, circles))
+    x, y = (axes[curved] for axes in circle_axes(arcs, circles))
     frames, radii = frames[curved], circles.radii[curved]
     start = np.einsum("hij,hj->hi", frames, arcs.starts[curved])
     start[:, 0] -= norm(rows[curved, 1:4]) / (2 * np.abs(rows[curved, 0]))
@@ -355,11 +273,11 @@ def _parameter_curves(
     for count in np.unique(spans).tolist():
         ids = np.flatnonzero(spans == count)
         angles = sweeps[ids, None] * np.linspace(0, 1, count + 1)
-        poles = _quintic_poles(_sphere_parameters(motion[ids], angles), sweeps[ids] / count)
+        poles = quintic_poles(_sphere_parameters(motion[ids], angles), sweeps[ids] / count)
         for i, knots, points in zip(
             curved[ids].tolist(), angles.tolist(), poles.tolist(), strict=True
         ):
-            result[i] = _spline(knots, points)
+            result[i] = make_spline(knots, points)
     return result
 
 
@@ -400,36 +318,3 @@ def _sphere_parameters(motion: FloatArray, angles: FloatArray) -> FloatArray:
     v1 = qz / equator
     v2 = rz / equator - qz * half_rate / (square * equator)
     return np.stack([np.stack([u, v], -1), np.stack([u1, v1], -1), np.stack([u2, v2], -1)])
-
-
-def _quintic_poles(nodes: FloatArray, steps: FloatArray) -> FloatArray:
-    """
-    Poles (H, 3n + 3, 2) of quintic splines with triple inner knots, through n + 1 nodes.
-
-    With the Bézier points b₃, b₄ before an inner node and b₂ after it, the three poles of its
-    knot are b₃, 2 b₄ - b₃, b₂. The first and last three poles are Bézier points.
-    """
-    value, rate, bend = nodes
-    rate = rate * steps[:, None, None]
-    bend = bend * steps[:, None, None] ** 2
-    before = value - 0.4 * rate + 0.05 * bend
-    after = value + 0.4 * rate + 0.05 * bend
-    middle = 2 * (value - 0.2 * rate) - before
-    ring = np.stack([before, middle, after], 2)
-    ring[:, 0] = np.stack([value, value + 0.2 * rate, after], 2)[:, 0]
-    ring[:, -1] = np.stack([before, value - 0.2 * rate, value], 2)[:, -1]
-    return ring.reshape(len(steps), -1, 2)
-
-
-def _spline(knots: list[float], poles: list[list[float]]) -> Geom2d_BSplineCurve:
-    points = TColgp_Array1OfPnt2d(1, len(poles))
-    for i, pole in enumerate(poles, 1):
-        points.SetValue(i, gp_Pnt2d(*pole))
-    values = TColStd_Array1OfReal(1, len(knots))
-    multiplicities = TColStd_Array1OfInteger(1, len(knots))
-    for i, knot in enumerate(knots, 1):
-        values.SetValue(i, knot)
-        multiplicities.SetValue(i, 3)
-    multiplicities.SetValue(1, 6)
-    multiplicities.SetValue(len(knots), 6)
-    return Geom2d_BSplineCurve(points, values, multiplicities, 5)

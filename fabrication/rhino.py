@@ -18,7 +18,8 @@ from uuid import NAMESPACE_URL, UUID, uuid5
 import numpy as np
 
 from ..kernel.arrays import FloatArray
-from ..kernel.colors import UNLABELLED, mould_color
+from ..kernel.beams import Beams
+from ..kernel.colors import BEAM, UNLABELLED, mould_color
 from ..kernel.errors import InputError
 from ..kernel.panel_checks import RejectedPanel
 from ..kernel.panels import Panels, neighbor_ids, panel_areas
@@ -27,6 +28,7 @@ from .brep_audit import verify_breps
 from .brep_layout import read_brep_streams
 from .files import check_suffix, replacing
 from .opennurbs import brep_streams, edge_streams
+from .rhino_beams import axis_lines, beam_extrusions, beam_text
 from .units import millimeters_per
 
 VERSIONS: Final = (6, 7, 8)
@@ -56,22 +58,23 @@ _NOTE = (
 
 
 def write_3dm(
-    panels: Panels,
+    panels: Panels | None,
     path: str | os.PathLike[str],
     units: str = "m",
     graph_json: str = "",
     version: int = 8,
     title: str = "",
+    beams: Beams | None = None,
     *,
     centers: bool = False,
 ) -> Path:
     """
-    Write panels to a Rhino file.
+    Write panels and beams to a Rhino file.
 
     Parameters
     ----------
-    panels : Panels
-        The panels; their outer faces are written.
+    panels : Panels or None
+        The panels; their outer faces are written. None only if there are beams.
     path : path
         The file; an older one is replaced when the new one is whole.
     units : str
@@ -82,6 +85,9 @@ def write_3dm(
         Version of Rhino: 6, 7 or 8.
     title : str
         Title of the model, kept in the document string ``spheremesh::title``.
+    beams : Beams, optional
+        Beams, written as capped extrusions of their flat contours on the layer ``Beams``, with
+        the node axes as lines on the layer ``Axes``.
     centers : bool
         Whether the centres of the spheres are added as points, on the layer ``Centres``.
 
@@ -93,8 +99,9 @@ def write_3dm(
     Raises
     ------
     InputError
-        If units or version are not known, the file cannot be written, or Breps do not pass
-        `refused_breps`: then the message names the panels and nothing is written.
+        If there are neither panels nor beams, units or version are not known, the file cannot
+        be written, or Breps do not pass `refused_breps`: then the message names the panels and
+        nothing is written.
 
     Notes
     -----
@@ -107,17 +114,21 @@ def write_3dm(
     check_suffix(path, ".3dm")
     if version not in VERSIONS:
         raise InputError(f"unknown Rhino version {version}: use one of {VERSIONS}")
-    tolerance = _TOLERANCE / millimeters_per(units)
-    streams = brep_streams(panels)
-    _refuse(_judge(panels, streams))
-    rhino = _new_model(units, tolerance)
+    if panels is None and beams is None:
+        raise InputError(f"there are no panels or beams to write to {path}")
+    rhino = _new_model(units, _TOLERANCE / millimeters_per(units))
     _set_strings(rhino, graph_json, title)
-    _add_panels(rhino, panels, streams, units)
-    _add_edges(rhino, panels)
-    if centers:
-        _add_centers(rhino, panels)
+    if panels is not None:
+        streams = brep_streams(panels)
+        _refuse(_judge(panels, streams))
+        _add_panels(rhino, panels, streams, units)
+        _add_edges(rhino, panels)
+        if centers:
+            _add_centers(rhino, panels)
+    if beams is not None:
+        _add_beams(rhino, beams, units)
     data = _encode(rhino, version)
-    if len(read_brep_streams(data)) != panels.n_panels:
+    if len(read_brep_streams(data)) != (panels.n_panels if panels is not None else 0):
         raise InputError(f"cannot write {path}: rhino3dm did not encode the model")
     target = Path(path)
     with replacing(target) as temporary:
@@ -334,6 +345,21 @@ def _add_edges(rhino: _Rhino, panels: Panels) -> None:
     for stream, owner, side in zip(edge_streams(panels), owners, sides, strict=True):
         attributes = _attributes(rhino, panels.ids[owner], f"edge {side}", place)
         rhino.model.Objects.AddCurve(rhino.decode(stream), attributes)
+
+
+def _add_beams(rhino: _Rhino, beams: Beams, units: str) -> None:
+    place = _add_layer(rhino, "Beams", BEAM)
+    solids = beam_extrusions(rhino.library, beams)
+    for name, solid, text in zip(
+        beams.annuli.ids, solids, beam_text(beams, units), strict=True
+    ):
+        attributes = _attributes(rhino, name, "beam", place)
+        for key, value in text.items():
+            attributes.SetUserString(key, value)
+        rhino.model.Objects.AddExtrusion(solid, attributes)
+    place = _add_layer(rhino, "Axes", _BLACK)
+    for name, line in axis_lines(rhino.library, beams):
+        rhino.model.Objects.AddCurve(line, _attributes(rhino, name, "axis", place))
 
 
 def _add_centers(rhino: _Rhino, panels: Panels) -> None:

@@ -152,7 +152,7 @@ def annulus_arcs(annuli: Annuli) -> tuple[Arcs, Arcs]:
     outer, inner : Arcs
         B arcs each, from the first to the second end; sagittas count to the outer side.
     """
-    planes = annuli.frames[:, 2]
+    planes = -annuli.frames[:, 2]
     outer, inner = (
         sphere_arcs(rows, planes, annuli.corners[:, 0, k], annuli.corners[:, 1, k])
         for k, rows in enumerate((annuli.outer, annuli.inner))

@@ -162,6 +162,31 @@ def arc_lengths(arcs: Arcs) -> FloatArray:
     return norm(arcs.ends - arcs.starts) * ratio
 
 
+def segment_areas(arcs: Arcs) -> FloatArray:
+    """
+    Areas between arcs and their chords.
+
+    Parameters
+    ----------
+    arcs : Arcs
+        H arcs.
+
+    Returns
+    -------
+    (H,) float array
+        Areas with the sign of the sagitta; 0 for straight edges.
+    """
+    bulge = _bulges(arcs)
+    chords = arcs.ends - arcs.starts
+    square = bulge**2
+    # The closed form cancels for flat arcs; the series is exact there.
+    small = np.abs(bulge) < 0.02
+    series = bulge * (4 / 3 + square * (4 / 15 - square * 4 / 105))
+    safe = np.where(small, 1.0, bulge)
+    closed = ((1 + safe**2) ** 2 * np.arctan(safe) - safe * (1 - safe**2)) / (2 * safe**2)
+    return dot(chords, chords) / 4 * np.where(small, series, closed)
+
+
 def arc_circles(arcs: Arcs) -> ArcCircles:
     """
     Centre, axis, radius and sweep of each arc.

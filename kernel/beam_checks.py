@@ -104,4 +104,7 @@ def inner_reasons(annuli: "Annuli", size: float) -> dict[int, str]:
         reasons.setdefault(
             row, "the arc is straight, and a constant power gives it no depth: give a depth"
         )
+    sides = dot(annuli.corners[:, :, 1] - annuli.corners[:, :, 0], annuli.end_directions)
+    for row in np.flatnonzero(sides[:, 0] * sides[:, 1] < 0).tolist():
+        reasons.setdefault(row, "the two arcs cross: one end reaches inside, one outside")
     return reasons

@@ -8,6 +8,9 @@ Color: TypeAlias = tuple[int, int, int]
 UNLABELLED: Final[Color] = (178, 182, 187)
 """Light grey of panels that belong to no mould."""
 
+BEAM: Final[Color] = (112, 92, 74)
+"""Brown of beams, which no mould has."""
+
 _HUES: Final = (4.45, 1.1)  # radians: from blue over green to sand
 _LIGHTNESSES: Final = (0.50, 0.87)
 _CHROMA: Final = 0.11

@@ -305,7 +305,6 @@ def support_report(sphere_mesh: SphereMesh, structure: SupportStructure) -> dict
     miss = np.nan_to_num(structure.mirror_miss[inside & enough])
     tilt = np.degrees(beam_tilt(sphere_mesh))
     reasons = node_reasons(structure)
-    names = node_ids(len(inside))
     return {
         "torsion_deg": {
             "mean": float(degrees[inside].mean()) if inside.any() else 0.0,
@@ -323,30 +322,29 @@ def support_report(sphere_mesh: SphereMesh, structure: SupportStructure) -> dict
         ),
         "valid": len(inside) - len(reasons),
         "invalid": [
-            {"id": names[vertex], "vertex": vertex, "reason": reason}
+            {"id": node_name(vertex), "vertex": vertex, "reason": reason}
             for vertex, reason in reasons.items()
         ],
     }
 
 
-def node_ids(n_vertices: int) -> tuple[str, ...]:
+def node_name(vertex: int) -> str:
     """
-    Stable names of the nodes of a mesh.
+    Stable name of a node.
 
     Parameters
     ----------
-    n_vertices : int
-        Number of vertices.
+    vertex : int
+        Its vertex.
 
     Returns
     -------
-    tuple of str
-        ``N0000``, ``N0001``, ... with as many digits as the last needs, at least four.
+    str
+        ``N0000`` for the first.
 
     Examples
     --------
-    >>> node_ids(2)
-    ('N0000', 'N0001')
+    >>> node_name(7)
+    'N0007'
     """
-    width = max(4, len(str(n_vertices - 1)))
-    return tuple(f"N{vertex:0{width}d}" for vertex in range(n_vertices))
+    return f"N{vertex:04d}"

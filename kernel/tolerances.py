@@ -104,3 +104,9 @@ MIRROR_LEAST: Final = 1e-6
 
 BEAM_TILT: Final = 1.0471975511965976
 """A beam whose plane tilts more (60 degrees) from the bisecting plane does not stand."""
+
+MITRE_LIMIT: Final = 2.356194490192345
+"""Half angle (135 degrees) between neighbouring beams beyond which ends are cut square."""
+
+STRAIGHT_RULING: Final = 1e-10
+"""A cut edge of a cylinder that bulges less, in thicknesses of the beam, is a straight line."""

@@ -3,10 +3,11 @@
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, NamedTuple
 
-from ...fabrication import rhino, schedule, step
+from ...fabrication import dxf, rhino, schedule, step
 from ...fabrication.files import check_suffix, replacing
 from ...kernel import cutting
 from ...kernel.arrays import IntArray
+from ...kernel.beams import Beams
 from ...kernel.errors import name_ids
 from ...kernel.panels import Panels
 from ...kernel.sphere_mesh import SphereMesh
@@ -75,19 +76,20 @@ def panels(
 
 @node
 def write_step(
-    panels: Panels,
-    path: WritePath,
+    panels: Panels | None = None,
+    path: WritePath = "model.step",
     units: Units = "m",
     step_units: Literal["mm", "m"] = "mm",
     schema: Literal["AP214IS", "AP242DIS"] = "AP214IS",
+    beams: Beams | None = None,
 ) -> str:
     """
-    Write panels to a STEP file: exact solids, or faces where they have no thickness.
+    Write panels and beams to a STEP file: exact solids, or faces without thickness.
 
     Parameters
     ----------
-    panels : Panels
-        The panels.
+    panels : Panels, optional
+        The panels; these or beams are needed.
     path : path
         Ends in .step or .stp.
     units : str
@@ -96,42 +98,83 @@ def write_step(
         Units of the file.
     schema : {"AP214IS", "AP242DIS"}
         Application protocol.
+    beams : Beams, optional
+        The beams, with mitred ends.
 
     Returns
     -------
     str
         The path.
     """
-    return str(step.write_step(panels, path, units, step_units, schema))
+    return str(step.write_step(panels, path, units, step_units, schema, beams=beams))
 
 
 @node
 def write_3dm(
-    panels: Panels,
-    path: WritePath,
+    panels: Panels | None = None,
+    path: WritePath = "model.3dm",
     units: Units = "m",
     version: Annotated[int, Port(min=6, max=8)] = 8,
+    beams: Beams | None = None,
 ) -> str:
     """
-    Write panels to a Rhino file: exact trimmed spheres, layers per mould, user text.
+    Write panels and beams to a Rhino file: exact trimmed spheres, layers per mould, user text.
 
     Parameters
     ----------
-    panels : Panels
-        The panels.
+    panels : Panels, optional
+        The panels; these or beams are needed.
     path : path
         Ends in .3dm.
     units : str
         Model units; those of the file.
     version : int
         Rhino version of the file.
+    beams : Beams, optional
+        The beams, as extrusions of their flat contours, and the node axes.
 
     Returns
     -------
     str
         The path. The document carries the graph that is running.
     """
-    return str(rhino.write_3dm(panels, path, units, running_graph(), version))
+    return str(rhino.write_3dm(panels, path, units, running_graph(), version, beams=beams))
+
+
+@node
+def write_dxf(
+    beams: Beams,
+    path: WritePath,
+    units: Units = "m",
+    sheet: tuple[float, float] = (3000.0, 1500.0),
+    spacing: Length = 10.0,
+) -> str:
+    """
+    Write cutting drawings of beams: exact contours, nested on sheets, in millimetres.
+
+    Parameters
+    ----------
+    beams : Beams
+        The beams.
+    path : path
+        Ends in .dxf.
+    units : str
+        Model units.
+    sheet : (float, float)
+        Width and height of the sheets, in millimetres.
+    spacing : float
+        Distance between pieces and from the rim, in millimetres.
+
+    Returns
+    -------
+    str
+        The path. Layers: CUT, ENGRAVE (ids, nodes, bevels of the ends in degrees) and SHEET.
+    """
+    file = dxf.write_dxf(beams, path, units, sheet, spacing)
+    if file.oversize:
+        shown = ", ".join(file.oversize[:8])
+        warn(f"{len(file.oversize)} beams are larger than the sheet: {shown}")
+    return str(file.path)
 
 
 @node

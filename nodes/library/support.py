@@ -6,10 +6,11 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from ...kernel import annulus_support as annulus
-from ...kernel import support
-from ...kernel.annuli import Annuli
+from ...kernel import beam_cutting, support
+from ...kernel.annuli import Annuli, corner_mismatch
 from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.beam_checks import RejectedBeam
+from ...kernel.beams import Beams, beam_lengths, beam_volumes
 from ...kernel.errors import name_ids
 from ...kernel.mesh import mean_edge_length
 from ...kernel.sphere_mesh import SphereMesh
@@ -111,6 +112,56 @@ def annulus_support(
     report = annulus.annulus_report(found, mean_edge_length(sphere_mesh.mesh))
     _warn_of_rejected(found.rejected, "annuli")
     return AnnulusSet(found.annuli, report)
+
+
+class BeamSet(NamedTuple):
+    """The beams that can be made, and what was found while cutting them."""
+
+    beams: Beams
+    report: Mapping[str, Any]
+
+
+@node
+def beams(
+    annuli: Annuli,
+    thickness: Annotated[float, Port(min=0)],
+    node_gap: Annotated[float, Port(min=0)] = 0.0,
+    node_radius: Annotated[float, Port(min=0)] = 0.0,
+) -> BeamSet:
+    """
+    Give annuli a thickness and cut their ends where beams meet at the nodes.
+
+    Parameters
+    ----------
+    annuli : Annuli
+        The annuli.
+    thickness : float
+        Thickness of the beams, half to either side, in model units.
+    node_gap : float
+        Width of the gap between neighbouring beams, or between beams and node cylinders.
+    node_radius : float
+        Radius of cylinders about the node axes before which beams end square. With 0 the ends
+        are mitred: cut by the half planes through the axis that bisect the angles between
+        neighbours.
+
+    Returns
+    -------
+    beams : Beams
+        The beams that can be made.
+    report : mapping
+        ``written``, ``rejected`` (id and reason), ``volume`` in cubed model units, ``longest``
+        piece, and ``end_mismatch`` (how far the ends at a node are apart).
+    """
+    made, rejected = beam_cutting.cut_beams(annuli, thickness, node_gap, node_radius)
+    _warn_of_rejected(rejected, "beams")
+    report = {
+        "written": made.n_beams,
+        "rejected": [{"id": beam.id, "reason": beam.reason} for beam in rejected],
+        "volume": float(beam_volumes(made).sum()),
+        "longest": float(beam_lengths(made).max(initial=0.0)),
+        "end_mismatch": float(corner_mismatch(made.annuli).max(initial=0.0)),
+    }
+    return BeamSet(made, report)
 
 
 def _warn_of_rejected(rejected: tuple[RejectedBeam, ...], what: str) -> None:

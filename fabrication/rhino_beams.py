@@ -1,0 +1,160 @@
+"""
+Beams for a Rhino model: capped extrusions of their flat contours, and the node axes as lines.
+
+An extrusion is what a flat piece is before its ends are mitred: the contour in the middle of
+the thickness, whose ends lie on the node axes. The mitres are in the STEP file.
+"""
+
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from ..kernel.arcs import ArcCircles, Arcs, arc_circles
+from ..kernel.arrays import FloatArray
+from ..kernel.beams import Beams, beam_lengths, node_axis_segments, section_arcs
+from ..kernel.errors import InputError
+from ..kernel.support import node_name
+
+# What comes from rhino3dm is not typed: its stub lacks setters, indices and overloads.
+_Untyped: TypeAlias = Any
+
+
+def beam_extrusions(library: _Untyped, beams: Beams) -> list[_Untyped]:
+    """
+    A capped extrusion per beam.
+
+    Parameters
+    ----------
+    library : module
+        The module rhino3dm.
+    beams : Beams
+        B beams.
+
+    Returns
+    -------
+    list of rhino3dm.Extrusion
+        B solids, in model coordinates, as thick as the beams.
+
+    Raises
+    ------
+    InputError
+        If openNURBS finds one invalid; the message names the beams.
+    """
+    outer, inner = section_arcs(beams)
+    circles = arc_circles(outer), arc_circles(inner)
+    lifts = beams.annuli.origins - beams.annuli.frames[:, 2] * beams.thickness / 2
+    result: list[_Untyped] = []
+    refused: list[str] = []
+    for i, name in enumerate(beams.annuli.ids):
+        lift = lifts[i]
+        sides = [
+            _curve(library, arcs, found, i, lift)
+            for arcs, found in zip((outer, inner), circles, strict=True)
+        ]
+        sides[0].Reverse()
+        profile = library.PolyCurve()
+        for first, second in (sides, sides[::-1]):
+            profile.AppendSegment(first)
+            profile.AppendSegment(library.LineCurve(first.PointAtEnd, second.PointAtStart))
+        x, y, _ = beams.annuli.frames[i].tolist()
+        plane = library.Plane(
+            library.Point3d(*lift.tolist()), library.Vector3d(*x), library.Vector3d(*y)
+        )
+        solid = library.Extrusion.CreateWithPlane(profile, plane, beams.thickness, True)  # noqa: FBT003
+        if solid is None or not (solid.IsValid and solid.IsSolid):
+            refused.append(name)
+        result.append(solid)
+    if refused:
+        shown = ", ".join(refused[:8])
+        raise InputError(f"openNURBS refuses {len(refused)} beams: {shown}; leave them out")
+    return result
+
+
+def _curve(
+    library: _Untyped, arcs: Arcs, circles: ArcCircles, i: int, lift: FloatArray
+) -> _Untyped:
+    """Arc or line i, by its circle: three points would lose the radius of a flat arc."""
+    start, end = arcs.starts[i] + lift, arcs.ends[i] + lift
+    radius = float(circles.radii[i])
+    if radius == np.inf:
+        return library.LineCurve(
+            library.Point3d(*start.tolist()), library.Point3d(*end.tolist())
+        )
+    center = circles.centers[i] + lift
+    x = arcs.starts[i] - circles.centers[i]
+    y = np.cross(circles.axes[i], x)
+    circle = library.Circle(radius)
+    circle.Plane = library.Plane(
+        library.Point3d(*center.tolist()), library.Vector3d(*x.tolist()),
+        library.Vector3d(*y.tolist()),
+    )  # fmt: skip
+    return library.ArcCurve.CreateFromArc(library.Arc(circle, float(circles.sweeps[i])))
+
+
+def beam_text(beams: Beams, units: str) -> list[dict[str, str]]:
+    """
+    User text of beams.
+
+    Parameters
+    ----------
+    beams : Beams
+        B beams.
+    units : str
+        Model units.
+
+    Returns
+    -------
+    list of dict of str to str
+        B mappings: ``id``, ``edge``, ``nodes`` at its ends, ``faces`` beside it (``-`` beyond
+        the boundary), ``outer_radius`` and ``inner_radius`` (``straight`` for lines),
+        ``thickness``, ``length``, ``tilt`` in degrees, ``units``.
+    """
+    annuli = beams.annuli
+    radii = [arc_circles(arcs).radii.tolist() for arcs in section_arcs(beams)]
+    rows = zip(
+        annuli.ids, annuli.edge_ids.tolist(), annuli.edge_vertices.tolist(),
+        annuli.edge_faces.tolist(), *radii, beam_lengths(beams).tolist(),
+        np.degrees(annuli.tilt).tolist(), strict=True,
+    )  # fmt: skip
+    return [
+        {
+            "id": name,
+            "edge": str(edge),
+            "nodes": " ".join(map(str, nodes)),
+            "faces": " ".join("-" if face < 0 else str(face) for face in faces),
+            "outer_radius": _radius(outer),
+            "inner_radius": _radius(inner),
+            "thickness": f"{beams.thickness:.12g}",
+            "length": f"{length:.12g}",
+            "tilt": f"{tilt:.6g}",
+            "units": units,
+        }
+        for name, edge, nodes, faces, outer, inner, length, tilt in rows
+    ]
+
+
+def _radius(value: float) -> str:
+    return f"{value:.12g}" if np.isfinite(value) else "straight"
+
+
+def axis_lines(library: _Untyped, beams: Beams) -> list[tuple[str, _Untyped]]:
+    """
+    The node axes between the outer and the inner corners of the beams.
+
+    Parameters
+    ----------
+    library : module
+        The module rhino3dm.
+    beams : Beams
+        The beams.
+
+    Returns
+    -------
+    list of (str, rhino3dm.LineCurve)
+        Name and line of each node that carries beams.
+    """
+    vertices, segments = node_axis_segments(beams)
+    return [
+        (node_name(vertex), library.LineCurve(library.Point3d(*a), library.Point3d(*b)))
+        for vertex, (a, b) in zip(vertices, segments.tolist(), strict=True)
+    ]

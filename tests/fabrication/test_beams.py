@@ -1,0 +1,223 @@
+"""Beams in STEP and Rhino files, read back by OpenCASCADE and rhino3dm."""
+
+import re
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import rhino3dm
+from OCP.BRepCheck import BRepCheck_Analyzer
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+from OCP.STEPControl import STEPControl_Reader
+from OCP.TopAbs import TopAbs_ShapeEnum
+from OCP.TopExp import TopExp_Explorer
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Shape
+
+from spheremesh import Mesh, SphereMesh
+from spheremesh.fabrication import xcaf
+from spheremesh.fabrication.beam_brep import beam_shapes
+from spheremesh.fabrication.rhino import write_3dm
+from spheremesh.fabrication.step import beams_to_cadquery, write_step
+from spheremesh.kernel.annulus_support import annulus_support
+from spheremesh.kernel.arrays import FloatArray, dot, norm
+from spheremesh.kernel.beam_cutting import cut_beams
+from spheremesh.kernel.beams import Beams, beam_volumes, select_beams
+from spheremesh.kernel.central import central_spheres
+from spheremesh.kernel.cutting import cut_panels
+from spheremesh.kernel.errors import InputError
+from spheremesh.kernel.fit import face_planes
+from spheremesh.kernel.mesh import mean_edge_length
+from spheremesh.kernel.surfaces import roof_net, torus_net, vase_net
+
+
+def make(sphere_mesh: SphereMesh, kappa: float | None = None, **ends: float) -> Beams:
+    """Beams of 0.3 edges depth (or a power in squared edges) and 0.05 edges thickness."""
+    size = mean_edge_length(sphere_mesh.mesh)
+    depth = 0.3 * size if kappa is None else None
+    power = None if kappa is None else kappa * size**2
+    annuli = annulus_support(sphere_mesh, depth, power).annuli
+    scaled = {name: value * size for name, value in ends.items()}
+    return cut_beams(annuli, 0.05 * size, **scaled)[0]
+
+
+TORUS = central_spheres(torus_net(7, 5, 3.0, 1.0))
+CASES = {
+    "mitred": make(TORUS),
+    "with gaps": make(TORUS, node_gap=0.05),
+    "square": make(TORUS, node_radius=0.1, node_gap=0.01),
+    "constant power": make(TORUS, 0.2),
+    "to the outer side": make(TORUS, -0.2),
+    "with a boundary": make(central_spheres(vase_net(9, 6, 1.0, 3.0, 0.3))),
+    "straight": make(face_planes(roof_net(6, 5, 40.0))),
+    "torsion": make(central_spheres(roof_net(6, 5, 40.0))),
+    "1 mm": make(central_spheres(torus_net(7, 5, 5e-4, 1.5e-4))),
+    "1 km": make(central_spheres(torus_net(7, 5, 500.0, 150.0)), node_gap=0.01),
+}
+
+
+def measure(shapes: list[TopoDS_Shape]) -> FloatArray:
+    volumes = np.empty(len(shapes))
+    for i, shape in enumerate(shapes):
+        properties = GProp_GProps()
+        BRepGProp.VolumeProperties_s(shape, properties, 1e-10)
+        volumes[i] = properties.Mass()
+    return volumes
+
+
+def is_valid(shape: TopoDS_Shape) -> bool:
+    """Whether OpenCASCADE takes a shape for sound, at its own origin and in its place."""
+    return all(
+        BRepCheck_Analyzer(s).IsValid() for s in (shape, shape.Located(TopLoc_Location()))
+    )
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_law_e6_solids_are_sound_and_have_the_volumes_of_the_beams(case: str) -> None:
+    beams = CASES[case]
+    assert beams.n_beams > 10
+    shapes = beam_shapes(beams, 1000.0)
+    assert all(is_valid(shape) for shape in shapes)
+    assert {shape.ShapeType() for shape in shapes} == {TopAbs_ShapeEnum.TopAbs_SOLID}
+    np.testing.assert_allclose(measure(shapes), 1e9 * beam_volumes(beams), rtol=1e-8)
+
+
+def test_beams_that_are_not_finite_are_named() -> None:
+    beams = CASES["mitred"]
+    corners = beams.corners.copy()
+    corners[3] = np.nan
+    with pytest.raises(InputError, match=r"beam B0003 \(1 in all\) is not finite"):
+        beam_shapes(replace(beams, corners=corners))
+
+
+def read_solids(path: Path) -> list[TopoDS_Shape]:
+    reader = STEPControl_Reader()
+    with xcaf._quiet():
+        reader.ReadFile(str(path))
+        reader.TransferRoots()
+    found = TopExp_Explorer(reader.OneShape(), TopAbs_ShapeEnum.TopAbs_SOLID)
+    solids: list[TopoDS_Shape] = []
+    while found.More():
+        solids.append(found.Current())
+        found.Next()
+    return solids
+
+
+@pytest.mark.parametrize("case", ["mitred", "square", "straight", "1 mm", "1 km"])
+def test_round_trip(tmp_path: Path, case: str) -> None:
+    beams = CASES[case]
+    path = write_step(None, tmp_path / "b.step", beams=beams)
+    solids = read_solids(path)
+    assert len(solids) == beams.n_beams
+    assert all(BRepCheck_Analyzer(solid).IsValid() for solid in solids)
+    np.testing.assert_allclose(measure(solids), 1e9 * beam_volumes(beams), rtol=1e-8)
+    text = path.read_text()
+    for name in beams.annuli.ids:
+        assert f"PRODUCT('{name}'" in text
+    assert "PRESENTATION_LAYER_ASSIGNMENT('Beams'" in text
+
+
+def test_panels_and_beams_in_one_file(tmp_path: Path) -> None:
+    panels, _ = cut_panels(TORUS, "intersection", thickness=0.02)
+    beams = CASES["mitred"]
+    path = write_step(panels, tmp_path / "m.step", beams=beams)
+    assert len(read_solids(path)) == panels.n_panels + beams.n_beams
+    names = set(re.findall(r"PRODUCT\('(\w+)'", path.read_text()))
+    assert names == {"Model", *panels.ids, *beams.annuli.ids}
+
+
+def test_far_from_the_origin_no_digit_is_lost(tmp_path: Path) -> None:
+    mesh = TORUS.mesh
+    moved = Mesh(mesh.vertices + np.array([5e5, -3e5, 2e5]), mesh.faces)
+    beams = make(SphereMesh.from_local(moved, TORUS.local_spheres), node_gap=0.02)
+    solids = read_solids(write_step(None, tmp_path / "far.step", beams=beams))
+    local = [solid.Located(TopLoc_Location()) for solid in solids]
+    assert all(BRepCheck_Analyzer(solid).IsValid() for solid in local)
+    np.testing.assert_allclose(measure(local), 1e9 * beam_volumes(beams), rtol=1e-8)
+
+
+def test_objects_of_cadquery() -> None:
+    beams = select_beams(CASES["mitred"], np.arange(CASES["mitred"].n_beams) < 4)
+    assembly = beams_to_cadquery(beams)
+    assert [child.name for child in assembly.children] == list(beams.annuli.ids)
+    for child, volume in zip(assembly.children, beam_volumes(beams), strict=True):
+        assert abs(child.obj.Volume() / (1e9 * volume) - 1) < 1e-6  # pyright: ignore
+
+
+def test_nothing_to_write(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no panels or beams"):
+        write_step(None, tmp_path / "n.step")
+    with pytest.raises(InputError, match="no panels or beams"):
+        write_3dm(None, tmp_path / "n.3dm")
+    assert not list(tmp_path.iterdir())
+
+
+# Rhino
+
+
+def on_layer(model: Any, name: str) -> list[Any]:  # noqa: ANN401
+    return [o for o in model.Objects if model.Layers[o.Attributes.LayerIndex].Name == name]
+
+
+def point(value: Any) -> FloatArray:  # noqa: ANN401
+    return np.array([value.X, value.Y, value.Z])
+
+
+@pytest.mark.parametrize("case", ["mitred", "square", "straight", "1 mm", "1 km"])
+def test_extrusions_in_rhino(tmp_path: Path, case: str) -> None:
+    beams = CASES[case]
+    model = rhino3dm.File3dm.Read(str(write_3dm(None, tmp_path / "b.3dm", beams=beams)))
+    objects = on_layer(model, "Beams")
+    assert [item.Attributes.Name for item in objects] == list(beams.annuli.ids)
+    size = norm(beams.sections[:, 0, 0] - beams.sections[:, 1, 0]).max()
+    for i, item in enumerate(objects):
+        solid = item.Geometry
+        assert solid.IsValid
+        assert solid.IsSolid
+        z = beams.annuli.frames[i, 2]
+        brep = solid.ToBrep(False)  # noqa: FBT003
+        assert len(brep.Faces) == 6
+        corners = np.array([point(vertex.Location) for vertex in brep.Vertices])
+        corners = corners - beams.annuli.origins[i]
+        assert np.abs(np.abs(corners @ z) - beams.thickness / 2).max() < 1e-9 * size
+        flat = corners - (corners @ z)[:, None] * z
+        sections = beams.sections[i].reshape(-1, 3)
+        misses = norm(flat[:, None] - sections[None])
+        assert misses.min(axis=1).max() < 1e-9 * size
+        assert Counter(misses.argmin(axis=1).tolist()) == {0: 2, 1: 2, 2: 2, 3: 2}
+        rows = np.stack([beams.annuli.outer[i], beams.annuli.inner[i]])
+        for edge in brep.Edges:
+            middle = point(edge.PointAt((edge.Domain.T0 + edge.Domain.T1) / 2))
+            middle = middle - beams.annuli.origins[i]
+            height = float(middle @ z)
+            flat_middle = middle - height * z
+            level = rows[:, 0] * dot(flat_middle, flat_middle) - rows[:, 1:4] @ flat_middle
+            on_circle = np.abs(level + rows[:, 4]).min() < 1e-9 * size
+            assert on_circle or edge.IsLinear(1e-9 * size)
+
+
+def test_axes_layers_and_text_in_rhino(tmp_path: Path) -> None:
+    beams = CASES["mitred"]
+    panels, _ = cut_panels(TORUS, "intersection")
+    path = write_3dm(panels, tmp_path / "m.3dm", beams=beams)
+    model = rhino3dm.File3dm.Read(str(path))
+    assert {"Panels", "Edges", "Beams", "Axes"} <= {layer.Name for layer in model.Layers}
+    axes = on_layer(model, "Axes")
+    assert [item.Attributes.Name for item in axes] == [f"N{i:04d}" for i in range(35)]
+    for vertex, item in enumerate(axes):
+        start = point(item.Geometry.PointAtStart)
+        assert norm(start - TORUS.mesh.vertices[vertex]) < 1e-12
+        length = norm(point(item.Geometry.PointAtEnd) - start)
+        assert abs(length - beams.annuli.depth) < 1e-12
+    item = on_layer(model, "Beams")[4]
+    text = dict(item.Attributes.GetUserStrings())
+    assert text["id"] == beams.annuli.ids[4] == item.Attributes.Name
+    assert text["nodes"] == " ".join(map(str, beams.annuli.edge_vertices[4].tolist()))
+    assert float(text["thickness"]) == pytest.approx(beams.thickness, rel=1e-11)
+    again = rhino3dm.File3dm.Read(str(write_3dm(None, tmp_path / "again.3dm", beams=beams)))
+    ids = {str(item.Attributes.Id) for item in again.Objects}
+    assert ids <= {str(item.Attributes.Id) for item in model.Objects}
