@@ -31,6 +31,8 @@ def panels(
     thickness: Length = 0.0,
     joint_gap: Length = 0.0,
     labels: IntArray | None = None,
+    side: Literal["inward", "outward", "centred"] = "inward",
+    layer: Literal["offset", "power"] = "offset",
 ) -> PanelSet:
     """
     Cut a panel out of the sphere of every face.
@@ -44,11 +46,18 @@ def panels(
         two arcs of an edge differ by a small gap), or by the plane in which the two spheres
         meet (watertight, as tilted as the spheres left it).
     thickness : float
-        Thickness to the inner side, in model units; 0 for surfaces.
+        Thickness in model units; 0 for surfaces.
     joint_gap : float
         Width of the joints, in model units.
     labels : (F,) int array, optional
         Mould of each face.
+    side : {"inward", "outward", "centred"}
+        Where the thickness goes from the spheres: against the face normals, along them, or
+        half each way.
+    layer : {"offset", "power"}
+        The same thickness everywhere; or the same difference of squared radii, so that
+        neighbours which bulge to one side meet in one plane on both of their faces: the
+        thickness is then met on average, sharp panels are thicker and planes have none.
 
     Returns
     -------
@@ -56,10 +65,13 @@ def panels(
         The panels that can be made.
     report : mapping
         ``edge_gap`` (max, mean, relative_to_edge, over so many edges) between the arcs of
-        neighbouring panels, at the ends and in the middle, before the joint; ``written`` and
-        ``rejected`` (id and reason of each panel that cannot be made).
+        neighbouring panels, at the ends and in the middle, before the joint; ``thickness``
+        (min, mean, max); ``written`` and ``rejected`` (id and reason of each panel that cannot
+        be made).
     """
-    made, rejected = cutting.cut_panels(sphere_mesh, edges, thickness, joint_gap, labels)
+    made, rejected = cutting.cut_panels(
+        sphere_mesh, edges, thickness, joint_gap, labels, side, layer
+    )
     if rejected:
         warn(
             f"{len(rejected)} panels cannot be made: faces "
@@ -67,6 +79,7 @@ def panels(
         )
     report = {
         "edge_gap": cutting.gap_report(sphere_mesh, edges, made.face_ids),
+        "thickness": cutting.thickness_report(made),
         "written": made.n_panels,
         "rejected": [{"id": panel.id, "reason": panel.reason} for panel in rejected],
     }
