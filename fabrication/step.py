@@ -7,20 +7,28 @@ OpenCASCADE (the package OCP, which CadQuery brings) is imported when it is firs
 import os
 from collections.abc import Generator
 from contextlib import contextmanager
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Final, Literal, get_args
+
+import numpy as np
 
 from ..kernel.colors import Color, mould_color, mould_name
+from ..kernel.congruent_panels import congruent_panels
 from ..kernel.errors import InputError, MissingLibraryError
-from ..kernel.panels import Panels
+from ..kernel.panel_checks import check_writable
+from ..kernel.panels import Panels, select_panels
 from .files import check_suffix, replacing
 from .units import millimeters_per
 
 if TYPE_CHECKING:
     import cadquery
 
+    from . import xcaf
+
 StepSchema = Literal["AP214IS", "AP242DIS"]
+StepCopies = Literal["shapes", "instances"]
 
 STEP_UNITS: Final = {"mm": "MM", "cm": "CM", "m": "M", "in": "INCH", "ft": "FT"}
 """Units that a STEP file can declare, by OpenCASCADE's names."""
@@ -33,6 +41,7 @@ def write_step(
     step_units: str = "mm",
     schema: StepSchema = "AP214IS",
     title: str = "Spherical panels",
+    copies: StepCopies = "shapes",
 ) -> Path:
     """
     Write panels to a STEP file as exact faces, or solids where they have a thickness.
@@ -51,6 +60,9 @@ def write_step(
         Application protocol.
     title : str
         Title in the header of the file.
+    copies : {"shapes", "instances"}
+        ``shapes``: a shape of its own for every panel. ``instances``: identical panels (see
+        `congruent_panels`) are instances of one shape, named after the first of them.
 
     Returns
     -------
@@ -61,7 +73,8 @@ def write_step(
     Raises
     ------
     InputError
-        If there are no panels, a unit or schema is not known, or the folder does not exist.
+        If there are no panels, two of one name or one that is not finite, a unit, schema or
+        way of copies is not known, or the folder does not exist.
     MissingLibraryError
         If OpenCASCADE or a library of the system that it needs is missing.
 
@@ -72,29 +85,62 @@ def write_step(
     """
     target = Path(path)
     check_suffix(target, ".step", ".stp")
-    if panels.n_panels == 0:
-        raise InputError(f"there are no panels to write to {target}")
-    if schema not in ("AP214IS", "AP242DIS"):
+    check_writable(panels, target)
+    if schema not in get_args(StepSchema):
         raise InputError(f"unknown STEP schema {schema!r}: use AP214IS or AP242DIS")
+    if copies not in get_args(StepCopies):
+        raise InputError(f"copies must be shapes or instances, not {copies!r}")
     scale = millimeters_per(units)
     millimeters_per(step_units)
     with _opencascade():
-        from . import brep, xcaf
+        from . import xcaf
     with replacing(target) as temporary:
-        shapes = brep.panel_shapes(panels, scale, pcurves=False)
-        parts = (
-            xcaf.Part(shape, name, layer, color)
-            for shape, name, (layer, color) in zip(
-                shapes, panels.ids, _moulds(panels), strict=True
-            )
-        )
+        build = _panel_parts if copies == "shapes" else _shared_parts
         system = f"spheremesh {version('spheremesh')}"
         header = xcaf.StepHeader(schema, STEP_UNITS[step_units], title, system)
-        xcaf.write_document(xcaf.assembly_document("Panels", parts), temporary, header)
+        root = xcaf.Group("Panels", build(panels, scale))
+        xcaf.write_document(xcaf.assembly_document(root), temporary, header)
     return target
 
 
-def panels_to_cadquery(panels: Panels, units: str = "m") -> "cadquery.Assembly":
+def _panel_parts(panels: Panels, scale: float) -> "list[xcaf.Part]":
+    """A part per panel, where it stands."""
+    from OCP.TopLoc import TopLoc_Location
+
+    from . import brep, xcaf
+
+    shapes = brep.panel_shapes(panels, scale, pcurves=False)
+    nowhere = TopLoc_Location()
+    return [
+        xcaf.Part(
+            shape.Located(nowhere), name, *mould, (xcaf.Instance(name, shape.Location()),)
+        )
+        for shape, name, mould in zip(shapes, panels.ids, _moulds(panels), strict=True)
+    ]
+
+
+def _shared_parts(panels: Panels, scale: float) -> "list[xcaf.Part]":
+    """A part per shape, wherever it stands."""
+    same = congruent_panels(panels)
+    is_model = np.zeros(panels.n_panels, bool)
+    is_model[same.representatives] = True
+    models = _panel_parts(select_panels(panels, is_model), scale)
+
+    from . import brep, xcaf
+
+    places = brep.copy_places(panels, same, scale)
+    copies = [
+        xcaf.Instance(name, place) for name, place in zip(panels.ids, places, strict=True)
+    ]
+    order: list[int] = np.argsort(same.labels, kind="stable").tolist()
+    ends: list[int] = np.cumsum(np.bincount(same.labels)).tolist()
+    return [
+        replace(model, instances=tuple(copies[i] for i in order[start:end]))
+        for model, start, end in zip(models, [0, *ends], ends, strict=False)
+    ]
+
+
+def to_cadquery(panels: Panels, units: str = "m") -> "cadquery.Assembly":
     """
     Panels as a CadQuery assembly, for further modelling.
 

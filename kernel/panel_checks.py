@@ -1,11 +1,13 @@
 """What keeps a panel from being made: crossing boundaries, lost corners, caps too deep."""
 
+from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
 
 from .arcs import Arcs, arc_points
 from .arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
+from .errors import InputError, name_ids
 from .panels import Panels, inner_panel_arcs, panel_arcs, panel_areas, select_panels
 from .spheres import evaluate, normals
 from .tolerances import CAP_ANGLE, CROSSING, PARALLEL_PLANES, THIN
@@ -29,6 +31,40 @@ class RejectedPanel:
     id: str
     face_id: int
     reason: str
+
+
+def check_writable(panels: Panels, target: object) -> None:
+    """
+    Refuse panels that no file can hold.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+    target : path
+        The file, for the message.
+
+    Raises
+    ------
+    InputError
+        If there is no panel, two have the same name, or one has numbers that are not finite.
+    """
+    if panels.n_panels == 0:
+        raise InputError(f"there are no panels to write to {target}")
+    counts = Counter(panels.ids)
+    for name, count in counts.items():
+        if count > 1:
+            faces = [i for i, other in enumerate(panels.ids) if other == name]
+            raise InputError(
+                f"{count} panels are called {name!r} (faces "
+                f"{name_ids(panels.face_ids[faces].tolist())}): give each a name of its own"
+            )
+    numbers = np.concatenate([panels.corners, panels.inner_corners], axis=1)
+    finite = np.isfinite(np.column_stack([panels.origins, panels.spheres])).all(axis=1)
+    finite &= np.logical_and.reduceat(np.isfinite(numbers).all(axis=1), panels.offsets[:-1])
+    broken = [panels.ids[i] for i in np.flatnonzero(~finite)]
+    if broken:
+        raise InputError(f"panel {broken[0]} ({len(broken)} in all) is not finite")
 
 
 @dataclass(frozen=True)

@@ -93,6 +93,7 @@ def write_step(
     units: Units = "m",
     step_units: Literal["mm", "m"] = "mm",
     schema: Literal["AP214IS", "AP242DIS"] = "AP214IS",
+    copies: Literal["shapes", "instances"] = "shapes",
 ) -> str:
     """
     Write panels to a STEP file: exact solids, or faces where they have no thickness.
@@ -109,13 +110,16 @@ def write_step(
         Units of the file.
     schema : {"AP214IS", "AP242DIS"}
         Application protocol.
+    copies : {"shapes", "instances"}
+        A shape of its own for every panel, or one shape for identical panels: smaller files
+        where panels repeat.
 
     Returns
     -------
     str
         The path.
     """
-    return str(step.write_step(panels, path, units, step_units, schema))
+    return str(step.write_step(panels, path, units, step_units, schema, copies=copies))
 
 
 @node
