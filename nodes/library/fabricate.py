@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, NamedTuple
 
-from ...fabrication import rhino, schedule, step
+from ...fabrication import mould_drawings, rhino, schedule, step
 from ...fabrication.files import check_suffix, replacing
 from ...kernel import cutting
 from ...kernel.arrays import IntArray
@@ -161,7 +161,7 @@ def write_schedule(panels: Panels, path: WritePath, units: Units = "m") -> str:
     panels : Panels
         The panels.
     path : path
-        Ends in .csv or .json.
+        Ends in .csv, .json or .xlsx (with the extra ``excel``).
     units : str
         Model units.
 
@@ -171,6 +171,28 @@ def write_schedule(panels: Panels, path: WritePath, units: Units = "m") -> str:
         The path.
     """
     return str(schedule.write_schedule(panels, path, units))
+
+
+@node
+def write_mould_drawings(panels: Panels, path: WritePath, units: Units = "m") -> str:
+    """
+    Draw every panel in the blank of its mould, with radius, sizes and ids, in millimetres.
+
+    Parameters
+    ----------
+    panels : Panels
+        The panels.
+    path : path
+        Ends in .dxf or .svg.
+    units : str
+        Model units.
+
+    Returns
+    -------
+    str
+        The path.
+    """
+    return str(mould_drawings.write_mould_drawings(panels, path, units))
 
 
 @node
