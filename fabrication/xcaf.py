@@ -263,7 +263,8 @@ def _part21(model: StepData_StepModel) -> bytes:
         for end in (b",", b")"):
             data = data.replace(number + 14 * b"0" + end, number + end)
     data = _INSTANCE.sub(rb"\1\2','\2'", data)
-    data = _BEYOND_ASCII.sub(lambda run: _directives(run[0].decode()).encode(), data)
+    if not data.isascii():
+        data = _BEYOND_ASCII.sub(lambda run: _directives(run[0].decode()).encode(), data)
     return header + separator + data.replace(b" = ", b"=")
 
 
