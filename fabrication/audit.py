@@ -14,7 +14,7 @@ import numpy as np
 
 from ..kernel.arrays import BoolArray, FloatArray, IntArray
 from ..kernel.findings import Finding, Severity
-from ..kernel.panel_checks import RejectedPanel
+from ..kernel.panel_checks import RejectedPanel, finite_panels
 from ..kernel.panel_facts import PanelFacts, panel_facts
 from ..kernel.panels import Panels, neighbor_ids, scale_panels
 from ..kernel.tolerances import CAP_ANGLE
@@ -112,7 +112,7 @@ def audit_panels(
     """
     scaled = scale_panels(panels, millimeters_per(units))
     findings = [*_names(panels), *_refusals(rejected)]
-    finite = _finite(panels)
+    finite = finite_panels(panels)
     findings += [
         Finding("P002", panels.ids[i], "has numbers that are not finite")
         for i in np.flatnonzero(~finite)
@@ -169,14 +169,6 @@ def _names(panels: Panels) -> Iterator[Finding]:
 def _refusals(rejected: Iterable[RejectedPanel]) -> Iterator[Finding]:
     for panel in rejected:
         yield Finding("P100", panel.id, f"cannot be made: {panel.reason}")
-
-
-def _finite(panels: Panels) -> BoolArray:
-    if panels.n_panels == 0:
-        return np.zeros(0, bool)
-    numbers = np.concatenate([panels.corners, panels.inner_corners], axis=1)
-    finite = np.logical_and.reduceat(np.isfinite(numbers).all(axis=1), panels.offsets[:-1])
-    return finite & np.isfinite(np.column_stack([panels.origins, panels.spheres])).all(axis=1)
 
 
 def _caps(subject: PanelSubject) -> Iterator[Finding]:

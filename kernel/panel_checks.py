@@ -59,12 +59,31 @@ def check_writable(panels: Panels, target: object) -> None:
                 f"{count} panels are called {name!r} (faces "
                 f"{name_ids(panels.face_ids[faces].tolist())}): give each a name of its own"
             )
-    numbers = np.concatenate([panels.corners, panels.inner_corners], axis=1)
-    finite = np.isfinite(np.column_stack([panels.origins, panels.spheres])).all(axis=1)
-    finite &= np.logical_and.reduceat(np.isfinite(numbers).all(axis=1), panels.offsets[:-1])
-    broken = [panels.ids[i] for i in np.flatnonzero(~finite)]
+    broken = [panels.ids[i] for i in np.flatnonzero(~finite_panels(panels))]
     if broken:
         raise InputError(f"panel {broken[0]} ({len(broken)} in all) is not finite")
+
+
+def finite_panels(panels: Panels) -> BoolArray:
+    """
+    Which panels have finite numbers only.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+
+    Returns
+    -------
+    (P,) bool array
+        Whether spheres, origins and corners are finite.
+    """
+    rows = np.column_stack([panels.origins, panels.spheres, panels.inner_spheres])
+    numbers = np.column_stack([panels.corners, panels.inner_corners, panels.plane_normals])
+    finite = np.isfinite(rows).all(axis=1)
+    broken = panels.corner_panels[~np.isfinite(numbers).all(axis=1)]
+    finite[broken] = False
+    return finite
 
 
 @dataclass(frozen=True)
