@@ -23,7 +23,8 @@ from OCP.Geom import (
     Geom_Surface,
 )
 from OCP.Geom2d import Geom2d_BSplineCurve
-from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt
+from OCP.gp import gp_Ax3, gp_Dir, gp_Mat, gp_Pnt, gp_Quaternion, gp_Trsf, gp_Vec
+from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import (
     TopoDS_Edge,
     TopoDS_Face,
@@ -33,6 +34,7 @@ from OCP.TopoDS import (
 
 from ..kernel.arcs import ArcCircles, Arcs, arc_circles
 from ..kernel.arrays import FloatArray, IntArray, dot, norm, unit
+from ..kernel.congruent_panels import CongruentPanels
 from ..kernel.errors import InputError
 from ..kernel.panels import Panels, inner_panel_arcs, move_origins, panel_arcs, scale_panels
 from ..kernel.spheres import center_radius, signed_distance
@@ -115,6 +117,38 @@ def panel_shapes(
         ]
     places = panels.origins.tolist()
     return [shape.Located(placement(x)) for shape, x in zip(shapes, places, strict=True)]
+
+
+def copy_places(panels: Panels, same: CongruentPanels, scale: float) -> list[TopLoc_Location]:
+    """
+    Where the shape of the first of identical panels stands for each of them.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+    same : CongruentPanels
+        Which of them are identical, and the motions between them.
+    scale : float
+        Units of the shapes per model unit.
+
+    Returns
+    -------
+    list of TopLoc_Location
+        P places of the shape of the representative (`panel_shapes`), taken at its own origin.
+    """
+    origins = panels.origins * scale
+    # The shape of a representative is built about its rounded origin.
+    models = same.representatives[same.labels]
+    remainders = (rounded_origins(origins) - origins)[models]
+    shifts = same.translations * scale + np.einsum("pij,pj->pi", same.rotations, remainders)
+    places: list[TopLoc_Location] = []
+    for turn, shift in zip(same.rotations.tolist(), (origins + shifts).tolist(), strict=True):
+        motion = gp_Trsf()
+        motion.SetRotation(gp_Quaternion(gp_Mat(*(x for row in turn for x in row))))
+        motion.SetTranslationPart(gp_Vec(*shift))
+        places.append(TopLoc_Location(motion))
+    return places
 
 
 def _tolerances(panels: Panels) -> FloatArray:

@@ -7,23 +7,30 @@ OpenCASCADE (the package OCP, which CadQuery brings) is imported when it is firs
 import os
 from collections.abc import Generator
 from contextlib import contextmanager
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Final, Literal, get_args
+
+import numpy as np
 
 from ..kernel.beams import Beams
 from ..kernel.colors import BEAM, Color, mould_color, mould_name
+from ..kernel.congruent_panels import congruent_panels
 from ..kernel.errors import InputError, MissingLibraryError
-from ..kernel.panels import Panels
+from ..kernel.panel_checks import check_writable
+from ..kernel.panels import Panels, select_panels
 from .files import check_suffix, replacing
 from .units import millimeters_per
 
 if TYPE_CHECKING:
     import cadquery
+    from OCP.TopoDS import TopoDS_Shape
 
     from . import xcaf
 
 StepSchema = Literal["AP214IS", "AP242DIS"]
+StepCopies = Literal["shapes", "instances"]
 
 STEP_UNITS: Final = {"mm": "MM", "cm": "CM", "m": "M", "in": "INCH", "ft": "FT"}
 """Units that a STEP file can declare, by OpenCASCADE's names."""
@@ -36,6 +43,7 @@ def write_step(
     step_units: str = "mm",
     schema: StepSchema = "AP214IS",
     title: str = "Spherical panels",
+    copies: StepCopies = "shapes",
     beams: Beams | None = None,
 ) -> Path:
     """
@@ -57,6 +65,9 @@ def write_step(
         Title in the header of the file.
     beams : Beams, optional
         Beams to write as exact solids, with or without panels.
+    copies : {"shapes", "instances"}
+        ``shapes``: a shape of its own for every panel. ``instances``: identical panels (see
+        `congruent_panels`) are instances of one shape, named after the first of them.
 
     Returns
     -------
@@ -68,8 +79,8 @@ def write_step(
     Raises
     ------
     InputError
-        If there is nothing to write, a unit or schema is not known, or the folder does not
-        exist.
+        If there is nothing to write, two panels have one name or one is not finite, a unit,
+        schema or way of copies is not known, or the folder does not exist.
     MissingLibraryError
         If OpenCASCADE or a library of the system that it needs is missing.
 
@@ -81,46 +92,85 @@ def write_step(
     """
     target = Path(path)
     check_suffix(target, ".step", ".stp")
-    n_panels, n_beams = panels.n_panels if panels else 0, beams.n_beams if beams else 0
-    if n_panels + n_beams == 0:
+    n_beams = beams.n_beams if beams else 0
+    if panels is not None and (panels.n_panels or not n_beams):
+        check_writable(panels, target)
+    elif not n_beams:
         raise InputError(f"there are no panels or beams to write to {target}")
-    if schema not in ("AP214IS", "AP242DIS"):
+    if schema not in get_args(StepSchema):
         raise InputError(f"unknown STEP schema {schema!r}: use AP214IS or AP242DIS")
+    if copies not in get_args(StepCopies):
+        raise InputError(f"copies must be shapes or instances, not {copies!r}")
     scale = millimeters_per(units)
     millimeters_per(step_units)
     with _opencascade():
         from . import xcaf
     with replacing(target) as temporary:
-        parts = [*_panel_parts(panels, scale), *_beam_parts(beams, scale)]
-        name = "Model" if n_panels and n_beams else "Panels" if n_panels else "Beams"
+        build = _panel_parts if copies == "shapes" else _shared_parts
+        groups: list[xcaf.Group] = []
+        if panels is not None and panels.n_panels:
+            groups.append(xcaf.Group("Panels", build(panels, scale)))
+        if beams is not None and n_beams:
+            groups.append(xcaf.Group("Beams", _beam_parts(beams, scale)))
         system = f"spheremesh {version('spheremesh')}"
         header = xcaf.StepHeader(schema, STEP_UNITS[step_units], title, system)
-        xcaf.write_document(xcaf.assembly_document(name, parts), temporary, header)
+        root = groups[0] if len(groups) == 1 else xcaf.Group("Model", groups)
+        xcaf.write_document(xcaf.assembly_document(root), temporary, header)
     return target
 
 
-def _panel_parts(panels: Panels | None, scale: float) -> "list[xcaf.Part]":
-    if panels is None:
-        return []
-    from . import brep, xcaf
+def _panel_parts(panels: Panels, scale: float) -> "list[xcaf.Part]":
+    """A part per panel, where it stands."""
+    from . import brep
 
     shapes = brep.panel_shapes(panels, scale, pcurves=False)
     return [
-        xcaf.Part(shape, name, layer, color)
-        for shape, name, (layer, color) in zip(shapes, panels.ids, _moulds(panels), strict=True)
+        _placed_part(shape, name, *mould)
+        for shape, name, mould in zip(shapes, panels.ids, _moulds(panels), strict=True)
     ]
 
 
-def _beam_parts(beams: Beams | None, scale: float) -> "list[xcaf.Part]":
-    if beams is None:
-        return []
-    from . import beam_brep, xcaf
+def _shared_parts(panels: Panels, scale: float) -> "list[xcaf.Part]":
+    """A part per shape, wherever it stands."""
+    same = congruent_panels(panels)
+    is_model = np.zeros(panels.n_panels, bool)
+    is_model[same.representatives] = True
+    models = _panel_parts(select_panels(panels, is_model), scale)
+
+    from . import brep, xcaf
+
+    places = brep.copy_places(panels, same, scale)
+    copies = [
+        xcaf.Instance(name, place) for name, place in zip(panels.ids, places, strict=True)
+    ]
+    order: list[int] = np.argsort(same.labels, kind="stable").tolist()
+    ends: list[int] = np.cumsum(np.bincount(same.labels)).tolist()
+    return [
+        replace(model, instances=tuple(copies[i] for i in order[start:end]))
+        for model, start, end in zip(models, [0, *ends], ends, strict=False)
+    ]
+
+
+def _beam_parts(beams: Beams, scale: float) -> "list[xcaf.Part]":
+    """A part per beam, where it stands."""
+    from . import beam_brep
 
     shapes = beam_brep.beam_shapes(beams, scale, pcurves=False)
+    names = beams.annuli.ids
     return [
-        xcaf.Part(shape, name, "Beams", BEAM)
-        for shape, name in zip(shapes, beams.annuli.ids, strict=True)
+        _placed_part(shape, name, "Beams", BEAM)
+        for shape, name in zip(shapes, names, strict=True)
     ]
+
+
+def _placed_part(shape: "TopoDS_Shape", name: str, layer: str, color: Color) -> "xcaf.Part":
+    """A part made at its origin, and where the shape stands as its instance."""
+    from OCP.TopLoc import TopLoc_Location
+
+    from . import xcaf
+
+    place = xcaf.Instance(name, shape.Location())
+    return xcaf.Part(shape.Located(TopLoc_Location()), name, layer, color, (place,))
 
 
 def beams_to_cadquery(beams: Beams, units: str = "m") -> "cadquery.Assembly":
@@ -158,7 +208,7 @@ def beams_to_cadquery(beams: Beams, units: str = "m") -> "cadquery.Assembly":
     return assembly
 
 
-def panels_to_cadquery(panels: Panels, units: str = "m") -> "cadquery.Assembly":
+def to_cadquery(panels: Panels, units: str = "m") -> "cadquery.Assembly":
     """
     Panels as a CadQuery assembly, for further modelling.
 

@@ -35,26 +35,63 @@ from ..kernel.colors import Color
 
 
 @dataclass(frozen=True)
+class Instance:
+    """
+    Where a part stands.
+
+    Attributes
+    ----------
+    name : str
+        Name of the instance.
+    place : TopLoc_Location
+        Its place in the assembly.
+    """
+
+    name: str
+    place: TopLoc_Location
+
+
+@dataclass(frozen=True)
 class Part:
     """
-    A shape as it appears in a file.
+    A shape as it appears in a file, once or several times.
 
     Attributes
     ----------
     shape : TopoDS_Shape
-        Shape in millimetres, placed by its location.
+        Shape in millimetres, at its own origin.
     name : str
-        Name of the part and of its instance.
+        Name of the part.
     layer : str
         Layer, made where it is new.
     color : Color
         Red, green and blue from 0 to 255 (sRGB).
+    instances : tuple of Instance
+        Where it stands.
     """
 
     shape: TopoDS_Shape
     name: str
     layer: str
     color: Color
+    instances: tuple[Instance, ...]
+
+
+@dataclass(frozen=True)
+class Group:
+    """
+    An assembly.
+
+    Attributes
+    ----------
+    name : str
+        Name of the assembly.
+    members : iterable of Part and Group
+        What it consists of.
+    """
+
+    name: str
+    members: "Iterable[Part | Group]"
 
 
 @dataclass(frozen=True)
@@ -80,16 +117,14 @@ class StepHeader:
     system: str
 
 
-def assembly_document(name: str, parts: Iterable[Part]) -> TDocStd_Document:
+def assembly_document(root: Group) -> TDocStd_Document:
     """
-    A document of one assembly with a component per part.
+    A document of one assembly.
 
     Parameters
     ----------
-    name : str
-        Name of the assembly.
-    parts : iterable of Part
-        The parts.
+    root : Group
+        Parts, and assemblies within.
 
     Returns
     -------
@@ -99,34 +134,56 @@ def assembly_document(name: str, parts: Iterable[Part]) -> TDocStd_Document:
     """
     document = TDocStd_Document(_text("BinXCAF"))
     XCAFApp_Application.GetApplication_s().InitDocument(document)
-    shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
-    colors = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
-    layers = XCAFDoc_DocumentTool.LayerTool_s(document.Main())
-    assembly = shapes.NewShape()
-    TDataStd_Name.Set_s(assembly, _text(name))
-    layer_labels: dict[str, TDF_Label] = {}
-    color_labels: dict[Color, TDF_Label] = {}
-    for part in parts:
-        if part.layer not in layer_labels:
-            layer_labels[part.layer] = layers.AddLayer(_text(part.layer))
-        if part.color not in color_labels:
-            color_labels[part.color] = colors.AddColor(_color(part.color))
-        part_name = _text(part.name)
-        definition = shapes.AddShape(_definition(part.shape), makeAssembly=False)
-        TDataStd_Name.Set_s(definition, part_name)
-        layers.SetLayer(definition, layer_labels[part.layer])
-        colors.SetColor(
-            definition, color_labels[part.color], XCAFDoc_ColorType.XCAFDoc_ColorSurf
-        )
-        component = shapes.AddComponent(assembly, definition, part.shape.Location())
-        TDataStd_Name.Set_s(component, part_name)
-    shapes.UpdateAssemblies()
+    assembler = _Assembler(document)
+    assembler.add_group(root)
+    assembler.shapes.UpdateAssemblies()
     return document
 
 
+class _Assembler:
+    """Adds parts to a document; layers and colours once each."""
+
+    def __init__(self, document: TDocStd_Document) -> None:
+        self.shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+        self._colors = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
+        self._layers = XCAFDoc_DocumentTool.LayerTool_s(document.Main())
+        self._layer_labels: dict[str, TDF_Label] = {}
+        self._color_labels: dict[Color, TDF_Label] = {}
+
+    def add_group(self, group: Group) -> TDF_Label:
+        assembly = self.shapes.NewShape()
+        TDataStd_Name.Set_s(assembly, _text(group.name))
+        for member in group.members:
+            if isinstance(member, Group):
+                self._place(assembly, self.add_group(member), member.name, TopLoc_Location())
+                continue
+            definition = self._add_part(member)
+            for instance in member.instances:
+                self._place(assembly, definition, instance.name, instance.place)
+        return assembly
+
+    def _add_part(self, part: Part) -> TDF_Label:
+        if part.layer not in self._layer_labels:
+            self._layer_labels[part.layer] = self._layers.AddLayer(_text(part.layer))
+        if part.color not in self._color_labels:
+            self._color_labels[part.color] = self._colors.AddColor(_color(part.color))
+        definition = self.shapes.AddShape(_definition(part.shape), makeAssembly=False)
+        TDataStd_Name.Set_s(definition, _text(part.name))
+        self._layers.SetLayer(definition, self._layer_labels[part.layer])
+        self._colors.SetColor(
+            definition, self._color_labels[part.color], XCAFDoc_ColorType.XCAFDoc_ColorSurf
+        )
+        return definition
+
+    def _place(
+        self, assembly: TDF_Label, definition: TDF_Label, name: str, place: TopLoc_Location
+    ) -> None:
+        component = self.shapes.AddComponent(assembly, definition, place)
+        TDataStd_Name.Set_s(component, _text(name))
+
+
 def _definition(shape: TopoDS_Shape) -> TopoDS_Shape:
-    """Shape at its own origin; a face as a shell, or layer and colour would miss the part."""
-    shape = shape.Located(TopLoc_Location())
+    """The shape; a face as a shell, or layer and colour would miss the part."""
     if shape.ShapeType() != TopAbs_ShapeEnum.TopAbs_FACE:
         return shape
     shell, builder = TopoDS_Shell(), BRep_Builder()
@@ -180,6 +237,9 @@ def write_document(document: TDocStd_Document, path: Path, header: StepHeader) -
 _INSTANCE: Final = re.compile(rb"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\(')\d+',\s*'((?:[^']|'')*)'")
 """Identifier and name of an instance: OpenCASCADE numbers them on and on within a process."""
 
+_BEYOND_ASCII: Final = re.compile(rb"[\x80-\xff]+")
+"""Names in UTF-8, as OpenCASCADE writes them, which a file of this edition must not hold."""
+
 
 def _part21(model: StepData_StepModel) -> bytes:
     """
@@ -203,6 +263,8 @@ def _part21(model: StepData_StepModel) -> bytes:
         for end in (b",", b")"):
             data = data.replace(number + 14 * b"0" + end, number + end)
     data = _INSTANCE.sub(rb"\1\2','\2'", data)
+    if not data.isascii():
+        data = _BEYOND_ASCII.sub(lambda run: _directives(run[0].decode()).encode(), data)
     return header + separator + data.replace(b" = ", b"=")
 
 
@@ -251,12 +313,16 @@ def _text(text: str) -> TCollection_ExtendedString:
 
 
 def _ascii(text: str) -> TCollection_HAsciiString:
-    """Text of a STEP header: characters beyond ASCII as the directives of ISO 10303-21."""
-    encoded = "".join(
+    """Text of a STEP header."""
+    return TCollection_HAsciiString(_directives(text.replace("\\", "\\\\")))
+
+
+def _directives(text: str) -> str:
+    """Text with the characters beyond ASCII as the directives of ISO 10303-21."""
+    return "".join(
         character if character.isascii() else f"\\X4\\{ord(character):08X}\\X0\\"
         for character in text
     )
-    return TCollection_HAsciiString(encoded)
 
 
 def _color(color: Color) -> Quantity_Color:

@@ -225,6 +225,10 @@ def _print_report(
         click.echo(f"warning: {text}", err=True)
     for rejected in report["panels"]["rejected"]:
         click.echo(f"rejected: {rejected['id']}: {rejected['reason']}", err=True)
+    audit: Mapping[str, Any] = report["audit"] or {"errors": []}
+    for found in audit["errors"]:
+        if found["code"] != "P100":  # these are the rejected ones
+            click.echo(f"error {found['code']}: {found['id']}: {found['message']}", err=True)
     if as_json:
         click.echo(json.dumps(report, indent=1))
         return
@@ -238,6 +242,19 @@ def _print_report(
     click.echo(f"moulds {report['moulds']['count'] or 'not asked for: a radius per panel'}")
     panels = report["panels"]
     click.echo(f"panels {panels['written']} written, {len(panels['rejected'])} rejected")
+    if report["audit"]:
+        _print_audit(report["audit"])
+
+
+def _print_audit(audit: Mapping[str, Any]) -> None:
+    """Number of findings, and of each kind the first."""
+    click.echo(f"audit {len(audit['errors'])} errors, {len(audit['notes'])} notes")
+    shown: set[str] = set()
+    for found in audit["notes"]:
+        if found["code"] not in shown:
+            shown.add(found["code"])
+            count = audit["counts"][found["code"]]
+            click.echo(f"  {found['code']} ({count}): {found['id']}: {found['message']}")
 
 
 def _print_node(node: "Node") -> None:

@@ -11,8 +11,6 @@ from typing import Any, Literal
 from .. import __version__
 from ..fabrication.files import replacing_all
 from ..kernel.errors import InputError
-from ..kernel.mesh import Mesh, mean_edge_length
-from ..kernel.sphere_mesh import SphereMesh, vertex_error
 from ..nodes.graph import Graph
 
 Progress = Callable[[str, str], None]
@@ -60,8 +58,9 @@ def panel_graph(options: PanelOptions) -> Graph:
     Returns
     -------
     Graph
-        Its steps are named mesh, start, optimum, moulds (with a number of them), panels, step,
-        rhino, table, list and picture; its writers write into the working directory.
+        Its steps are named mesh, start, optimum, moulds and blanks (with a number of moulds),
+        panels, audit, report, step, rhino, table, list and picture; its writers write into the
+        working directory.
 
     Raises
     ------
@@ -78,14 +77,21 @@ def panel_graph(options: PanelOptions) -> Graph:
         mesh = graph.add("read_mesh", "mesh", path=path, layer=options.layer)
     start = graph.add("fit_spheres", "start", mesh=mesh)
     optimum = graph.add("minimize_angles", "optimum", sphere_mesh=start)
-    spheres, labels = optimum.sphere_mesh, None
+    spheres, labels, clusters, blanks = optimum.sphere_mesh, None, None, None
     if options.moulds is not None:
         count = graph.param("moulds", options.moulds, min=1)
         moulds = graph.add("cluster_radii", "moulds", sphere_mesh=spheres, k=count)
-        spheres, labels = moulds.sphere_mesh, moulds.labels
+        spheres, labels, clusters = moulds.sphere_mesh, moulds.labels, moulds.report
     panels = graph.add(
         "panels", "panels", sphere_mesh=spheres, edges=options.edges, thickness=thickness,
         joint_gap=joint_gap, labels=labels,
+    )  # fmt: skip
+    if options.moulds is not None:
+        blanks = graph.add("mould_blanks", "blanks", panels=panels.panels)
+    audit = graph.add("audit", "audit", panels=panels.panels, cut=panels.report)
+    graph.add(
+        "panel_report", "report", sphere_mesh=spheres, optimum=optimum.report,
+        cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report,
     )  # fmt: skip
     graph.add("write_step", "step", panels=panels.panels, path="panels.step")
     graph.add("write_3dm", "rhino", panels=panels.panels, path="model.3dm")
@@ -110,7 +116,7 @@ def is_panel_job(graph: Graph) -> bool:
         Whether it has the steps that the report is made of.
     """
     steps = {name: step.node.name for name, step in graph.steps.items()}
-    needed = {"optimum": "minimize_angles", "panels": "panels", "step": "write_step"}
+    needed = {"panels": "panels", "report": "panel_report"}
     return "mesh" in steps and needed.items() <= steps.items()
 
 
@@ -148,12 +154,20 @@ def run_job(
         with chdir(staging):
             _refuse_nothing(graph.run("panels.report", on_step=clock.note, read_from=here))
             graph.run(*graph.ends, on_step=clock.note, read_from=here)
-            report = _report(graph, here)
+            found = graph.run("report", on_step=clock.note, read_from=here)
         graph.save(staging / "graph.json")
-        report["seconds"] = {
-            "total": time.perf_counter() - began,
-            "optimize": clock.seconds.get("optimum", 0.0),
-            "step": clock.seconds.get("step", 0.0),
+        source = graph.steps["mesh"]
+        path = str(source.inputs.get("path", source.node.name))
+        report: dict[str, Any] = {
+            "spheremesh": __version__,
+            **found,
+            "input": {"path": path, **found["input"]},
+            "seconds": {
+                "total": time.perf_counter() - began,
+                "optimize": clock.seconds.get("optimum", 0.0),
+                "step": clock.seconds.get("step", 0.0),
+            },
+            "warnings": [text for messages in graph.messages.values() for text in messages],
         }
         text = json.dumps(report, indent=1, allow_nan=False) + "\n"
         (staging / "report.json").write_text(text, encoding="utf-8")
@@ -184,40 +198,3 @@ class _StepClock:
         elif state != "cached":
             self.seconds[step] = now - self._began
         self._progress(step, state)
-
-
-def _report(graph: Graph, read_from: Path) -> dict[str, Any]:
-    names = ["mesh", "optimum.report", "optimum.sphere_mesh", "panels.report"]
-    is_clustered = "moulds" in graph.steps
-    if is_clustered:
-        names += ["moulds.report", "moulds.sphere_mesh"]
-    values = dict(zip(names, graph.run(*names, read_from=read_from), strict=True))
-    mesh: Mesh = values["mesh"]
-    built: SphereMesh = values["moulds.sphere_mesh" if is_clustered else "optimum.sphere_mesh"]
-    angles = dict(values["optimum.report"]["angles_deg"])
-    moulds: Mapping[str, Any] = {"count": 0, "radii": [], "panels_per_mould": []}
-    if is_clustered:
-        clusters = values["moulds.report"]
-        # What is built counts as spherical; what the moulds cost is there to compare.
-        angles |= {"spherical": clusters["angles_deg"], "unclustered": angles["spherical"]}
-        moulds = {name: clusters[name] for name in moulds}
-    miss = float(vertex_error(built).max())
-    cut = values["panels.report"]
-    source = graph.steps["mesh"]
-    return {
-        "spheremesh": __version__,
-        "input": {
-            "path": str(source.inputs.get("path", source.node.name)),
-            "vertices": mesh.n_vertices,
-            "faces": mesh.n_faces,
-            "units": graph.units,
-        },
-        "angles_deg": angles,
-        "vertex_error": {"max": miss, "relative_to_edge": miss / mean_edge_length(mesh)},
-        "edge_gap": dict(cut["edge_gap"]),
-        "moulds": dict(moulds),
-        "support": None,
-        "panels": {"written": cut["written"], "rejected": list(cut["rejected"])},
-        "beams": {"written": 0, "rejected": []},
-        "warnings": [text for messages in graph.messages.values() for text in messages],
-    }

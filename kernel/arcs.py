@@ -249,3 +249,23 @@ def patch_areas(rows: FloatArray, arcs: Arcs, arc_rows: IntArray) -> FloatArray:
     cosine = 1 - 2 * rows[arc_rows, :1] * dot(axis, relative)
     integrand = dot(np.cross(relative, speed), axis) / (1 + cosine)
     return sum_by(arc_rows, integrand @ _WEIGHTS, len(rows))
+
+
+def arc_tangents(arcs: Arcs) -> tuple[FloatArray, FloatArray]:
+    """
+    Directions in which arcs leave their starts and reach their ends.
+
+    Parameters
+    ----------
+    arcs : Arcs
+        H arcs.
+
+    Returns
+    -------
+    at_starts, at_ends : (H, 3) float array
+        Unit vectors, both in the sense from start to end.
+    """
+    along, square = unit(arcs.ends - arcs.starts), _bulges(arcs)[:, None] ** 2
+    # Half of the sweep, by the tangent of a quarter of it.
+    cosine, sine = (1 - square) / (1 + square), 2 * _bulges(arcs)[:, None] / (1 + square)
+    return cosine * along + sine * arcs.rises, cosine * along - sine * arcs.rises

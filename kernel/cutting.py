@@ -5,20 +5,22 @@ Neighbours share their cutting plane; their two arcs in it may differ by a gap, 
 measured here. What cannot be made is listed with its reason.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 import numpy as np
 
 from .arcs import Arcs, sphere_arcs
-from .arrays import FloatArray, IntArray, dot, norm, unit
+from .arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from .errors import InputError
+from .layers import Layer, Side, panel_layers
 from .mesh import face_centroids, face_normals, local_corners, mean_edge_length
-from .panel_checks import RejectedPanel, rejection_reasons
+from .panel_checks import Found, RejectedPanel, rejection_reasons
 from .panels import Panels, corner_points, panel_ids, select_panels
 from .sphere_mesh import SphereMesh
-from .spheres import angle, evaluate, meet_lines, offset, recenter
+from .spheres import angle, evaluate, meet_lines, recenter
 from .tolerances import PLANE_SAGITTA, SAME_PLANE
+from .topology import Topology
 
 EdgeMode = Literal["bisector", "intersection"]
 
@@ -115,6 +117,62 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
     return plane_normals, plane_offsets
 
 
+@dataclass(frozen=True)
+class EdgeCuts:
+    """
+    A sphere mesh and the planes that cut its edges.
+
+    Attributes
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh, its nearly plane faces flattened.
+    plane_normals : (H, 3) float array
+        Unit normals that point into the face of their corner.
+    plane_offsets : (H,) float array
+        Offsets of ``n·x = d`` in the coordinates local to the face.
+    corners : (H, 3) float array
+        Where each sphere meets the planes of two consecutive edges, local; the vertex of the
+        mesh where it does not.
+    exists : (H,) bool array
+        Whether it does.
+    """
+
+    sphere_mesh: SphereMesh
+    plane_normals: FloatArray
+    plane_offsets: FloatArray
+    corners: FloatArray
+    exists: BoolArray
+
+
+def cut_edges(sphere_mesh: SphereMesh, edges: EdgeMode, joint_gap: float = 0.0) -> EdgeCuts:
+    """
+    Cut the spheres of a mesh along its edges.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+    edges : {"bisector", "intersection"}
+        In which planes, see `cutting_planes`.
+    joint_gap : float
+        Width of the joints: every plane moves into its face by half of it.
+
+    Returns
+    -------
+    EdgeCuts
+        Planes and corners.
+    """
+    sphere_mesh = flatten_nearly_plane(sphere_mesh)
+    mesh = sphere_mesh.mesh
+    plane_normals, plane_offsets = cutting_planes(sphere_mesh, edges)
+    plane_offsets = plane_offsets + joint_gap / 2
+    rows = sphere_mesh.local_spheres[mesh.topology.corner_faces]
+    corners, exists = corner_points(
+        rows, plane_normals, plane_offsets, mesh.offsets, local_corners(mesh)
+    )
+    return EdgeCuts(sphere_mesh, plane_normals, plane_offsets, corners, exists)
+
+
 def edge_arcs(sphere_mesh: SphereMesh, edges: EdgeMode) -> Arcs:
     """
     Arc of each half-edge on the sphere of its face.
@@ -136,15 +194,12 @@ def edge_arcs(sphere_mesh: SphereMesh, edges: EdgeMode) -> Arcs:
     ----------
     Meshes with Spherical Faces, Fig. 26 (a), (c) and (d).
     """
-    sphere_mesh = flatten_nearly_plane(sphere_mesh)
-    mesh, topology = sphere_mesh.mesh, sphere_mesh.mesh.topology
-    rows = sphere_mesh.local_spheres[topology.corner_faces]
-    plane_normals, plane_offsets = cutting_planes(sphere_mesh, edges)
-    corners, _ = corner_points(
-        rows, plane_normals, plane_offsets, mesh.offsets, local_corners(mesh)
-    )
-    arcs = sphere_arcs(rows, plane_normals, corners, corners[topology.next_corners])
-    origins = face_centroids(mesh)[topology.corner_faces]
+    cuts = cut_edges(sphere_mesh, edges)
+    mesh = cuts.sphere_mesh.mesh
+    faces, following = mesh.topology.corner_faces, mesh.topology.next_corners
+    rows = cuts.sphere_mesh.local_spheres[faces]
+    arcs = sphere_arcs(rows, cuts.plane_normals, cuts.corners, cuts.corners[following])
+    origins = face_centroids(mesh)[faces]
     return replace(arcs, starts=arcs.starts + origins, ends=arcs.ends + origins)
 
 
@@ -169,17 +224,16 @@ def edge_gaps(sphere_mesh: SphereMesh, edges: EdgeMode) -> FloatArray:
     ----------
     Meshes with Spherical Faces, Fig. 26 (d).
     """
-    sphere_mesh = flatten_nearly_plane(sphere_mesh)
-    mesh, topology = sphere_mesh.mesh, sphere_mesh.mesh.topology
-    rows = sphere_mesh.local_spheres[topology.corner_faces]
-    plane_normals, plane_offsets = cutting_planes(sphere_mesh, edges)
-    starts = local_corners(mesh)
+    cuts = cut_edges(sphere_mesh, edges)
+    mesh = cuts.sphere_mesh.mesh
+    topology, starts = mesh.topology, local_corners(mesh)
     ends = starts[topology.next_corners]
-    points, exists = corner_points(rows, plane_normals, plane_offsets, mesh.offsets, starts)
-    shifts = np.where(exists[:, None], points - starts, np.nan)
+    shifts = np.where(cuts.exists[:, None], cuts.corners - starts, np.nan)
     middles = (starts + ends) / 2
-    rises = unit(np.cross(ends - starts, plane_normals))
-    feet = middles + (plane_offsets - dot(plane_normals, middles))[:, None] * plane_normals
+    rises = unit(np.cross(ends - starts, cuts.plane_normals))
+    misses = cuts.plane_offsets - dot(cuts.plane_normals, middles)
+    feet = middles + misses[:, None] * cuts.plane_normals
+    rows = cuts.sphere_mesh.local_spheres[topology.corner_faces]
     heights, exists = meet_lines(rows, feet, rises)
     heights = np.where(exists, heights, np.nan)
 
@@ -231,6 +285,8 @@ def cut_panels(
     thickness: float = 0.0,
     joint_gap: float = 0.0,
     labels: IntArray | None = None,
+    side: Side = "inward",
+    layer: Layer = "offset",
 ) -> tuple[Panels, tuple[RejectedPanel, ...]]:
     """
     Cut a panel out of the sphere of every face.
@@ -242,12 +298,16 @@ def cut_panels(
     edges : {"bisector", "intersection"}
         How panels are cut, see `cutting_planes`.
     thickness : float
-        Distance of the inner from the outer face, against N, in model units.
+        Distance of the inner from the outer face, in model units.
     joint_gap : float
         Width of the joint between neighbours, in model units; every cutting plane, those of
         the boundary included, moves into the panel by half of it.
     labels : (F,) int array, optional
         Mould of each face.
+    side : {"inward", "outward", "centred"}
+        Where the thickness goes from the sphere, see `panel_layers`.
+    layer : {"offset", "power"}
+        Whether the thickness or the difference of squared radii is constant.
 
     Returns
     -------
@@ -259,32 +319,41 @@ def cut_panels(
     Raises
     ------
     InputError
-        If thickness or gap is negative or not finite, or the thickness reaches the centre of
-        a sphere.
+        If an option is unknown, or thickness or gap is negative or not finite.
     """
-    _check_options(sphere_mesh, edges, thickness, joint_gap, labels)
-    sphere_mesh = flatten_nearly_plane(sphere_mesh)
-    mesh, topology = sphere_mesh.mesh, sphere_mesh.mesh.topology
-    rows = sphere_mesh.local_spheres
-    inner_rows = _inner_spheres(rows, thickness, panel_ids(mesh.n_faces))
-    plane_normals, plane_offsets = cutting_planes(sphere_mesh, edges)
-    plane_offsets = plane_offsets + joint_gap / 2
+    _check_choices(edges=(edges, EdgeMode), side=(side, Side), layer=(layer, Layer))
+    _check_sizes(sphere_mesh.mesh.n_faces, thickness, joint_gap, labels)
+    cuts = cut_edges(sphere_mesh, edges, joint_gap)
+    mesh, topology = cuts.sphere_mesh.mesh, cuts.sphere_mesh.mesh.topology
+    rows = cuts.sphere_mesh.local_spheres
+    layers = panel_layers(rows, thickness, side, layer)
     faces = topology.corner_faces
-    references = local_corners(mesh)
-    corners, exists = corner_points(
-        rows[faces], plane_normals, plane_offsets, mesh.offsets, references
-    )
+    planes = cuts.plane_normals, cuts.plane_offsets, mesh.offsets
+    corners, exists = corner_points(layers.outer_spheres[faces], *planes, cuts.corners)
     inner_corners, inner_exists = corner_points(
-        inner_rows[faces], plane_normals, plane_offsets, mesh.offsets, corners
+        layers.inner_spheres[faces], *planes, cuts.corners
     )
-    beyond = np.append(faces, -1)[topology.twins]
     panels = Panels(
-        panel_ids(mesh.n_faces), np.arange(mesh.n_faces),
-        np.full(mesh.n_faces, -1) if labels is None else np.asarray(labels, np.int64),
-        face_centroids(mesh), rows, inner_rows, mesh.offsets, plane_normals, plane_offsets,
-        corners, inner_corners, beyond, float(thickness), float(joint_gap),
-    )  # fmt: skip
-    reasons = rejection_reasons(panels, references, exists, inner_exists)
+        ids=panel_ids(mesh.n_faces),
+        face_ids=np.arange(mesh.n_faces),
+        labels=np.full(mesh.n_faces, -1) if labels is None else np.asarray(labels, np.int64),
+        origins=face_centroids(mesh),
+        spheres=layers.outer_spheres,
+        inner_spheres=layers.inner_spheres,
+        design_spheres=rows,
+        offsets=mesh.offsets,
+        plane_normals=cuts.plane_normals,
+        plane_offsets=cuts.plane_offsets,
+        corners=corners,
+        inner_corners=inner_corners,
+        neighbors=np.append(faces, -1)[topology.twins],
+        edge_ids=_edge_ids(topology),
+        thicknesses=layers.thicknesses,
+        thickness=float(thickness),
+        joint_gap=float(joint_gap),
+    )
+    found = Found(local_corners(mesh), layers.exists, cuts.exists, exists, inner_exists)
+    reasons = rejection_reasons(panels, found)
     rejected = tuple(
         RejectedPanel(panels.ids[face], face, reason)
         for face, reason in sorted(reasons.items())
@@ -294,29 +363,45 @@ def cut_panels(
     return select_panels(panels, keep), rejected
 
 
-def _check_options(
-    sphere_mesh: SphereMesh,
-    edges: str,
-    thickness: float,
-    joint_gap: float,
-    labels: IntArray | None,
+def thickness_report(panels: Panels) -> dict[str, float]:
+    """
+    Summary of the thicknesses of panels.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+
+    Returns
+    -------
+    dict of str to float
+        ``min``, ``mean`` and ``max`` in model units; zeros without panels.
+    """
+    found = panels.thicknesses if panels.n_panels else np.zeros(1)
+    return {"min": float(found.min()), "mean": float(found.mean()), "max": float(found.max())}
+
+
+def _edge_ids(topology: Topology) -> IntArray:
+    """Interior edge of each half-edge (H,); -1 on the boundary."""
+    ids = np.full(len(topology.corner_faces), -1)
+    first = topology.edge_corners
+    ids[first] = ids[topology.twins[first]] = np.arange(len(first))
+    return ids
+
+
+def _check_choices(**options: tuple[str, object]) -> None:
+    for name, (value, allowed) in options.items():
+        choices: tuple[str, ...] = get_args(allowed)
+        if value not in choices:
+            listed = f"{', '.join(choices[:-1])} or {choices[-1]}"
+            raise InputError(f"{name} must be {listed}, not {value!r}")
+
+
+def _check_sizes(
+    n_faces: int, thickness: float, joint_gap: float, labels: IntArray | None
 ) -> None:
-    if edges not in get_args(EdgeMode):
-        raise InputError(f"edges must be bisector or intersection, not {edges!r}")
     for name, value in (("thickness", thickness), ("joint gap", joint_gap)):
         if not (np.isfinite(value) and value >= 0):
             raise InputError(f"{name} must be a length of at least 0, not {value}")
-    count = sphere_mesh.mesh.n_faces
-    if labels is not None and len(labels) != count:
-        raise InputError(f"labels must name a mould for each of the {count} faces")
-
-
-def _inner_spheres(rows: FloatArray, thickness: float, ids: tuple[str, ...]) -> FloatArray:
-    sharpest = int(np.argmin(rows[:, 0]))
-    if 1 + 2 * rows[sharpest, 0] * thickness <= 0:
-        radius = -1 / (2 * rows[sharpest, 0])
-        raise InputError(
-            f"thickness {thickness:g} is not less than the smallest inner radius {radius:.6g} "
-            f"(panel {ids[sharpest]}); use thinner panels or larger moulds"
-        )
-    return offset(rows, -thickness)
+    if labels is not None and len(labels) != n_faces:
+        raise InputError(f"labels must name a mould for each of the {n_faces} faces")

@@ -35,6 +35,9 @@ class Panels:
         Unit rows of the outer faces, local; N points outwards.
     inner_spheres : (P, 5) float array
         Unit rows of the inner faces, local, oriented as the outer ones.
+    design_spheres : (P, 5) float array
+        Unit rows of the spheres that the panels were cut from, local, which are those of the
+        moulds: the outer faces, the inner ones, or between, by the side of the thickness.
     offsets : (P + 1,) int array
         First corner of each panel, and H. Corners run counter-clockwise about N.
     plane_normals : (H, 3) float array
@@ -48,8 +51,12 @@ class Panels:
         Corners of the inner faces, local; equal to `corners` without thickness.
     neighbors : (H,) int array
         Face beyond each edge; -1 on the boundary.
+    edge_ids : (H,) int array
+        Interior edge of the mesh, the same in both panels; -1 on the boundary.
+    thicknesses : (P,) float array
+        Distance of the inner from the outer face of each panel, in model units.
     thickness : float
-        Distance of the inner from the outer faces, in model units; 0 for surfaces.
+        Thickness asked for, in model units; 0 for surfaces.
     joint_gap : float
         Width of the joint between neighbouring panels, in model units.
     """
@@ -60,12 +67,15 @@ class Panels:
     origins: FloatArray
     spheres: FloatArray
     inner_spheres: FloatArray
+    design_spheres: FloatArray
     offsets: IntArray
     plane_normals: FloatArray
     plane_offsets: FloatArray
     corners: FloatArray
     inner_corners: FloatArray
     neighbors: IntArray
+    edge_ids: IntArray
+    thicknesses: FloatArray
     thickness: float
     joint_gap: float
 
@@ -197,6 +207,30 @@ def panel_ids(n_faces: int) -> tuple[str, ...]:
     return tuple(f"P{face:0{width}d}" for face in range(n_faces))
 
 
+def opposite_corners(panels: Panels) -> IntArray:
+    """
+    The other panel's side of each edge.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels with H corners.
+
+    Returns
+    -------
+    (H,) int array
+        Corner from which the neighbour's edge leaves; -1 on the boundary and where the panel
+        beyond is not among these.
+    """
+    result = np.full(len(panels.edge_ids), -1)
+    order = np.argsort(panels.edge_ids, kind="stable")
+    first, second = order[:-1], order[1:]
+    edges = panels.edge_ids
+    pairs = (edges[first] == edges[second]) & (edges[first] >= 0)
+    result[first[pairs]], result[second[pairs]] = second[pairs], first[pairs]
+    return result
+
+
 def neighbor_ids(panels: Panels) -> list[str | None]:
     """
     Panel beyond each edge, by name.
@@ -243,12 +277,15 @@ def select_panels(panels: Panels, keep: BoolArray) -> Panels:
         origins=panels.origins[chosen],
         spheres=panels.spheres[chosen],
         inner_spheres=panels.inner_spheres[chosen],
+        design_spheres=panels.design_spheres[chosen],
         offsets=np.concatenate([[0], np.cumsum(panels.degrees[chosen])]),
         plane_normals=panels.plane_normals[corner_keep],
         plane_offsets=panels.plane_offsets[corner_keep],
         corners=panels.corners[corner_keep],
         inner_corners=panels.inner_corners[corner_keep],
         neighbors=panels.neighbors[corner_keep],
+        edge_ids=panels.edge_ids[corner_keep],
+        thicknesses=panels.thicknesses[chosen],
     )
 
 
@@ -273,9 +310,11 @@ def scale_panels(panels: Panels, factor: float) -> Panels:
         origins=panels.origins * factor,
         spheres=rescale(panels.spheres, factor),
         inner_spheres=rescale(panels.inner_spheres, factor),
+        design_spheres=rescale(panels.design_spheres, factor),
         plane_offsets=panels.plane_offsets * factor,
         corners=panels.corners * factor,
         inner_corners=panels.inner_corners * factor,
+        thicknesses=panels.thicknesses * factor,
         thickness=panels.thickness * factor,
         joint_gap=panels.joint_gap * factor,
     )
@@ -304,6 +343,7 @@ def move_origins(panels: Panels, origins: FloatArray) -> Panels:
         origins=origins,
         spheres=recenter(panels.spheres, shifts),
         inner_spheres=recenter(panels.inner_spheres, shifts),
+        design_spheres=recenter(panels.design_spheres, shifts),
         plane_offsets=panels.plane_offsets - dot(panels.plane_normals, corner_shifts),
         corners=panels.corners - corner_shifts,
         inner_corners=panels.inner_corners - corner_shifts,
@@ -386,11 +426,11 @@ def panel_volumes(panels: Panels) -> FloatArray:
     """
     total = np.zeros(panels.n_panels)
     for node, weight in zip(_LAYERS, _LAYER_WEIGHTS, strict=True):
-        rows = offset(panels.spheres, -panels.thickness * (1 + node) / 2)
+        rows = offset(panels.spheres, -panels.thicknesses * (1 + node) / 2)
         corners, _ = corner_points(
             rows[panels.corner_panels], panels.plane_normals, panels.plane_offsets,
             panels.offsets, panels.corners,
         )  # fmt: skip
         arcs = _layer_arcs(panels, rows, corners)
         total += weight * patch_areas(rows, arcs, panels.corner_panels)
-    return total * panels.thickness / 2
+    return total * panels.thicknesses / 2

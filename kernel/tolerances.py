@@ -110,3 +110,15 @@ MITRE_LIMIT: Final = 2.356194490192345
 
 STRAIGHT_RULING: Final = 1e-10
 """A cut edge of a cylinder that bulges less, in thicknesses of the beam, is a straight line."""
+
+NEAR_CENTER: Final = 1e-3
+"""A layer of a panel needs more than this share of the radius of its sphere."""
+
+THIN: Final = 1e-6
+"""A panel whose thickness is below this share of its size is refused (1 µm per m)."""
+
+SAME_PANEL: Final = 1e-6
+"""Panels whose corners and arcs agree within this share of the mean edge are identical."""
+
+ENCLOSING: Final = 1e-12
+"""How far a point may stand out of a smallest enclosing cap, relative to its radius."""

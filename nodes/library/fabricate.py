@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, NamedTuple
 
-from ...fabrication import dxf, rhino, schedule, step
+from ...fabrication import dxf, mould_drawings, rhino, schedule, step
 from ...fabrication.files import check_suffix, replacing
 from ...kernel import cutting
 from ...kernel.arrays import IntArray
@@ -32,6 +32,8 @@ def panels(
     thickness: Length = 0.0,
     joint_gap: Length = 0.0,
     labels: IntArray | None = None,
+    side: Literal["inward", "outward", "centred"] = "inward",
+    layer: Literal["offset", "power"] = "offset",
 ) -> PanelSet:
     """
     Cut a panel out of the sphere of every face.
@@ -45,11 +47,18 @@ def panels(
         two arcs of an edge differ by a small gap), or by the plane in which the two spheres
         meet (watertight, as tilted as the spheres left it).
     thickness : float
-        Thickness to the inner side, in model units; 0 for surfaces.
+        Thickness in model units; 0 for surfaces.
     joint_gap : float
         Width of the joints, in model units.
     labels : (F,) int array, optional
         Mould of each face.
+    side : {"inward", "outward", "centred"}
+        Where the thickness goes from the spheres: against the face normals, along them, or
+        half each way.
+    layer : {"offset", "power"}
+        The same thickness everywhere; or the same difference of squared radii, so that
+        neighbours which bulge to one side meet in one plane on both of their faces: the
+        thickness is then met on average, sharp panels are thicker and planes have none.
 
     Returns
     -------
@@ -57,10 +66,13 @@ def panels(
         The panels that can be made.
     report : mapping
         ``edge_gap`` (max, mean, relative_to_edge, over so many edges) between the arcs of
-        neighbouring panels, at the ends and in the middle, before the joint; ``written`` and
-        ``rejected`` (id and reason of each panel that cannot be made).
+        neighbouring panels, at the ends and in the middle, before the joint; ``thickness``
+        (min, mean, max); ``written`` and ``rejected`` (id and reason of each panel that cannot
+        be made).
     """
-    made, rejected = cutting.cut_panels(sphere_mesh, edges, thickness, joint_gap, labels)
+    made, rejected = cutting.cut_panels(
+        sphere_mesh, edges, thickness, joint_gap, labels, side, layer
+    )
     if rejected:
         warn(
             f"{len(rejected)} panels cannot be made: faces "
@@ -68,6 +80,7 @@ def panels(
         )
     report = {
         "edge_gap": cutting.gap_report(sphere_mesh, edges, made.face_ids),
+        "thickness": cutting.thickness_report(made),
         "written": made.n_panels,
         "rejected": [{"id": panel.id, "reason": panel.reason} for panel in rejected],
     }
@@ -81,6 +94,7 @@ def write_step(
     units: Units = "m",
     step_units: Literal["mm", "m"] = "mm",
     schema: Literal["AP214IS", "AP242DIS"] = "AP214IS",
+    copies: Literal["shapes", "instances"] = "shapes",
     beams: Beams | None = None,
 ) -> str:
     """
@@ -100,13 +114,18 @@ def write_step(
         Application protocol.
     beams : Beams, optional
         The beams, with mitred ends.
+    copies : {"shapes", "instances"}
+        A shape of its own for every panel, or one shape for identical panels: smaller files
+        where panels repeat.
 
     Returns
     -------
     str
         The path.
     """
-    return str(step.write_step(panels, path, units, step_units, schema, beams=beams))
+    return str(
+        step.write_step(panels, path, units, step_units, schema, beams=beams, copies=copies)
+    )
 
 
 @node
@@ -187,7 +206,7 @@ def write_schedule(panels: Panels, path: WritePath, units: Units = "m") -> str:
     panels : Panels
         The panels.
     path : path
-        Ends in .csv or .json.
+        Ends in .csv, .json or .xlsx (with the extra ``excel``).
     units : str
         Model units.
 
@@ -197,6 +216,28 @@ def write_schedule(panels: Panels, path: WritePath, units: Units = "m") -> str:
         The path.
     """
     return str(schedule.write_schedule(panels, path, units))
+
+
+@node
+def write_mould_drawings(panels: Panels, path: WritePath, units: Units = "m") -> str:
+    """
+    Draw every panel in the blank of its mould, with radius, sizes and ids, in millimetres.
+
+    Parameters
+    ----------
+    panels : Panels
+        The panels.
+    path : path
+        Ends in .dxf or .svg.
+    units : str
+        Model units.
+
+    Returns
+    -------
+    str
+        The path.
+    """
+    return str(mould_drawings.write_mould_drawings(panels, path, units))
 
 
 @node

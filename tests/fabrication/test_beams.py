@@ -127,7 +127,7 @@ def test_panels_and_beams_in_one_file(tmp_path: Path) -> None:
     path = write_step(panels, tmp_path / "m.step", beams=beams)
     assert len(read_solids(path)) == panels.n_panels + beams.n_beams
     names = set(re.findall(r"PRODUCT\('(\w+)'", path.read_text()))
-    assert names == {"Model", *panels.ids, *beams.annuli.ids}
+    assert names == {"Model", "Panels", "Beams", *panels.ids, *beams.annuli.ids}
 
 
 def test_far_from_the_origin_no_digit_is_lost(tmp_path: Path) -> None:

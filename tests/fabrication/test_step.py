@@ -30,7 +30,8 @@ from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_LayerTo
 from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication import step, xcaf
 from spheremesh.fabrication.brep import panel_shapes
-from spheremesh.fabrication.step import StepSchema, panels_to_cadquery, write_step
+from spheremesh.fabrication.part21 import check_part21
+from spheremesh.fabrication.step import StepSchema, to_cadquery, write_step
 from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.kernel.colors import Color, mould_color
@@ -220,7 +221,8 @@ def layers_by_definition(main: TDF_Label) -> dict[str, str]:
 
 
 def read_step(path: Path) -> tuple[str, list[ReadPart]]:
-    """Name and parts of the one assembly in a file."""
+    """Name and parts of the one assembly in a file, whose text is sound."""
+    assert check_part21(path) == ()
     document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
     XCAFApp_Application.GetApplication_s().InitDocument(document)
     reader = STEPCAFControl_Reader()
@@ -318,6 +320,78 @@ def test_far_from_the_origin_no_digit_is_lost(tmp_path: Path) -> None:
     for part, center in zip(parts, 1000 * panels.origins, strict=True):
         place = part.shape.Location().Transformation().TranslationPart()
         assert np.abs(np.array([place.X(), place.Y(), place.Z()]) - center).max() <= 0.51
+
+
+def test_names_of_any_script(tmp_path: Path) -> None:
+    panels, _ = cut_panels(mixed())
+    names = ("Täfelchen Ⅷ", "面板-7", "l'été; #12=('", "a\\b", "𝔘")
+    panels = replace(panels, ids=(*names, *panels.ids[len(names) :]))
+    path = write_step(panels, tmp_path / "屋根.step", title="屋根 a\\b")
+    _, parts = read_step(path)
+    assert tuple(part.name for part in parts) == panels.ids
+
+
+def test_identical_panels_share_a_shape(tmp_path: Path) -> None:
+    """Far from the origin as well: instances stand where the panels are."""
+    near = torus_net(10, 6, 10.0, 3.0)
+    mesh = Mesh(near.vertices + np.array([4.5e4, 6e4, 300.0]), near.faces)
+    labels = np.arange(mesh.n_faces) % 2
+    panels, _ = cut_panels(curved(mesh, 0.1), thickness=0.05, labels=labels)
+    separate, shared = (
+        write_step(panels, tmp_path / f"{copies}.step", copies=copies)
+        for copies in ("shapes", "instances")
+    )
+    assert shared.stat().st_size < 0.3 * separate.stat().st_size
+    (_, expected), (name, parts) = read_step(separate), read_step(shared)
+    assert name == "Panels"
+    assert len({part.definition for part in parts}) == 6
+    by_name = {part.name: part for part in parts}
+    assert by_name.keys() == set(panels.ids)
+    for part in expected:
+        found = by_name[part.name]
+        assert (found.layer, found.color) == (part.layer, part.color)
+        assert is_valid(found.shape)
+        there, here = mass_centers([part.shape, found.shape])
+        assert norm(there - here) < 1e-4  # mm
+    _, volumes = areas_and_volumes([by_name[name].shape for name in panels.ids])
+    np.testing.assert_allclose(volumes, 1e9 * panel_volumes(panels), rtol=1e-8)
+
+
+def mass_centers(shapes: list[TopoDS_Shape]) -> FloatArray:
+    points: list[tuple[float, float, float]] = []
+    for shape in shapes:
+        properties = GProp_GProps()
+        BRepGProp.SurfaceProperties_s(shape, properties)
+        center = properties.CentreOfMass()
+        points.append((center.X(), center.Y(), center.Z()))
+    return np.array(points)
+
+
+def test_groups_are_assemblies_within_the_assembly(panels: Panels, tmp_path: Path) -> None:
+    first = xcaf.Group("Panels", step._panel_parts(panels, 1000.0))
+    second = xcaf.Group("Beams", step._shared_parts(panels, 1000.0))
+    document = xcaf.assembly_document(xcaf.Group("Roof", [first, second]))
+    path = tmp_path / "roof.step"
+    xcaf.write_document(document, path, xcaf.StepHeader("AP242DIS", "MM", "Roof", "test"))
+    assert check_part21(path) == ()
+    document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
+    XCAFApp_Application.GetApplication_s().InitDocument(document)
+    reader = STEPCAFControl_Reader()
+    reader.SetNameMode(True)  # noqa: FBT003
+    with xcaf._quiet():
+        assert reader.ReadFile(str(path)) == IFSelect_ReturnStatus.IFSelect_RetDone
+        assert reader.Transfer(document)
+    tool, roots = XCAFDoc_DocumentTool.ShapeTool_s(document.Main()), TDF_LabelSequence()
+    tool.GetFreeShapes(roots)
+    assert [name_of(root) for root in labels_of(roots)] == ["Roof"]
+    groups = TDF_LabelSequence()
+    tool.GetComponents_s(roots.Value(1), groups)
+    assert [name_of(group) for group in labels_of(groups)] == ["Panels", "Beams"]
+    for group in labels_of(groups):
+        definition, members = TDF_Label(), TDF_LabelSequence()
+        tool.GetReferredShape_s(group, definition)
+        tool.GetComponents_s(definition, members)
+        assert {name_of(member) for member in labels_of(members)} == set(panels.ids)
 
 
 def test_units_of_the_model(tmp_path: Path) -> None:
@@ -527,6 +601,11 @@ def test_what_cannot_be_written(panels: Panels, tmp_path: Path) -> None:
         write_step(panels, target, step_units="mile")
     with pytest.raises(InputError, match="unknown STEP schema 'AP203'"):
         write_step(panels, target, schema="AP203")  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="copies must be shapes or instances, not 'twins'"):
+        write_step(panels, target, copies="twins")  # type: ignore[arg-type]
+    twice = replace(panels, ids=("A", "B", "A", *panels.ids[3:]))
+    with pytest.raises(InputError, match=r"2 panels are called 'A' \(faces \[0, 2\]\)"):
+        write_step(twice, target)
     with pytest.raises(InputError, match="no folder"):
         write_step(panels, tmp_path / "none" / "p.step")
     assert not list(tmp_path.iterdir())
@@ -548,7 +627,7 @@ def test_opencascade_is_loaded_when_it_is_needed() -> None:
 
 
 def test_objects_of_cadquery(panels: Panels) -> None:
-    assembly = panels_to_cadquery(panels, "m")
+    assembly = to_cadquery(panels, "m")
     assert assembly.name == "Panels"
     assert tuple(child.name for child in assembly.children) == panels.ids
     volumes = [child.obj.Volume() for child in assembly.children]
@@ -559,7 +638,7 @@ def test_objects_of_cadquery(panels: Panels) -> None:
     expected = tuple(value / 255 for value in mould_color(label, 3))
     np.testing.assert_allclose((red, green, blue, alpha), (*expected, 1.0), atol=1e-6)
     surfaces, _ = cut_panels(mixed())
-    faces = [child.obj for child in panels_to_cadquery(surfaces).children]
+    faces = [child.obj for child in to_cadquery(surfaces).children]
     assert {type(face).__name__ for face in faces} == {"Face"}
     areas = [face.Area() for face in faces]
     np.testing.assert_allclose(areas, 1e6 * panel_areas(surfaces), rtol=1e-8)

@@ -54,6 +54,11 @@ def test_json_is_the_report_alone(panelled: Panelled) -> None:
     assert angles["spherical"]["mean"] < 0.8 * angles["planar"]["mean"]
     assert 0 < report["edge_gap"]["relative_to_edge"] < 0.1
     assert set(report["seconds"]) == {"total", "optimize", "step"}
+    assert report["audit"]["errors"] == []
+    assert set(report["audit"]["counts"]) <= {"P201"}
+    blanks = report["moulds"]["blanks"]
+    assert [blank["count"] for blank in blanks] == report["moulds"]["panels_per_mould"]
+    assert report["thickness"] == {"min": 0.01, "mean": 0.01, "max": 0.01}
 
 
 def test_schedule_agrees_with_the_report(panelled: Panelled) -> None:
@@ -184,7 +189,7 @@ def test_no_moulds(vase: Path, tmp_path: Path) -> None:
 def test_thickness_beyond_the_smallest_radius(vase: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     arguments = ["panel", str(vase), "-o", str(out), "--thickness", "50"]
-    _assert_refused(arguments, out, "smallest inner radius")
+    _assert_refused(arguments, out, "the thickness reaches the centre of the sphere")
 
 
 def test_folder_that_cannot_be_written(vase: Path, tmp_path: Path) -> None:

@@ -654,19 +654,30 @@ def test_what_is_kept_is_the_same_as_without_the_rejected(
                 np.testing.assert_allclose(first[a], second[b], atol=1e-12)
 
 
-def test_thickness_up_to_the_centre_names_the_panel(octahedron: Mesh) -> None:
-    with pytest.raises(InputError, match=r"smallest inner radius 1 \(panel P000"):
-        cut_panels(on_sphere(octahedron, 1.0), thickness=1.0)
+def test_thickness_up_to_the_centre_is_rejected(octahedron: Mesh) -> None:
+    for thickness in (0.9995, 1.0, 1.5, 1e9):
+        assert "reaches the centre" in only_reason(
+            on_sphere(octahedron, 1.0), thickness=thickness
+        )
     rows = on_sphere(octahedron, 1.0).spheres.copy()
     rows[5] = [-0.6, 0, 0, 0, 1 / 2.4]
-    with pytest.raises(InputError, match="panel P0005"):
-        cut_panels(SphereMesh(octahedron, rows), thickness=0.9)
+    panels, rejected = cut_panels(SphereMesh(octahedron, rows), thickness=0.9)
+    assert [r.id for r in rejected] == ["P0005"]
+    assert panels.n_panels == 7
     # Spheres that curve the other way may be as thick as one likes.
     bowl = Mesh(octahedron.vertices, [face[::-1] for face in octahedron.faces])
     inward = SphereMesh(bowl, np.tile([0.5, 0, 0, 0, -0.5], (8, 1)))
     panels, rejected = cut_panels(inward, thickness=3.0)
     assert not rejected
     np.testing.assert_allclose(panel_volumes(panels), np.pi / 6 * 63, rtol=1e-8)
+
+
+def test_of_several_faults_the_cause_is_named() -> None:
+    """A face that folds back has no corners and runs clockwise as well; the fold is why."""
+    mesh = Mesh([[0, 0, 0], [1, 0, 0], [0.3, 1, 0], [0.6, 1, 0]], [[0, 1, 2], [1, 0, 3]])
+    rows = -face_planes(mesh).local_spheres
+    found = SphereMesh.from_local(mesh, rows)
+    assert "folds back" in only_reason(found, thickness=0.1, joint_gap=0.5)
 
 
 @pytest.mark.parametrize("bad", [-1e-9, np.nan, np.inf])

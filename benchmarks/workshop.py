@@ -1,0 +1,98 @@
+"""
+What workshop files cost: STEP with and without instances, its check, schedule, audit, drawings.
+
+    python benchmarks/workshop.py [exact]
+
+``exact`` also checks every solid of 5,000 panels with OpenCASCADE, as built and as read back
+from the file, against the closed forms; that takes minutes. Seconds are CPU time.
+"""
+
+import sys
+import tempfile
+import time
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from exactness import judge_step
+
+from spheremesh.fabrication.audit import audit_panels
+from spheremesh.fabrication.mould_drawings import write_mould_drawings
+from spheremesh.fabrication.part21 import check_part21
+from spheremesh.fabrication.schedule import write_schedule
+from spheremesh.fabrication.step import write_step
+from spheremesh.kernel.congruent_panels import congruent_panels
+from spheremesh.kernel.mould_blanks import mould_blanks
+from spheremesh.kernel.panels import Panels, select_panels
+from spheremesh.nodes import (
+    cluster_radii,
+    fit_spheres,
+    minimize_angles,
+    panels,
+    roof_mesh,
+    torus_mesh,
+)
+
+
+def roof(side: str = "inward") -> Panels:
+    """5,000 panels that all differ."""
+    optimum = minimize_angles(fit_spheres(roof_mesh(50, 100)))
+    clusters = cluster_radii(optimum.sphere_mesh, k=8)
+    return panels(
+        clusters.sphere_mesh, thickness=0.02, labels=clusters.labels, side=side
+    ).panels
+
+
+def torus() -> Panels:
+    """5,000 panels of 25 shapes."""
+    optimum = minimize_angles(fit_spheres(torus_mesh(100, 50)))
+    return panels(optimum.sphere_mesh, thickness=0.02).panels
+
+
+def clock(name: str, task: Callable[[], object]) -> None:
+    """Print seconds of CPU, and the size of a file."""
+    began = time.process_time()
+    result = task()
+    line = f"{name:28s}{time.process_time() - began:7.2f} s"
+    if isinstance(result, Path):
+        line += f"{result.stat().st_size / 1e6:9.2f} MB"
+    if isinstance(result, tuple):
+        line += f"{len(result):6d} findings"
+    print(line, flush=True)
+
+
+def main() -> None:
+    """Print a line per task."""
+    warnings.simplefilter("ignore")
+    folder = Path(tempfile.mkdtemp())
+    made = roof()
+    write_step(roof_sample(made), folder / "first.step")  # load OpenCASCADE outside the clock
+    clock("STEP, 5,000 shapes", lambda: write_step(made, folder / "shapes.step"))
+    clock("its check", lambda: check_part21(folder / "shapes.step"))
+    ring = torus()
+    clock("STEP, instances", lambda: write_step(ring, folder / "i.step", copies="instances"))
+    clock("its check", lambda: check_part21(folder / "i.step"))
+    clock("STEP, same without", lambda: write_step(ring, folder / "s.step"))
+    same = congruent_panels(made)
+    clock("identical panels", lambda: congruent_panels(made))
+    clock("identical panels, torus", lambda: congruent_panels(ring))
+    clock("mould blanks", lambda: mould_blanks(made, same))
+    clock("audit", lambda: audit_panels(made))
+    clock("schedule.csv", lambda: write_schedule(made, folder / "s.csv"))
+    clock("schedule.json", lambda: write_schedule(made, folder / "s.json"))
+    clock("moulds.dxf", lambda: write_mould_drawings(made, folder / "m.dxf"))
+    clock("moulds.svg", lambda: write_mould_drawings(made, folder / "m.svg"))
+    if sys.argv[1:] == ["exact"]:
+        for side in ("inward", "centred"):
+            print(side)
+            judge_step(roof(side), folder / "exact.step", "m")
+
+
+def roof_sample(made: Panels) -> Panels:
+    """One panel."""
+    return select_panels(made, np.arange(made.n_panels) == 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,154 @@
+"""What is to be known of every panel: for schedules, drawings, files and audits."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .arcs import arc_circles, arc_lengths, arc_points, arc_tangents
+from .arrays import FloatArray, IntArray, dot, norm, unit
+from .mould_blanks import PanelCaps, panel_caps
+from .panels import (
+    Panels,
+    opposite_corners,
+    panel_arcs,
+    panel_areas,
+    panel_volumes,
+)
+from .spheres import center_radius, normals
+
+
+@dataclass(frozen=True)
+class PanelFacts:
+    """
+    Measures of panels, in the unit of the panels; points in model coordinates.
+
+    Attributes
+    ----------
+    radii : (P,) float array
+        Radius of the sphere that a panel was cut from, which is that of its mould; infinite
+        for planes.
+    outer_radii, inner_radii : (P,) float array
+        Radii of the outer and inner faces.
+    centers : (P, 3) float array
+        Centre of all three; infinite for planes.
+    areas : (P,) float array
+        Areas of the outer faces.
+    volumes : (P,) float array
+        Volumes; 0 without thickness.
+    sizes : (P, 3) float array
+        Length, width and rise of the box around the outer face, its length along the chord of
+        the first edge.
+    corners : (H, 3) float array
+        Corners of the outer faces.
+    corner_angles : (H,) float array
+        Angle between the two edges at each corner, inside the outer face, in radians.
+    edge_lengths : (H,) float array
+        Lengths of the outer edges, along the arcs.
+    arc_radii : (H,) float array
+        Radii of the outer edges; infinite for straight ones.
+    sagittas : (H,) float array
+        Heights of the outer arcs over their chords.
+    wall_tilts : (H,) float array
+        Angle, in radians, between the cutting plane and the surface normal in the middle of
+        the edge, averaged with the neighbour's. Beams along the edge are tilted as much.
+    steps : (H,) float array
+        Height of the step from an outer edge to the neighbour's, in the middle; NaN where there
+        is no neighbour.
+    caps : PanelCaps
+        Smallest caps of the moulds that hold the panels.
+    """
+
+    radii: FloatArray
+    outer_radii: FloatArray
+    inner_radii: FloatArray
+    centers: FloatArray
+    areas: FloatArray
+    volumes: FloatArray
+    sizes: FloatArray
+    corners: FloatArray
+    corner_angles: FloatArray
+    edge_lengths: FloatArray
+    arc_radii: FloatArray
+    sagittas: FloatArray
+    wall_tilts: FloatArray
+    steps: FloatArray
+    caps: PanelCaps
+
+
+def panel_facts(panels: Panels) -> PanelFacts:
+    """
+    Measure panels.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+
+    Returns
+    -------
+    PanelFacts
+        The measures.
+    """
+    arcs = panel_arcs(panels)
+    centers, squares = center_radius(panels.design_spheres)
+    tilts, steps = _neighborhood(panels)
+    return PanelFacts(
+        radii=np.sqrt(squares),
+        outer_radii=np.sqrt(center_radius(panels.spheres)[1]),
+        inner_radii=np.sqrt(center_radius(panels.inner_spheres)[1]),
+        centers=centers + panels.origins,
+        areas=panel_areas(panels),
+        volumes=panel_volumes(panels),
+        sizes=_bounding_sizes(panels),
+        corners=panels.corners + panels.origins[panels.corner_panels],
+        corner_angles=_corner_angles(panels),
+        edge_lengths=arc_lengths(arcs),
+        arc_radii=arc_circles(arcs).radii,
+        sagittas=arcs.sagittas,
+        wall_tilts=tilts,
+        steps=steps,
+        caps=panel_caps(panels),
+    )
+
+
+def _corner_angles(panels: Panels) -> FloatArray:
+    """From the edge that leaves a corner counter-clockwise about N to the one that enters."""
+    leaving, entering = arc_tangents(panel_arcs(panels))
+    back = np.empty_like(entering)
+    back[panels.next_corners] = -entering
+    up = unit(normals(panels.spheres[panels.corner_panels], panels.corners))
+    sine, cosine = dot(np.cross(leaving, back), up), dot(leaving, back)
+    return np.arctan2(sine, cosine) % (2 * np.pi)
+
+
+def _neighborhood(panels: Panels) -> tuple[FloatArray, FloatArray]:
+    """Tilts of the walls, and steps between the outer edges of neighbours (H)."""
+    owners, twins = panels.corner_panels, opposite_corners(panels)
+    arcs = panel_arcs(panels)
+    middles = arc_points(arcs, np.zeros(1))[:, 0]
+    up = unit(normals(panels.spheres[owners], middles))
+    has_twin = twins >= 0
+    mean = np.where(has_twin[:, None], up + up[twins], up)
+    tilts = np.arcsin(np.clip(np.abs(dot(unit(mean), panels.plane_normals)), 0.0, 1.0))
+    # Neighbours differ by the shift of their origins, which is exact, and little else.
+    shift = panels.origins[owners][twins] - panels.origins[owners]
+    apart = middles[twins] + shift - middles
+    steps = np.abs(dot(apart, arcs.rises))
+    return tilts, np.where(has_twin, steps, np.nan)
+
+
+def _bounding_sizes(panels: Panels) -> FloatArray:
+    """Length, width and rise (P, 3) of the boxes around the outer faces."""
+    first: IntArray = panels.offsets[:-1]
+    up = unit(panels.spheres[:, 1:4])
+    along = panels.corners[panels.next_corners[first]] - panels.corners[first]
+    along = unit(along - dot(along, up)[:, None] * up)
+    axes = np.stack([along, np.cross(up, along), up], 1)
+    samples = arc_points(panel_arcs(panels), np.linspace(-1, 1, 9))
+    coordinates = np.einsum("hij,hnj->hni", axes[panels.corner_panels], samples)
+    low = np.minimum.reduceat(coordinates.min(1), first)
+    high = np.maximum.reduceat(coordinates.max(1), first)
+    # The crown of the patch, above (or below) the local origin, belongs to the box as well.
+    crown = panels.spheres[:, 4] * 2 / (1 + norm(panels.spheres[:, 1:4]))
+    low[:, 2], high[:, 2] = np.minimum(low[:, 2], crown), np.maximum(high[:, 2], crown)
+    return high - low

@@ -1,0 +1,225 @@
+"""What a workshop asks before it starts: blanks, identical panels, findings, the report."""
+
+from collections.abc import Mapping
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
+
+from ...fabrication import audit as panel_audit
+from ...kernel import congruent_panels as congruent
+from ...kernel import mould_blanks as blanks
+from ...kernel.arrays import IntArray
+from ...kernel.findings import Finding, findings_report
+from ...kernel.mesh import mean_edge_length
+from ...kernel.panel_checks import RejectedPanel
+from ...kernel.panels import Panels
+from ...kernel.sphere_mesh import SphereMesh, vertex_error
+from ...kernel.tolerances import SAME_PANEL
+from ..node import node, warn
+from ..ports import Port, Units
+
+Length = Annotated[float, Port(min=0)]
+Millimeters = Annotated[float, Port(unit="mm", min=0)]
+Degrees = Annotated[float, Port(unit="deg", min=0, max=180)]
+
+
+class IdenticalPanels(NamedTuple):
+    """Panels gathered by shape."""
+
+    labels: IntArray
+    report: Mapping[str, Any]
+
+
+class Audit(NamedTuple):
+    """What an audit found."""
+
+    findings: tuple[Finding, ...]
+    report: Mapping[str, Any]
+
+
+@node
+def identical_panels(
+    panels: Panels, tolerance: Annotated[float, Port(min=0)] = SAME_PANEL
+) -> IdenticalPanels:
+    """
+    Find panels that are the same up to a rigid motion and can share blanks and patterns.
+
+    Parameters
+    ----------
+    panels : Panels
+        The panels.
+    tolerance : float
+        How far corners and edges of one shape may lie apart, in mean edges.
+
+    Returns
+    -------
+    labels : (P,) int array
+        Shape of each panel, from 0. Mirror images and panels of different moulds differ.
+    report : mapping
+        ``shapes`` (number), ``panels_per_shape``, ``first`` (id of the first panel of each)
+        and ``largest_miss`` in model units.
+    """
+    same = congruent.congruent_panels(panels, tolerance)
+    report: dict[str, Any] = {
+        "shapes": len(same.representatives),
+        "panels_per_shape": np.bincount(same.labels).tolist(),
+        "first": [panels.ids[i] for i in same.representatives.tolist()],
+        "largest_miss": float(same.misses.max(initial=0.0)),
+    }
+    return IdenticalPanels(same.labels, report)
+
+
+@node
+def mould_blanks(panels: Panels, size_step: Length = 0.0) -> Mapping[str, Any]:
+    """
+    Count the blanks that every mould must give, and how large they are.
+
+    Parameters
+    ----------
+    panels : Panels
+        The panels, with moulds.
+    size_step : float
+        Blanks come in diameters that are multiples of this length, in model units; 0 for one
+        size per mould, that of its largest panel.
+
+    Returns
+    -------
+    mapping
+        ``blanks``: rows of ``mould`` (from 1), ``radius`` (None for a flat mould),
+        ``diameter`` (of the rim, as a chord), ``sagitta``, ``opening_deg``, ``count`` and
+        ``shapes`` (different panels among them), lengths in model units; ``without_mould``:
+        number of panels that belong to none.
+    """
+    found = blanks.mould_blanks(panels, congruent.congruent_panels(panels), size_step)
+    without = int((panels.labels < 0).sum())
+    if without:
+        warn(f"{without} of {panels.n_panels} panels belong to no mould and count no blank")
+    rows = [
+        {
+            "mould": int(found.labels[i]) + 1,
+            "radius": float(found.radii[i]) if np.isfinite(found.radii[i]) else None,
+            "diameter": float(found.diameters[i]),
+            "sagitta": float(found.sagittas[i]),
+            "opening_deg": float(np.degrees(found.openings[i])),
+            "count": int(found.counts[i]),
+            "shapes": int(found.shapes[i]),
+        }
+        for i in range(len(found.labels))
+    ]
+    return {"blanks": rows, "without_mould": without}
+
+
+@node
+def audit(
+    panels: Panels,
+    cut: Mapping[str, Any] | None = None,
+    min_corner: Degrees = 15.0,
+    min_edge: Millimeters = 20.0,
+    max_wall_tilt: Degrees = 30.0,
+    max_step: Millimeters = 5.0,
+    max_blank: Millimeters | None = None,
+    units: Units = "m",
+) -> Audit:
+    """
+    Look for whatever would trouble a workshop, as numbered errors and notes.
+
+    Parameters
+    ----------
+    panels : Panels
+        The panels.
+    cut : mapping, optional
+        Report of the node `panels`: what it rejected is among the errors then.
+    min_corner : float
+        Sharpest corner that is no finding.
+    min_edge : float
+        Shortest edge.
+    max_wall_tilt : float
+        Largest tilt of a wall from upright.
+    max_step : float
+        Highest step between neighbours.
+    max_blank : float, optional
+        Diameter of the largest blank to be had.
+    units : str
+        Model units.
+
+    Returns
+    -------
+    findings : tuple of Finding
+        Code, id, message, size and severity of each.
+    report : mapping
+        ``counts`` by code, ``errors`` and ``notes``.
+    """
+    limits = panel_audit.AuditLimits(
+        corner_deg=min_corner,
+        edge_mm=min_edge,
+        wall_tilt_deg=max_wall_tilt,
+        step_mm=max_step,
+        blank_mm=float("inf") if max_blank is None else max_blank,
+    )
+    rejected = [
+        RejectedPanel(panel["id"], -1, panel["reason"])
+        for panel in (cut or {}).get("rejected", ())
+    ]
+    findings = panel_audit.audit_panels(panels, units, rejected, limits)
+    return Audit(findings, findings_report(findings))
+
+
+@node
+def panel_report(
+    sphere_mesh: SphereMesh,
+    optimum: Mapping[str, Any],
+    cut: Mapping[str, Any],
+    moulds: Mapping[str, Any] | None = None,
+    blanks: Mapping[str, Any] | None = None,
+    audit: Mapping[str, Any] | None = None,
+    units: Units = "m",
+) -> Mapping[str, Any]:
+    """
+    Gather the reports of a panelling into one.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        What the panels were cut from.
+    optimum : mapping
+        Report of `minimize_angles`.
+    cut : mapping
+        Report of `panels`.
+    moulds : mapping, optional
+        Report of `cluster_radii`.
+    blanks : mapping, optional
+        Result of `mould_blanks`.
+    audit : mapping, optional
+        Report of `audit`.
+    units : str
+        Model units.
+
+    Returns
+    -------
+    mapping
+        ``input`` (vertices, faces, units), ``angles_deg`` (planar, spherical; with moulds
+        ``unclustered`` as well, and spherical is what is built), ``vertex_error`` and
+        ``edge_gap`` (max, relative_to_edge), ``thickness``, ``moulds`` (count, radii,
+        panels_per_mould, blanks), ``support`` and ``beams`` (none), ``panels`` (written,
+        rejected) and ``audit``.
+    """
+    mesh = sphere_mesh.mesh
+    angles = dict(optimum["angles_deg"])
+    found: dict[str, Any] = {"count": 0, "radii": [], "panels_per_mould": []}
+    if moulds is not None:
+        # What is built counts as spherical; what the moulds cost is there to compare.
+        angles |= {"spherical": moulds["angles_deg"], "unclustered": angles["spherical"]}
+        found = {name: moulds[name] for name in found}
+    miss = float(vertex_error(sphere_mesh).max())
+    return {
+        "input": {"vertices": mesh.n_vertices, "faces": mesh.n_faces, "units": units},
+        "angles_deg": angles,
+        "vertex_error": {"max": miss, "relative_to_edge": miss / mean_edge_length(mesh)},
+        "edge_gap": dict(cut["edge_gap"]),
+        "thickness": dict(cut["thickness"]),
+        "moulds": found | {"blanks": list(blanks["blanks"]) if blanks else []},
+        "support": None,
+        "panels": {"written": cut["written"], "rejected": list(cut["rejected"])},
+        "beams": {"written": 0, "rejected": []},
+        "audit": dict(audit) if audit is not None else None,
+    }

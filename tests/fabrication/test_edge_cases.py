@@ -1,0 +1,187 @@
+"""Whatever goes in is written or refused by name with a reason, by every writer."""
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from OCP.BRepCheck import BRepCheck_Analyzer
+
+from spheremesh import Mesh, SphereMesh
+from spheremesh.fabrication.audit import audit_panels
+from spheremesh.fabrication.brep import panel_shapes
+from spheremesh.fabrication.mould_drawings import write_mould_drawings
+from spheremesh.fabrication.part21 import check_part21
+from spheremesh.fabrication.rhino import write_3dm
+from spheremesh.fabrication.schedule import schedule_rows, write_schedule
+from spheremesh.fabrication.step import write_step
+from spheremesh.kernel.arrays import FloatArray, norm
+from spheremesh.kernel.circles import circle_pencils, face_circles, pencil_spheres
+from spheremesh.kernel.clustering import cluster_radii
+from spheremesh.kernel.cutting import cut_panels
+from spheremesh.kernel.errors import InputError
+from spheremesh.kernel.fit import face_planes, fit_spheres
+from spheremesh.kernel.panels import Panels, select_panels
+from spheremesh.kernel.pencil import minimize_angles
+from spheremesh.kernel.surfaces import roof_net
+
+Writer = Callable[[Panels, Path], Path]
+
+WRITERS: dict[str, Writer] = {
+    "p.step": write_step,
+    "q.step": lambda panels, path: write_step(panels, path, copies="instances"),
+    "p.csv": write_schedule,
+    "p.json": write_schedule,
+    "p.dxf": write_mould_drawings,
+    "p.svg": write_mould_drawings,
+}
+
+
+def write_all(panels: Panels, folder: Path) -> None:
+    """Every file; STEP text is sound and every solid valid."""
+    for name, write in WRITERS.items():
+        path = write(panels, folder / name)
+        assert path.stat().st_size > 0
+        if path.suffix == ".step":
+            assert check_part21(path) == ()
+    write_3dm(panels, folder / "p.3dm")
+    shapes = panel_shapes(panels, 1000.0)
+    assert len(shapes) == panels.n_panels
+    assert all(BRepCheck_Analyzer(shape).IsValid() for shape in shapes)
+    assert not [f for f in audit_panels(panels) if f.severity == "error"]
+
+
+def curved(mesh: Mesh, angles: FloatArray | list[float]) -> SphereMesh:
+    planes, great_spheres = circle_pencils(face_circles(mesh)[0])
+    return SphereMesh.from_local(
+        mesh, pencil_spheres(planes, great_spheres, np.asarray(angles, float))
+    )
+
+
+def squares(*angles: float) -> SphereMesh:
+    """Unit squares in a row under spheres of the given half openings."""
+    points = [[x, y, 0.0] for x in range(len(angles) + 1) for y in (0, 1)]
+    faces = [[2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1] for i in range(len(angles))]
+    return curved(Mesh(points, faces), list(angles))
+
+
+@pytest.mark.parametrize("thickness", [0.0, 0.05])
+@pytest.mark.parametrize("angle", [-0.4, 0.0, 0.4])
+def test_one_panel(tmp_path: Path, thickness: float, angle: float) -> None:
+    panels, rejected = cut_panels(squares(angle), thickness=thickness)
+    assert not rejected
+    write_all(panels, tmp_path)
+
+
+@pytest.mark.parametrize("side", ["inward", "outward", "centred"])
+def test_planes_and_spheres_of_both_signs(tmp_path: Path, side: str) -> None:
+    found = squares(0.0, 0.3, -0.3, 0.0, 1e-9, -0.02)
+    panels, rejected = cut_panels(found, "bisector", 0.03, 0.01, side=side)  # type: ignore[arg-type]
+    assert not rejected
+    write_all(panels, tmp_path)
+
+
+def test_radii_below_three_quarters_of_an_edge(tmp_path: Path) -> None:
+    panels, rejected = cut_panels(squares(1.25, -1.25, 1.3), thickness=0.02, joint_gap=0.02)
+    assert not rejected
+    radii = 0.5 / np.abs(panels.spheres[:, 0])
+    assert (radii < 0.75).all()
+    write_all(panels, tmp_path)
+
+
+@pytest.mark.parametrize("degrees", [1.0, 0.1, 0.01])
+@pytest.mark.parametrize("angle", [0.0, 0.2])
+@pytest.mark.parametrize("thickness", [0.0, 0.01])
+def test_corners_of_a_hundredth_of_a_degree(
+    tmp_path: Path, degrees: float, angle: float, thickness: float
+) -> None:
+    height = np.tan(np.radians(degrees))
+    mesh = Mesh([[0, 0, 0], [1, 0, 0], [1, height, 0]], [[0, 1, 2]])
+    panels, rejected = cut_panels(curved(mesh, [angle]), thickness=thickness)
+    assert panels.n_panels + len(rejected) == 1
+    assert not rejected, rejected[0].reason
+    write_all(panels, tmp_path)
+    found = {finding.code: finding.size for finding in audit_panels(panels)}
+    assert found["P102"] == pytest.approx(degrees, rel=0.3)
+    # A joint swallows what is thinner than itself.
+    _, (refused,) = cut_panels(curved(mesh, [angle]), thickness=thickness, joint_gap=0.02)
+    assert refused.id == "P0000"
+    assert refused.reason
+
+
+def test_names_of_any_script(tmp_path: Path) -> None:
+    panels, _ = cut_panels(squares(0.1, 0.2, 0.3), thickness=0.05, labels=np.zeros(3, np.int64))
+    names = ("Täfelchen 1", "面板-2", "<&>\"'; drop")
+    named = replace(panels, ids=names)
+    write_all(named, tmp_path)
+    assert [row["id"] for row in schedule_rows(named, "m")] == list(names)
+    for name in ("p.csv", "p.json", "p.dxf", "p.svg"):
+        assert "面板-2" in (tmp_path / name).read_text("utf-8").replace(
+            "\\u9762\\u677f", "面板"
+        )
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_what_no_file_can_hold_is_refused_by_name(tmp_path: Path, name: str) -> None:
+    panels, _ = cut_panels(squares(0.1, 0.2, 0.3), thickness=0.05)
+    write, target = WRITERS[name], tmp_path / name
+    with pytest.raises(InputError, match="there are no panels to write to"):
+        write(select_panels(panels, np.zeros(3, bool)), target)
+    with pytest.raises(InputError, match=r"2 panels are called 'A' \(faces \[0, 2\]\)"):
+        write(replace(panels, ids=("A", "B", "A")), target)
+    inner = panels.inner_corners.copy()
+    inner[6] = np.inf
+    with pytest.raises(InputError, match=r"panel P0001 \(1 in all\) is not finite"):
+        write(replace(panels, inner_corners=inner), target)
+    assert not list(tmp_path.iterdir())
+
+
+def test_caps_and_thicknesses_beyond_reach_are_refused_and_the_rest_is_written(
+    tmp_path: Path,
+) -> None:
+    found = squares(0.2, 1.5, -1.0, 0.0, -0.3)
+    # Radius 0.84 on the third: a thickness of 0.84 leaves nothing of it.
+    panels, rejected = cut_panels(found, thickness=0.84)
+    assert {panel.id: panel.reason.split(":")[0] for panel in rejected} == {
+        "P0001": "the outer face reaches more than 80 degrees from its middle",
+        "P0002": "the thickness reaches the centre of the sphere",
+    }
+    assert panels.ids == ("P0000", "P0003", "P0004")
+    write_all(panels, tmp_path)
+
+
+def roof(scale: float) -> Panels:
+    mesh = roof_net(6, 7, 30.0)
+    found = minimize_angles(fit_spheres(Mesh(scale * mesh.vertices, mesh.faces)))[0]
+    found, clusters = cluster_radii(found, 3)
+    lengths = 0.05 * scale, 0.01 * scale
+    panels, rejected = cut_panels(found, "bisector", *lengths, clusters.labels)
+    assert not rejected
+    return panels
+
+
+def test_law_millimetres_are_the_same_in_every_unit(tmp_path: Path) -> None:
+    """A roof drawn in metres, millimetres and feet, from the mesh to the files."""
+    rows, numbers = [], []
+    for units, scale in (("m", 1.0), ("mm", 1000.0), ("ft", 1 / 0.3048)):
+        panels = roof(scale)
+        rows.append(schedule_rows(panels, units))
+        text = write_step(panels, tmp_path / "p.step", units).read_text("ascii")
+        found = re.findall(r"CARTESIAN_POINT\('',\(([^)]*)\)\)", text.replace("\n", ""))
+        numbers.append(np.array([[float(x) for x in point.split(",")] for point in found]))
+    for other in (1, 2):
+        for a, b in zip(rows[0], rows[other], strict=True):
+            assert a["id"] == b["id"]
+            assert a["mould"] == b["mould"]
+            for name in ("radius_mm", "edge_lengths_mm", "corners_mm", "size_mm"):
+                np.testing.assert_allclose(a[name], b[name], rtol=0, atol=1e-9)
+            assert a["area_m2"] == pytest.approx(b["area_m2"], rel=1e-9)
+        assert norm(numbers[0] - numbers[other]).max() < 1e-9  # mm
+
+
+def test_planes_of_a_whole_roof(tmp_path: Path) -> None:
+    panels, rejected = cut_panels(face_planes(roof_net(4, 4, 10.0)), "bisector", 0.05, 0.01)
+    assert not rejected
+    write_all(panels, tmp_path)
