@@ -68,3 +68,12 @@ TRANSFORM_DIGITS: Final = 1e-6
 
 AT_INFINITY: Final = 1e-6
 """Vertices this close, in mean edges, to the point sent to infinity have no usable image."""
+
+PLANAR: Final = 1e-6
+"""Faces whose vertices lie this close to a common plane, in mean edges, are planar."""
+
+SUPPORT_MISS: Final = 1e-4
+"""Spheres that miss orthogonality to a common sphere by more (as a cosine) have none."""
+
+NOISE_MARGIN: Final = 8.0
+"""How many times its estimated noise a number must exceed to differ from zero."""
