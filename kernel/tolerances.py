@@ -77,3 +77,6 @@ SUPPORT_MISS: Final = 1e-4
 
 NOISE_MARGIN: Final = 8.0
 """How many times its estimated noise a number must exceed to differ from zero."""
+
+SAME_LENGTH: Final = 1e-6
+"""Diagonals whose lengths differ by a smaller share are equally short."""
