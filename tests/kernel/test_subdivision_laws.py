@@ -254,7 +254,8 @@ def test_polygons_that_are_not_convex() -> None:
     turns = np.arange(14) * np.pi / 7
     radii = np.where(np.arange(14) % 2, 1.0, 3.0)
     star = np.stack([radii * np.cos(turns), radii * np.sin(turns), 0 * turns], 1)
-    dart = [[0, 0, 0], [2, 1, 0], [0, 2, 0], [0.5, 1, 0]]
+    # The diagonal across the mouth of the dart is short, but runs outside.
+    dart = [[0, 0, 0], [3, 0.3, 0], [0, 0.6, 0], [1, 0.3, 0]]
     ell = [[0, 0, 0], [2, 0, 0], [2, 1, 0], [1, 1, 0], [1, 2, 0], [0, 2, 0]]
     in_line = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0]]
     for points in (star, dart, ell, in_line):
@@ -274,10 +275,11 @@ def test_bad_input_is_named(mixed: Mesh) -> None:
 
 
 @pytest.mark.parametrize("name", OPERATIONS)
-def test_vertices_without_a_face_do_no_harm(name: str, octahedron: Mesh) -> None:
-    lonely = Mesh(np.vstack([octahedron.vertices, [[9, 9, 9]]]), octahedron.faces)
+def test_vertices_without_a_face_do_no_harm(name: str, mixed: Mesh) -> None:
+    points = np.insert(mixed.vertices, 3, 9.0, axis=0)
+    lonely = Mesh(points, [face + (face >= 3) for face in mixed.faces])
     result = applied(name, lonely)
-    expected = applied(name, octahedron)
+    expected = applied(name, mixed)
     np.testing.assert_allclose(
         face_vector_areas(result), face_vector_areas(expected), atol=1e-15
     )
