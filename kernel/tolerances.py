@@ -80,3 +80,12 @@ NOISE_MARGIN: Final = 8.0
 
 SAME_LENGTH: Final = 1e-6
 """Diagonals whose lengths differ by a smaller share are equally short."""
+
+CREASE: Final = 0.6981317007977318
+"""Triangles that meet at a larger angle (40 degrees) make a crease, not a curved surface."""
+
+LINE_CORNER: Final = 0.5235987755982988
+"""A boundary or crease that turns at a vertex by more (30 degrees) has a corner there."""
+
+MOSTLY_EVEN: Final = 0.95
+"""Share of edges of nearly the length asked for below which remeshing warns."""

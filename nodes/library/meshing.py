@@ -2,9 +2,12 @@
 
 from typing import Annotated, Literal
 
-from ...kernel import subdivision, triangulation
+import numpy as np
+
+from ...kernel import remeshing, subdivision, triangulation
 from ...kernel.mesh import Mesh
-from ..node import node
+from ...kernel.tolerances import MOSTLY_EVEN
+from ..node import node, warn
 from ..ports import Port
 
 SCHEMES = {
@@ -61,3 +64,42 @@ def subdivide(
     for _ in range(iterations):
         mesh = SCHEMES[scheme](mesh)
     return mesh
+
+
+@node
+def remesh_triangles(
+    mesh: Mesh,
+    edge_length: Annotated[float, Port(min=0)],
+    iterations: Annotated[int, Port(min=0, max=100)] = 10,
+    crease_angle: Annotated[float, Port(unit="deg", min=0, max=180)] = 40.0,
+) -> Mesh:
+    """
+    Cover the surface of a mesh with triangles whose edges have nearly one length.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The surface; polygons are cut into triangles first.
+    edge_length : float
+        Length that edges shall have, in model units.
+    iterations : int
+        How often all edges are gone over.
+    crease_angle : float
+        Edges at which the surface turns more sharply are kept, as the boundary is.
+
+    Returns
+    -------
+    Mesh
+        Triangles with their vertices on the surface.
+    """
+    result = remeshing.remesh_triangles(
+        mesh, edge_length, iterations, float(np.radians(crease_angle))
+    )
+    share = remeshing.even_share(result, edge_length)
+    if iterations and share < MOSTLY_EVEN:
+        warn(
+            f"only {100 * share:.0f} % of the edges are between 0.5 and 1.6 times as long as "
+            "asked for: details, corners or creases of the mesh are closer than that; choose "
+            "shorter edges or a larger crease angle"
+        )
+    return result

@@ -21,10 +21,19 @@ assert subdivide(triangles, "catmull-clark").n_faces == 144 * 3
 with pytest.raises(InputError, match="are no triangles"):
     subdivide(net, "loop")
 
+even = remesh_triangles(net, 0.5)
+assert (even.degrees == 3).all()
+with pytest.warns(UserWarning, match="of the edges are between 0.5 and 1.6 times"):
+    remesh_triangles(net, 3.0, crease_angle=0)
+with pytest.raises(InputError, match="choose longer ones"):
+    remesh_triangles(net, 1e-6)
+
 g = Graph()
 mesh = g.add(torus_mesh, n_around=12, n_across=6)
 finer = g.add(subdivide, mesh=g.add(triangulate, mesh=mesh), scheme="loop", iterations=2)
 assert g.run(finer).n_faces == 144 * 16
+even = g.add(remesh_triangles, mesh=mesh, edge_length=0.5)
+assert g.run(even).n_faces > 200
 print("all well")
 """
 
