@@ -182,6 +182,31 @@ def test_law_quality_does_not_depend_on_numbering(
     assert even_share(other, length) > 0.95
 
 
+def test_law_blunt_creases_stay() -> None:
+    turns = np.pi * np.arange(6) / 3
+    ring = np.column_stack([np.cos(turns), np.sin(turns)])
+    points = np.concatenate([np.column_stack([ring, np.full(6, z)]) for z in (0.0, 2.0)])
+    tube = Mesh(points, [[i, (i + 1) % 6, 6 + (i + 1) % 6, 6 + i] for i in range(6)])
+    result = remesh_triangles(tube, 0.25)
+    np.testing.assert_allclose(norm(face_vector_areas(result)).sum(), 12, rtol=1e-12)
+    turned = np.arctan2(*face_normals(result).T[[1, 0]]) * 3 / np.pi - 0.5
+    np.testing.assert_allclose(turned, np.round(turned), atol=1e-9)
+
+
+@pytest.mark.parametrize("length", [0.3, 0.7, 2.0])
+def test_law_what_is_thinner_than_an_edge_keeps_its_topology(length: float) -> None:
+    wire = torus_net(40, 5, 3.0, 0.15)
+    result = remesh_triangles(wire, length, crease_angle=np.pi)
+    assert characteristic(result) == 0
+    grid = np.stack(np.meshgrid(np.arange(41) / 4, [0, 0.2], indexing="ij"), -1)
+    ids = np.arange(82).reshape(41, 2)
+    quads = np.stack([ids[:-1, 0], ids[1:, 0], ids[1:, 1], ids[:-1, 1]], -1)
+    strip = Mesh(np.column_stack([grid.reshape(-1, 2), np.zeros(82)]), quads)
+    result = remesh_triangles(strip, length)
+    assert characteristic(result) == n_boundaries(result) == 1
+    np.testing.assert_allclose(norm(face_vector_areas(result)).sum(), 2, rtol=1e-12)
+
+
 def edited(mesh: Mesh) -> Triangles:
     surface = triangulate(mesh)
     return Triangles(
