@@ -241,6 +241,11 @@ def test_coarsening_beyond_the_shape_keeps_a_surface(octahedron: Mesh) -> None:
     result = remesh_triangles(fine, 50.0, crease_angle=np.pi)
     assert characteristic(result) == 2
     assert 4 <= result.n_faces < 40
+    tetrahedron = Mesh(
+        [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]],
+        [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]],
+    )
+    assert remesh_triangles(tetrahedron, 50.0, crease_angle=np.pi).n_faces == 4
 
 
 def test_bad_input_is_named(octahedron: Mesh) -> None:
