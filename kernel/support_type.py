@@ -36,8 +36,8 @@ class SupportType:
         Row of ω in model coordinates: of norm 1 (with A > 0, or a plane), -1 (with A > 0) or 0
         (A = 1; for infinity ``(0, 0, 0, 0, 1)``). If there is none, the row that comes nearest.
     residual : float
-        Root mean square of the products ``<<s, ω>>`` of unit spheres with ω of Euclidean length
-        1, in coordinates about the middle of the mesh and of its size.
+        Root mean square of the products ``<<s, ω>>``, with the rows of the spheres and of ω of
+        Euclidean length 1, in coordinates about the middle of the mesh and of its size.
     """
 
     kind: SupportKind
@@ -63,14 +63,15 @@ def support_type(sphere_mesh: SphereMesh, tolerance: float = SUPPORT_MISS) -> Su
 
     Notes
     -----
-    ω is J times the last right singular vector of the stacked unit rows. The last singular
-    value σ₅ measures what of the rows is noise; by Wedin's theorem it turns ω by an angle of at
-    most about σ₅ / σ, where σ is the least singular value above the noise, and so changes
-    ``<<ω, ω>>``, the number whose sign tells the kind, by twice that. A norm within
-    `NOISE_MARGIN` of it is taken for 0: a mesh of spheres through a point, blurred by noise,
-    stays one, and a small real or imaginary ω is not invented from noise. This holds for
-    systematic errors as for random ones. With five spheres or fewer nothing is left to tell the
-    noise from: then it is taken to be rounding.
+    ω is J times the last right singular vector of the stacked rows, each of Euclidean length 1
+    (unit rows of small spheres are long, and would weigh more than they know). The last
+    singular value σ₅ measures what of the rows is noise; by Wedin's theorem it turns ω by an
+    angle of at most about σ₅ / σ, where σ is the least singular value above the noise, and so
+    changes ``<<ω, ω>>``, the number whose sign tells the kind, by twice that. A norm within
+    `NOISE_MARGIN` times this is taken for 0: a mesh of spheres through a point, blurred by
+    noise, stays one, and no small real or imaginary ω is invented from noise. This holds for
+    systematic errors as for random ones. With four spheres or fewer nothing is left to tell
+    the noise from: then it is taken to be rounding.
 
     If several ω fit equally well (all spheres one sphere, or of revolution about an axis) one
     of them is returned; infinity if it is among them.
@@ -99,7 +100,7 @@ def support_type(sphere_mesh: SphereMesh, tolerance: float = SUPPORT_MISS) -> Su
 
 
 def _rows_about_middle(sphere_mesh: SphereMesh) -> tuple[FloatArray, FloatArray, float]:
-    """Pentaspherical rows (F, 5) in coordinates about the mean corner, of the mesh's size."""
+    """Pentaspherical rows (F, 5) of length 1, about the mean corner, in units of the size."""
     mesh = sphere_mesh.mesh
     first = mesh.vertices[mesh.corners[0]]
     relative = mesh.vertices[mesh.corners] - first
@@ -108,7 +109,8 @@ def _rows_about_middle(sphere_mesh: SphereMesh) -> tuple[FloatArray, FloatArray,
     size = float(np.sqrt(dot(spread, spread).mean()))
     away = shift - (face_centroids(mesh) - first)
     rows = recenter(sphere_mesh.local_spheres, away)
-    return pentaspherical(rows * np.array([size, 1, 1, 1, 1 / size])), first + shift, size
+    rows = pentaspherical(rows * np.array([size, 1, 1, 1, 1 / size]))
+    return rows / norm(rows)[:, None], first + shift, size
 
 
 def _kind(row: FloatArray, uncertainty: float) -> SupportKind:

@@ -72,7 +72,7 @@ AT_INFINITY: Final = 1e-6
 PLANAR: Final = 1e-6
 """Faces whose vertices lie this close to a common plane, in mean edges, are planar."""
 
-SUPPORT_MISS: Final = 1e-4
+SUPPORT_MISS: Final = 3e-4
 """Spheres that miss orthogonality to a common sphere by more (as a cosine) have none."""
 
 NOISE_MARGIN: Final = 8.0

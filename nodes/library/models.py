@@ -100,7 +100,7 @@ def support_type(sphere_mesh: SphereMesh) -> SupportType:
         Row (A, Bx, By, Bz, C) of the sphere, plane or point; of none the one that comes
         nearest. The planes and axes of the support structure pass through its centre.
     residual : float
-        How far the spheres miss it: 0 exact, above 0.0001 none.
+        How far the spheres miss it: 0 exact, above 0.0003 none.
     """
     found = support.support_type(sphere_mesh)
     return SupportType(found.kind, found.omega, found.residual)
