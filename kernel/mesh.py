@@ -256,3 +256,23 @@ def mean_edge_length(mesh: Mesh) -> float:
     """
     ends = mesh.vertices[mesh.corners[mesh.topology.next_corners]]
     return float(norm(ends - mesh.vertices[mesh.corners]).mean())
+
+
+def reversed_corners(mesh: Mesh) -> IntArray:
+    """
+    Vertices of the faces run the other way round, each from the same first one.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Returns
+    -------
+    (H,) int array
+        Vertex of each corner, in the offsets of the mesh.
+    """
+    faces = mesh.topology.corner_faces
+    firsts = mesh.offsets[:-1][faces]
+    place = (firsts - np.arange(len(faces))) % mesh.degrees[faces]
+    return mesh.corners[firsts + place]

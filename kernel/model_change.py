@@ -27,7 +27,7 @@ from .analysis import planarity
 from .arrays import BoolArray, FloatArray, dot, norm
 from .errors import InputError, name_ids
 from .fit import face_planes
-from .mesh import Mesh, face_centroids, face_normals, mean_edge_length
+from .mesh import Mesh, face_centroids, face_normals, mean_edge_length, reversed_corners
 from .mobius import inversion
 from .mobius_maps import map_sphere_mesh
 from .sphere_mesh import SphereMesh
@@ -154,17 +154,18 @@ def change_model(
     rounding = 4 * EPSILON * (np.abs(mesh.vertices).max() + np.abs(origin).max() + radius)
     _check_distances(mesh, norm(points), geometry, radius, branch, float(rounding))
 
-    faces = mesh.faces
+    corners = mesh.corners
     unit_normals = face_normals(mesh)
     distances = dot(unit_normals, face_centroids(mesh) - origin)
     rows = model_spheres(unit_normals, distances, geometry, radius)
     if branch == "outer" and geometry == "hyperbolic":
-        faces = tuple(np.roll(face[::-1], 1) for face in faces)
+        corners = reversed_corners(mesh)
     elif branch == "outer":
         # The outer elliptic branch turns by two reflections; the second takes N to the other
         # side of spheres that both leave in place.
         rows = -rows
     images = model_points(points, geometry, radius, branch)
+    faces = np.split(corners, mesh.offsets[1:-1])
     near = SphereMesh(Mesh(images, faces), rows)
     backwards = dot(face_normals(near.mesh), near.local_spheres[:, 1:4]) <= 0
     _refuse(backwards, "faces {} are too near the centre for the outer branch; move it away")
