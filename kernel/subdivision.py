@@ -13,7 +13,7 @@ import numpy as np
 
 from .arrays import BoolArray, IntArray, sum_by
 from .errors import InputError, name_ids
-from .mesh import Mesh, face_centroids
+from .mesh import Mesh, corner_edges, edge_ends, face_centroids
 
 
 def subdivide_midpoint(mesh: Mesh) -> Mesh:
@@ -31,8 +31,8 @@ def subdivide_midpoint(mesh: Mesh) -> Mesh:
         Four triangles for each triangle, and for any other face a quadrilateral at each of its
         corners, about its centroid. Planar faces stay planar.
     """
-    edges = _corner_edges(mesh)
-    ends = mesh.vertices[_edge_vertices(mesh, edges)]
+    edges = corner_edges(mesh)
+    ends = mesh.vertices[edge_ends(mesh, edges)]
     middles = ends[:, 0] + (ends[:, 1] - ends[:, 0]) / 2
     is_triangle = mesh.degrees == 3
     return Mesh(
@@ -64,8 +64,8 @@ def subdivide_catmull_clark(mesh: Mesh) -> Mesh:
     origin = mesh.vertices[corners[0]]
     vertices = mesh.vertices - origin
     centers = face_centroids(mesh) - origin
-    edges = _corner_edges(mesh)
-    ends = _edge_vertices(mesh, edges)
+    edges = corner_edges(mesh)
+    ends = edge_ends(mesh, edges)
     middles = vertices[ends].mean(axis=1)
     first, second = topology.edge_faces.T
     edge_points = middles.copy()
@@ -129,23 +129,6 @@ def subdivide_loop(mesh: Mesh) -> Mesh:
     step: Any = igl.loop  # pyright: ignore[reportUnknownMemberType]
     vertices, faces = step(mesh.vertices[used] - origin, corners.reshape(-1, 3), 1)
     return Mesh(np.asarray(vertices, np.float64) + origin, np.asarray(faces, np.int64))
-
-
-def _corner_edges(mesh: Mesh) -> IntArray:
-    """Edge (H,) that leaves each corner, boundary edges included, in the order of corners."""
-    twins = mesh.topology.twins
-    own = np.arange(len(twins))
-    first = np.where(twins < 0, own, np.minimum(own, twins))
-    return np.cumsum(first == own)[first] - 1
-
-
-def _edge_vertices(mesh: Mesh, edges: IntArray) -> IntArray:
-    """Ends (n, 2) of all edges."""
-    ends = np.stack([mesh.corners, mesh.corners[mesh.topology.next_corners]], 1)
-    result = np.empty((int(edges.max()) + 1, 2), np.int64)
-    # Backwards, so that the first half-edge of an edge gives the direction.
-    result[edges[::-1]] = ends[::-1]
-    return result
 
 
 def _split_faces(mesh: Mesh, edges: IntArray, is_triangle: BoolArray) -> list[IntArray]:
