@@ -19,9 +19,13 @@ from spheremesh.nodes import (
     fit_spheres,
     inversion,
     minimize_angles,
+    model_change,
     panels,
+    remesh_triangles,
     roof_mesh,
+    sphere_bundle,
     torus_mesh,
+    vase_mesh,
 )
 from spheremesh.viewer.render import compare_image, render_image
 
@@ -77,7 +81,33 @@ def mobius() -> Image.Image:
     return sheet
 
 
-PICTURES = {"roof": roof, "roof-zebra": roof_zebra, "pencil": pencil, "mobius": mobius}
+def models() -> Image.Image:
+    """A vase of plane triangles, and its image in each of the three models."""
+    vase = remesh_triangles(vase_mesh(48, 36, amplitude=0.35), 0.42)
+    middle = vase.vertices.mean(axis=0)
+    shapes = (
+        face_planes(vase),
+        model_change(vase, "hyperbolic", 2.0, middle),
+        model_change(vase, "elliptic", 1.0, middle),
+        sphere_bundle(vase, middle + np.array([-2.4, -2.4, 1.2]), 3.0),
+    )
+    sheet = Image.new("RGB", (1600, 560))
+    for place, shape in enumerate(shapes):
+        made = panels(shape).panels
+        picture = render_image(
+            made, color_by="radius", direction=(0.3, -1.0, 0.35), width=400, height=560
+        )
+        sheet.paste(picture, (400 * place, 0))
+    return sheet
+
+
+PICTURES = {
+    "roof": roof,
+    "roof-zebra": roof_zebra,
+    "pencil": pencil,
+    "mobius": mobius,
+    "models": models,
+}
 
 
 def main(folder: Path) -> None:

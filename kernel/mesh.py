@@ -279,3 +279,66 @@ def mean_edge_length(mesh: Mesh) -> float:
     """
     ends = mesh.vertices[mesh.corners[mesh.topology.next_corners]]
     return float(norm(ends - mesh.vertices[mesh.corners]).mean())
+
+
+def reversed_corners(mesh: Mesh) -> IntArray:
+    """
+    Vertices of the faces run the other way round, each from the same first one.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Returns
+    -------
+    (H,) int array
+        Vertex of each corner, in the offsets of the mesh.
+    """
+    faces = mesh.topology.corner_faces
+    firsts = mesh.offsets[:-1][faces]
+    place = (firsts - np.arange(len(faces))) % mesh.degrees[faces]
+    return mesh.corners[firsts + place]
+
+
+def corner_edges(mesh: Mesh) -> IntArray:
+    """
+    Edge that leaves each corner, boundary edges included.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Returns
+    -------
+    (H,) int array
+        Numbers of edges, in the order of their first corners.
+    """
+    twins = mesh.topology.twins
+    own = np.arange(len(twins))
+    first = np.where(twins < 0, own, np.minimum(own, twins))
+    return np.cumsum(first == own)[first] - 1
+
+
+def edge_ends(mesh: Mesh, edges: IntArray) -> IntArray:
+    """
+    Vertices of all edges, boundary edges included.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    edges : (H,) int array
+        Edge that leaves each corner, of `corner_edges`.
+
+    Returns
+    -------
+    (n, 2) int array
+        Ends of each edge, as its first half-edge runs.
+    """
+    ends = np.stack([mesh.corners, mesh.corners[mesh.topology.next_corners]], 1)
+    result = np.empty((int(edges.max()) + 1, 2), np.int64)
+    # Backwards, so that the first half-edge is written last.
+    result[edges[::-1]] = ends[::-1]
+    return result

@@ -21,7 +21,14 @@ from .lorentz import (
     row_images,
     turn_vectors,
 )
-from .mesh import Mesh, face_centroids, face_normals, local_corners, mean_edge_length
+from .mesh import (
+    Mesh,
+    face_centroids,
+    face_normals,
+    local_corners,
+    mean_edge_length,
+    reversed_corners,
+)
 from .mobius import read_transform
 from .sphere_mesh import SphereMesh
 from .spheres import recenter
@@ -288,12 +295,7 @@ def _image_mesh(mesh: Mesh, local: LocalMap) -> Mesh:
     vectors, rounding = bend_vectors(local, mesh.vertices)
     reach = np.maximum(rounding, AT_INFINITY * local.strength * mean_edge_length(mesh))
     _refuse(norm(vectors) <= reach, "vertices {} are sent to infinity; move the centre away")
-    corners = mesh.corners
-    if local.reverses:
-        faces = mesh.topology.corner_faces
-        firsts = mesh.offsets[:-1][faces]
-        place = (firsts - np.arange(len(corners))) % mesh.degrees[faces]
-        corners = corners[firsts + place]
+    corners = reversed_corners(mesh) if local.reverses else mesh.corners
     return Mesh(point_images(local, mesh.vertices), np.split(corners, mesh.offsets[1:-1]))
 
 

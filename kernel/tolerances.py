@@ -122,3 +122,24 @@ SAME_PANEL: Final = 1e-6
 
 ENCLOSING: Final = 1e-12
 """How far a point may stand out of a smallest enclosing cap, relative to its radius."""
+
+PLANAR: Final = 1e-6
+"""Faces whose vertices lie this close to a common plane, in mean edges, are planar."""
+
+SUPPORT_MISS: Final = 3e-4
+"""Spheres that miss orthogonality to a common sphere by more (as a cosine) have none."""
+
+NOISE_MARGIN: Final = 8.0
+"""How many times its estimated noise a number must exceed to differ from zero."""
+
+SAME_LENGTH: Final = 1e-6
+"""Diagonals whose lengths differ by a smaller share are equally short."""
+
+CREASE: Final = 0.6981317007977318
+"""Triangles that meet at a larger angle (40 degrees) make a crease, not a curved surface."""
+
+LINE_CORNER: Final = 0.5235987755982988
+"""A boundary or crease that turns at a vertex by more (30 degrees) has a corner there."""
+
+MOSTLY_EVEN: Final = 0.95
+"""Share of edges of nearly the length asked for below which remeshing warns."""

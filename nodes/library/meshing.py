@@ -1,0 +1,126 @@
+"""Other meshes of the same shape: triangulated, finer, or of even triangles."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+
+from ...kernel import remeshing, subdivision, triangulation
+from ...kernel import shifted_rows as rows_of_nets
+from ...kernel.mesh import Mesh
+from ...kernel.tolerances import MOSTLY_EVEN
+from ..node import node, warn
+from ..ports import Port
+
+SCHEMES = {
+    "loop": subdivision.subdivide_loop,
+    "catmull-clark": subdivision.subdivide_catmull_clark,
+    "midpoint": subdivision.subdivide_midpoint,
+}
+
+
+@node
+def triangulate(mesh: Mesh) -> Mesh:
+    """
+    Cut polygons into triangles along their short diagonals.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Faces of any degree, convex or not.
+
+    Returns
+    -------
+    Mesh
+        Triangles on the same vertices; those of a face follow each other.
+    """
+    return triangulation.triangulate(mesh)
+
+
+@node
+def subdivide(
+    mesh: Mesh,
+    scheme: Literal["loop", "catmull-clark", "midpoint"] | None = None,
+    iterations: Annotated[int, Port(min=0, max=8)] = 1,
+) -> Mesh:
+    """
+    Split every face into smaller ones.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    scheme : {"loop", "catmull-clark", "midpoint"}, optional
+        Smooth for triangles, smooth for faces of any degree (quadrilaterals come out), or
+        without a change of shape. By default loop for triangles and catmull-clark for others.
+    iterations : int
+        How often; each multiplies the number of faces by about four.
+
+    Returns
+    -------
+    Mesh
+        The finer mesh; the smooth schemes draw it inwards, its boundary to a smooth curve.
+    """
+    if scheme is None:
+        scheme = "loop" if (mesh.degrees == 3).all() else "catmull-clark"
+    for _ in range(iterations):
+        mesh = SCHEMES[scheme](mesh)
+    return mesh
+
+
+@node
+def remesh_triangles(
+    mesh: Mesh,
+    edge_length: Annotated[float, Port(min=0)],
+    iterations: Annotated[int, Port(min=0, max=100)] = 10,
+    crease_angle: Annotated[float, Port(unit="deg", min=0, max=180)] = 40.0,
+) -> Mesh:
+    """
+    Cover the surface of a mesh with triangles whose edges have nearly one length.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The surface; polygons are cut into triangles first.
+    edge_length : float
+        Length that edges shall have, in model units.
+    iterations : int
+        How often all edges are gone over.
+    crease_angle : float
+        Edges at which the surface turns more sharply are kept, as the boundary is.
+
+    Returns
+    -------
+    Mesh
+        Triangles with their vertices on the surface.
+    """
+    result = remeshing.remesh_triangles(
+        mesh, edge_length, iterations, float(np.radians(crease_angle))
+    )
+    share = remeshing.even_share(result, edge_length)
+    if iterations and share < MOSTLY_EVEN:
+        warn(
+            f"only {100 * share:.0f} % of the edges are between 0.5 and 1.6 times as long as "
+            "asked for: details, corners or creases of the mesh are closer than that; choose "
+            "shorter edges or a larger crease angle"
+        )
+    return result
+
+
+@node
+def shifted_rows(mesh: Mesh, rows: Literal["sharper", "flatter"] = "sharper") -> Mesh:
+    """
+    Turn a net of quadrilaterals into rows of triangles with six neighbours at every vertex.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Quadrilaterals with four edges at every inner vertex.
+    rows : {"sharper", "flatter"}
+        Rows along those lines of the net that bend more, which suits hexagonal panels, or less.
+
+    Returns
+    -------
+    Mesh
+        Triangles; every other row is shifted by half an edge.
+    """
+    return rows_of_nets.shifted_rows(mesh, rows)
