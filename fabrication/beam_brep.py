@@ -73,6 +73,7 @@ class _Cuts:
     """Edges (B, 2, 2) across the thickness between two levels: ellipses, or straight lines."""
 
     is_line: BoolArray
+    misses: FloatArray
     centers: FloatArray
     normals: FloatArray
     majors: FloatArray
@@ -163,6 +164,8 @@ def _solids(beams: Beams, shifts: FloatArray) -> _Solids:
         }
     misses = 8 * EPSILON * np.where(np.isfinite(radii), radii, 0.0).max(axis=1)
     misses = np.maximum(misses, 8 * EPSILON * norm(annuli.origins))
+    for cut in cuts.values():
+        misses = np.maximum(misses, 2 * cut.misses.max(axis=(1, 2)))
     tolerances = np.maximum(CONFUSION, misses)
     is_finite = np.isfinite(beams.corners).all(axis=(1, 2, 3, 4)) & np.isfinite(tolerances)
     broken = [annuli.ids[i] for i in np.flatnonzero(~is_finite)]
@@ -207,11 +210,14 @@ def _cuts(
     normal = unit(np.cross(beams.annuli.end_directions, slant))
     cosine = dot(normal, axis)[..., None]
     major = unit(axis - cosine * normal)
+    first, last = corners[..., low, :], corners[..., high, :]
+    flat = last - first
+    flat = flat - dot(flat, axis[:, :, None])[..., None] * axis[:, :, None]
     with np.errstate(divide="ignore", invalid="ignore"):
-        is_line = change[..., None] ** 2 / (8 * radii[:, None]) < STRAIGHT_RULING * (
-            beams.thickness
-        )
-        first, last = corners[..., low, :], corners[..., high, :]
+        # The flatter the ellipse, the farther off its centre: there a line is the better one.
+        bulge = dot(flat, flat) / (8 * radii[:, None])
+        rounding = 8 * EPSILON * radii[:, None] / cosine**2
+        is_line = bulge < np.maximum(STRAIGHT_RULING * beams.thickness, rounding)
         height = dot(first - centers[:, None], normal[:, :, None]) / cosine
         middles = centers[:, None] + height[..., None] * axis[:, :, None]
         reach = radii[:, None] / np.abs(cosine)
@@ -226,8 +232,9 @@ def _cuts(
     span = (angles[1] - angles[0] + np.pi) % (2 * np.pi) - np.pi
     side = np.where(span < 0, -1.0, 1.0)
     lengths = np.where(is_line, norm(last - first), np.abs(span))
+    misses = np.where(is_line, bulge, rounding)
     return _Cuts(
-        is_line, middles, side[..., None] * normal[:, :, None],
+        is_line, misses, middles, side[..., None] * normal[:, :, None],
         np.broadcast_to(major[:, :, None], middles.shape), reach,
         np.where(is_line, 0.0, side * angles[0] % (2 * np.pi)), lengths,
     )  # fmt: skip
