@@ -31,10 +31,11 @@ from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape, TopoDS_Vertex
 
 from ..kernel.arcs import arc_circles
-from ..kernel.arrays import BoolArray, FloatArray, dot, norm, unit
-from ..kernel.beams import Beams, inward_directions, scale_beams, side_arcs
+from ..kernel.arrays import FloatArray, dot, norm
+from ..kernel.beam_edges import CutEdges, cut_edges
+from ..kernel.beams import Beams, scale_beams, side_arcs
 from ..kernel.errors import InputError
-from ..kernel.tolerances import EPSILON, STRAIGHT_RULING
+from ..kernel.tolerances import EPSILON
 from .brep_parts import (
     BUILDER,
     CONFUSION,
@@ -69,19 +70,6 @@ class _Sides:
 
 
 @dataclass(frozen=True)
-class _Cuts:
-    """Edges (B, 2, 2) across the thickness between two levels: ellipses, or straight lines."""
-
-    is_line: BoolArray
-    centers: FloatArray
-    normals: FloatArray
-    majors: FloatArray
-    radii: FloatArray
-    firsts: FloatArray
-    lengths: FloatArray
-
-
-@dataclass(frozen=True)
 class _Solids:
     """What the solids of a batch of beams are made of, about their rounded origins."""
 
@@ -91,7 +79,7 @@ class _Solids:
     radii: FloatArray
     frames: FloatArray
     sides: dict[int, _Sides]
-    cuts: dict[tuple[int, int], _Cuts]
+    cuts: dict[tuple[int, int], CutEdges]
     parameters: dict[tuple[int, int], tuple[FloatArray, FloatArray]]
     tolerances: list[float]
 
@@ -156,13 +144,15 @@ def _solids(beams: Beams, shifts: FloatArray) -> _Solids:
     # On a plane the frame stands on it: along z, with the normal to the outer side.
     x = np.where(rows[..., :1] > 0, up, np.where(rows[..., :1] < 0, -up, -rows[..., 1:4]))
     frames = np.stack([x, np.cross(axis, x), np.broadcast_to(axis, x.shape)], 2)
-    cuts = {levels: _cuts(beams, corners, centers, radii, levels) for levels in _LEVELS}
+    cuts = {levels: cut_edges(beams, corners, centers, radii, levels) for levels in _LEVELS}
     with np.errstate(invalid="ignore"):
         parameters = {
             levels: _cut_parameters(cut, centers, radii, frames) for levels, cut in cuts.items()
         }
     misses = 8 * EPSILON * np.where(np.isfinite(radii), radii, 0.0).max(axis=1)
     misses = np.maximum(misses, 8 * EPSILON * norm(annuli.origins))
+    for cut in cuts.values():
+        misses = np.maximum(misses, 2 * cut.misses.max(axis=(1, 2)))
     tolerances = np.maximum(CONFUSION, misses)
     is_finite = np.isfinite(beams.corners).all(axis=(1, 2, 3, 4)) & np.isfinite(tolerances)
     broken = [annuli.ids[i] for i in np.flatnonzero(~is_finite)]
@@ -191,50 +181,8 @@ def _sides(beams: Beams, shifts: FloatArray, frames: FloatArray, level: int) -> 
     return _Sides(curves, lengths, np.stack(starts, 1), np.stack(turns, 1))
 
 
-def _cuts(
-    beams: Beams,
-    corners: FloatArray,
-    centers: FloatArray,
-    radii: FloatArray,
-    levels: tuple[int, int],
-) -> _Cuts:
-    """Ellipses from the lower to the upper of two levels, counter-clockwise about normals."""
-    low, high = levels
-    axis = beams.annuli.frames[:, None, 2]
-    change = beams.insets[..., high] - beams.insets[..., low]
-    rise = beams.levels[..., high] - beams.levels[..., low]
-    slant = change[..., None] * inward_directions(beams.annuli) + rise[..., None] * axis
-    normal = unit(np.cross(beams.annuli.end_directions, slant))
-    cosine = dot(normal, axis)[..., None]
-    major = unit(axis - cosine * normal)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        is_line = change[..., None] ** 2 / (8 * radii[:, None]) < STRAIGHT_RULING * (
-            beams.thickness
-        )
-        first, last = corners[..., low, :], corners[..., high, :]
-        height = dot(first - centers[:, None], normal[:, :, None]) / cosine
-        middles = centers[:, None] + height[..., None] * axis[:, :, None]
-        reach = radii[:, None] / np.abs(cosine)
-        minor = np.cross(normal, major)
-        angles = [
-            np.arctan2(
-                dot(points - middles, minor[:, :, None]) / radii[:, None],
-                dot(points - middles, major[:, :, None]) / reach,
-            )
-            for points in (first, last)
-        ]
-    span = (angles[1] - angles[0] + np.pi) % (2 * np.pi) - np.pi
-    side = np.where(span < 0, -1.0, 1.0)
-    lengths = np.where(is_line, norm(last - first), np.abs(span))
-    return _Cuts(
-        is_line, middles, side[..., None] * normal[:, :, None],
-        np.broadcast_to(major[:, :, None], middles.shape), reach,
-        np.where(is_line, 0.0, side * angles[0] % (2 * np.pi)), lengths,
-    )  # fmt: skip
-
-
 def _cut_parameters(
-    cuts: _Cuts, centers: FloatArray, radii: FloatArray, frames: FloatArray
+    cuts: CutEdges, centers: FloatArray, radii: FloatArray, frames: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Knots (B, 2, 2, n + 1) and poles of the ellipses in the parameters of the cylinders."""
     lengths = np.where(cuts.is_line, 0.0, cuts.lengths)

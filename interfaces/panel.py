@@ -33,8 +33,19 @@ class PanelOptions:
         Number of moulds; None for a radius per panel.
     thickness, joint_gap : float
         In model units.
-    edges : {"bisector", "intersection"}
-        How panels are cut.
+    edges : {"bisector", "intersection"} or None
+        How panels are cut; by default where the spheres meet if there is a support, else
+        upright.
+    tolerance : float or None
+        How far vertices may move, in mean edges; at 0 the faces have to lie on circles, and by
+        default they need not.
+    target_angle : float
+        Angle at which neighbours shall meet, in degrees.
+    support : bool
+        Whether to ask for nodes without torsion, and to write beams.
+    depth, beam_thickness : float or None
+        Of the beams, in model units; by default a quarter of the mean edge, and a tenth of the
+        depth.
     """
 
     mesh: Path | None = None
@@ -43,7 +54,12 @@ class PanelOptions:
     moulds: int | None = None
     thickness: float = 0.0
     joint_gap: float = 0.0
-    edges: Literal["bisector", "intersection"] = "bisector"
+    edges: Literal["bisector", "intersection"] | None = None
+    tolerance: float | None = None
+    target_angle: float = 0.0
+    support: bool = False
+    depth: float | None = None
+    beam_thickness: float | None = None
 
 
 def panel_graph(options: PanelOptions) -> Graph:
@@ -58,9 +74,10 @@ def panel_graph(options: PanelOptions) -> Graph:
     Returns
     -------
     Graph
-        Its steps are named mesh, start, optimum, moulds and blanks (with a number of moulds),
-        panels, audit, report, step, rhino, table, list and picture; its writers write into the
-        working directory.
+        Its steps are named mesh, start, angles (before an optimum of more than angles),
+        optimum, moulds and blanks (with a number of moulds), panels, audit, report, step,
+        rhino, table, list and picture, with a support nodes, annuli, beams and drawing too;
+        its writers write into the working directory.
 
     Raises
     ------
@@ -75,30 +92,72 @@ def panel_graph(options: PanelOptions) -> Graph:
     else:
         path = str(options.mesh.resolve())
         mesh = graph.add("read_mesh", "mesh", path=path, layer=options.layer)
-    start = graph.add("fit_spheres", "start", mesh=mesh)
-    optimum = graph.add("minimize_angles", "optimum", sphere_mesh=start)
+    optimum = _optimum(graph, options, mesh)
     spheres, labels, clusters, blanks = optimum.sphere_mesh, None, None, None
     if options.moulds is not None:
         count = graph.param("moulds", options.moulds, min=1)
-        moulds = graph.add("cluster_radii", "moulds", sphere_mesh=spheres, k=count)
+        moulds = graph.add(
+            "cluster_radii", "moulds", sphere_mesh=spheres, k=count, **_support_weights(options)
+        )
         spheres, labels, clusters = moulds.sphere_mesh, moulds.labels, moulds.report
     panels = graph.add(
-        "panels", "panels", sphere_mesh=spheres, edges=options.edges, thickness=thickness,
-        joint_gap=joint_gap, labels=labels,
+        "panels", "panels", sphere_mesh=spheres, thickness=thickness, joint_gap=joint_gap,
+        edges=options.edges or ("intersection" if options.support else "bisector"),
+        labels=labels,
     )  # fmt: skip
     if options.moulds is not None:
         blanks = graph.add("mould_blanks", "blanks", panels=panels.panels)
     audit = graph.add("audit", "audit", panels=panels.panels, cut=panels.report)
+    structure = _beams(graph, options, spheres) if options.support else {}
     graph.add(
         "panel_report", "report", sphere_mesh=spheres, optimum=optimum.report,
         cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report,
+        **{name: step.report for name, step in structure.items()},
     )  # fmt: skip
-    graph.add("write_step", "step", panels=panels.panels, path="panels.step")
-    graph.add("write_3dm", "rhino", panels=panels.panels, path="model.3dm")
+    made = {"panels": panels.panels}
+    if structure:
+        made["beams"] = structure["beams"].beams
+    graph.add("write_step", "step", **made, path="panels.step")
+    graph.add("write_3dm", "rhino", **made, path="model.3dm")
     graph.add("write_schedule", "table", panels=panels.panels, path="schedule.csv")
     graph.add("write_schedule", "list", panels=panels.panels, path="schedule.json")
     graph.add("render", "picture", panels=panels.panels, path="preview.png")
     return graph
+
+
+def _optimum(graph: Graph, options: PanelOptions, mesh: Step) -> Step:
+    """The spheres: of smallest angles alone, or of more than that."""
+    start = graph.add("fit_spheres", "start", mesh=mesh)
+    target = {"target_angle": options.target_angle} if options.target_angle else {}
+    may_move = bool(options.tolerance)
+    if not (options.support or may_move):
+        allowed = {} if options.tolerance is None else {"max_miss": options.tolerance}
+        return graph.add("minimize_angles", "optimum", sphere_mesh=start, **target, **allowed)
+    angles = graph.add("minimize_angles", "angles", sphere_mesh=start, **target)
+    moves = {"tolerance": graph.param("tolerance", options.tolerance, min=0)} if may_move else {}
+    return graph.add(
+        "optimize_spheres", "optimum", sphere_mesh=angles.sphere_mesh, **target, **moves,
+        **_support_weights(options),
+    )  # fmt: skip
+
+
+def _support_weights(options: PanelOptions) -> dict[str, float]:
+    """The paper's weights (Table 1)."""
+    return {"regularity": 3.5, "support": 1.0} if options.support else {}
+
+
+def _beams(graph: Graph, options: PanelOptions, spheres: Wire) -> dict[str, Step]:
+    """Nodes, annuli and beams; their drawing is written as well."""
+    nodes = graph.add("support_structure", "nodes", sphere_mesh=spheres)
+    depth = {} if options.depth is None else {"depth": graph.param("depth", options.depth, min=0)}
+    annuli = graph.add("annulus_support", "annuli", sphere_mesh=spheres, **depth)
+    thickness = {}
+    if options.beam_thickness is not None:
+        value = graph.param("beam_thickness", options.beam_thickness, min=0)
+        thickness = {"thickness": value}
+    beams = graph.add("beams", "beams", annuli=annuli.annuli, **thickness)
+    graph.add("write_dxf", "drawing", beams=beams.beams, path="beams.dxf")
+    return {"nodes": nodes, "annuli": annuli, "beams": beams}
 
 
 def is_panel_job(graph: Graph) -> bool:

@@ -100,8 +100,8 @@ def arc_planes(sphere_mesh: SphereMesh) -> ArcPlanes:
     Returns
     -------
     ArcPlanes
-        The planes. Two planes meet in a line: theirs is the plane through it that bisects
-        them. A sphere and a plane meet in a circle of that plane.
+        The planes. Two planes meet in a line: theirs is the plane through the edge that
+        bisects them. A sphere and a plane meet in a circle of that plane.
 
     References
     ----------
@@ -111,6 +111,7 @@ def arc_planes(sphere_mesh: SphereMesh) -> ArcPlanes:
     size = mean_edge_length(mesh)
     starts = local_corners(mesh)
     middles = (starts + starts[topology.next_corners]) / 2
+    along = unit(starts[topology.next_corners] - starts)[topology.edge_corners]
     first = topology.edge_corners
     second = topology.twins[first]
     units = np.array([size, 1.0, 1.0, 1.0, 1 / size])
@@ -120,7 +121,8 @@ def arc_planes(sphere_mesh: SphereMesh) -> ArcPlanes:
     radical = left[:, :1] * right - right[:, :1] * left
     scale = np.abs(left[:, 0]) + np.abs(right[:, 0])
     is_flat = scale == 0
-    radical[is_flat] = (right - left)[is_flat]
+    turned = right[:, 1:4] - left[:, 1:4]
+    radical[is_flat, 1:4] = (turned - dot(turned, along)[:, None] * along)[is_flat]
     length = norm(radical[:, 1:4])
     exists = (length > SAME_PLANE * np.where(is_flat, 1.0, scale)) & (
         angle(left, right) > SAME_PLANE

@@ -23,6 +23,8 @@ from spheremesh.fabrication import xcaf
 from spheremesh.fabrication.beam_brep import beam_shapes
 from spheremesh.fabrication.rhino import write_3dm
 from spheremesh.fabrication.step import beams_to_cadquery, write_step
+from spheremesh.kernel import beam_cutting
+from spheremesh.kernel.annuli import Annuli
 from spheremesh.kernel.annulus_support import annulus_support
 from spheremesh.kernel.arrays import FloatArray, dot, norm
 from spheremesh.kernel.beam_cutting import cut_beams
@@ -83,6 +85,22 @@ def test_law_e6_solids_are_sound_and_have_the_volumes_of_the_beams(case: str) ->
     shapes = beam_shapes(beams, 1000.0)
     assert all(is_valid(shape) for shape in shapes)
     assert {shape.ShapeType() for shape in shapes} == {TopAbs_ShapeEnum.TopAbs_SOLID}
+    np.testing.assert_allclose(measure(shapes), 1e9 * beam_volumes(beams), rtol=1e-8)
+
+
+@pytest.mark.parametrize("radius", [1.0, 30.0])
+def test_nearly_square_ends_are_sound(radius: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ellipses whose centres are far away, down to straight lines."""
+    sphere_mesh = central_spheres(torus_net(7, 5, 3 * radius, radius))
+    turn = np.logspace(-8, -1, 40).reshape(-1, 1, 1) * [[[1, -1], [-1.3, 1.1]]]
+
+    def nearly_square(annuli: Annuli) -> FloatArray:
+        return np.pi / 2 - np.resize(turn, (annuli.n_annuli, 2, 2))
+
+    monkeypatch.setattr(beam_cutting, "mitre_angles", nearly_square)
+    beams = make(sphere_mesh)
+    shapes = beam_shapes(beams, 1000.0)
+    assert all(is_valid(shape) for shape in shapes)
     np.testing.assert_allclose(measure(shapes), 1e9 * beam_volumes(beams), rtol=1e-8)
 
 

@@ -1,0 +1,110 @@
+"""Edges across the thickness of beams: where the planes of their ends cut cylinders."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .arrays import BoolArray, FloatArray, dot, norm, unit
+from .beams import Beams, inward_directions
+from .tolerances import EPSILON, STRAIGHT_RULING
+
+
+@dataclass(frozen=True)
+class CutEdges:
+    """
+    Edges (B, 2, 2) at both ends, of outer and inner faces: ellipses, or straight lines.
+
+    Attributes
+    ----------
+    is_line : (B, 2, 2) bool array
+        Whether the edge is a straight line; what describes an ellipse is then of no use.
+    misses : (B, 2, 2) float array
+        How far the edge errs, by its bulge or by rounding.
+    centers, normals, majors : (B, 2, 2, 3) float array
+        Centres, unit normals of the planes, unit vectors along the major axes; edges run
+        counter-clockwise about the normals.
+    radii : (B, 2, 2) float array
+        Major radii; the minor ones are the radii of the cylinders.
+    firsts, lengths : (B, 2, 2) float array
+        Parameters of the starts, and how far the parameters run; the length of a line.
+    """
+
+    is_line: BoolArray
+    misses: FloatArray
+    centers: FloatArray
+    normals: FloatArray
+    majors: FloatArray
+    radii: FloatArray
+    firsts: FloatArray
+    lengths: FloatArray
+
+
+def cut_edges(
+    beams: Beams,
+    corners: FloatArray,
+    centers: FloatArray,
+    radii: FloatArray,
+    levels: tuple[int, int],
+) -> CutEdges:
+    """
+    Edges in which the planes of the ends cut the outer and inner faces.
+
+    Parameters
+    ----------
+    beams : Beams
+        B beams.
+    corners : (B, 2, 2, 3, 3) float array
+        Their corners, in the coordinates of the centres.
+    centers : (B, 2, 3) float array
+        Centres of the outer and inner circles; not finite for planes.
+    radii : (B, 2) float array
+        Radii; infinite for planes.
+    levels : (int, int)
+        Lower and upper level of the edges.
+
+    Returns
+    -------
+    CutEdges
+        The edges, from the lower to the upper level.
+
+    Notes
+    -----
+    A plane that leans by little cuts a cylinder in an ellipse whose centre is far away, and
+    coordinates are rounded by its distance, as seen along the axis: ``8 ε R / cos²``. Where a
+    straight line errs by less, it is the better edge.
+    """
+    low, high = levels
+    axis = beams.annuli.frames[:, None, 2]
+    change = beams.insets[..., high] - beams.insets[..., low]
+    rise = beams.levels[..., high] - beams.levels[..., low]
+    slant = change[..., None] * inward_directions(beams.annuli) + rise[..., None] * axis
+    normal = unit(np.cross(beams.annuli.end_directions, slant))
+    cosine = dot(normal, axis)[..., None]
+    major = unit(axis - cosine * normal)
+    first, last = corners[..., low, :], corners[..., high, :]
+    flat = last - first
+    flat = flat - dot(flat, axis[:, :, None])[..., None] * axis[:, :, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        bulge = dot(flat, flat) / (8 * radii[:, None])
+        rounding = 8 * EPSILON * radii[:, None] / cosine**2
+        is_line = bulge < np.maximum(STRAIGHT_RULING * beams.thickness, rounding)
+        height = dot(first - centers[:, None], normal[:, :, None]) / cosine
+        middles = centers[:, None] + height[..., None] * axis[:, :, None]
+        reach = radii[:, None] / np.abs(cosine)
+        minor = np.cross(normal, major)
+        angles = [
+            np.arctan2(
+                dot(points - middles, minor[:, :, None]) / radii[:, None],
+                dot(points - middles, major[:, :, None]) / reach,
+            )
+            for points in (first, last)
+        ]
+    span = (angles[1] - angles[0] + np.pi) % (2 * np.pi) - np.pi
+    side = np.where(span < 0, -1.0, 1.0)
+    lengths = np.where(is_line, norm(last - first), np.abs(span))
+    misses = np.where(is_line, bulge, rounding)
+    return CutEdges(
+        is_line, misses, middles, side[..., None] * normal[:, :, None],
+        np.broadcast_to(major[:, :, None], middles.shape), reach,
+        np.where(is_line, 0.0, side * angles[0] % (2 * np.pi)), lengths,
+    )  # fmt: skip
