@@ -50,10 +50,26 @@ def main() -> None:
 @click.option(
     "--edges",
     type=click.Choice(["bisector", "intersection"]),
-    default="bisector",
-    help="Cut panels by planes that bisect the faces, or where the spheres meet.",
+    help="Cut panels by planes that bisect the faces, or where the spheres meet (the default "
+    "with --support).",
 )
-@click.option("--strict", is_flag=True, help="Exit with 5 if a panel is rejected.")
+@click.option(
+    "--tolerance",
+    type=click.FloatRange(min=0),
+    help="How far vertices may move, in mean edges; 0 insists on circular faces.",
+)
+@click.option(
+    "--target-angle",
+    type=click.FloatRange(0, 90),
+    default=0.0,
+    help="Angle at which neighbours shall meet, in degrees.",
+)
+@click.option("--support", is_flag=True, help="Nodes without torsion; beams under the edges.")
+@click.option("--depth", type=float, help="Depth of the beams; a quarter of the mean edge.")
+@click.option(
+    "--beam-thickness", type=float, help="Thickness of the beams; a tenth of the depth."
+)
+@click.option("--strict", is_flag=True, help="Exit with 5 if a panel or beam is rejected.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report alone.")
 def panel(  # numpydoc ignore=PR01
     out: Path,
@@ -72,7 +88,7 @@ def panel(  # numpydoc ignore=PR01
     with _errors(), _progress() as progress:
         report, files = run_job(panel_graph(PanelOptions(**options)), out, progress)
     _print_report(report, out, files, as_json=as_json)
-    if strict and report["panels"]["rejected"]:
+    if strict and (report["panels"]["rejected"] or report["beams"]["rejected"]):
         sys.exit(GATE_FAILED)
 
 
@@ -83,7 +99,7 @@ def panel(  # numpydoc ignore=PR01
 @click.option(
     "-o", "--out", default=".", type=click.Path(path_type=Path), help="Folder for its files."
 )
-@click.option("--strict", is_flag=True, help="Exit with 5 if a panel is rejected.")
+@click.option("--strict", is_flag=True, help="Exit with 5 if a panel or beam is rejected.")
 @click.option("--json", "as_json", is_flag=True, help="Print the targets' values as JSON.")
 def run(  # numpydoc ignore=PR01
     graph_file: Path, settings: tuple[str, ...], targets: tuple[str, ...], out: Path, *,
@@ -111,7 +127,7 @@ def run(  # numpydoc ignore=PR01
             return
         report, files = run_job(graph, out, progress)
     _print_report(report, out, files, as_json=as_json)
-    if strict and report["panels"]["rejected"]:
+    if strict and (report["panels"]["rejected"] or report["beams"]["rejected"]):
         sys.exit(GATE_FAILED)
 
 
@@ -223,7 +239,7 @@ def _print_report(
     """Warnings and rejected panels on standard error; the report, or what matters of it."""
     for text in report["warnings"]:
         click.echo(f"warning: {text}", err=True)
-    for rejected in report["panels"]["rejected"]:
+    for rejected in (*report["panels"]["rejected"], *report["beams"]["rejected"]):
         click.echo(f"rejected: {rejected['id']}: {rejected['reason']}", err=True)
     audit: Mapping[str, Any] = report["audit"] or {"errors": []}
     for found in audit["errors"]:
@@ -242,6 +258,13 @@ def _print_report(
     click.echo(f"moulds {report['moulds']['count'] or 'not asked for: a radius per panel'}")
     panels = report["panels"]
     click.echo(f"panels {panels['written']} written, {len(panels['rejected'])} rejected")
+    if report["support"]:
+        support, beams = report["support"], report["beams"]
+        click.echo(
+            f"torsion of nodes at most {support['torsion_deg_max']:.2g} degrees, tilt of beams "
+            f"mostly below {support['beam_tilt_deg_p95']:.2g} degrees"
+        )
+        click.echo(f"beams {beams['written']} written, {len(beams['rejected'])} rejected")
     if report["audit"]:
         _print_audit(report["audit"])
 

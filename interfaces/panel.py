@@ -10,8 +10,9 @@ from typing import Any, Literal
 
 from .. import __version__
 from ..fabrication.files import replacing_all
-from ..kernel.errors import InputError
+from ..kernel.errors import ConvergenceError, InputError
 from ..nodes.graph import Graph
+from ..nodes.wires import Step, Wire
 
 Progress = Callable[[str, str], None]
 
@@ -134,7 +135,9 @@ def _optimum(graph: Graph, options: PanelOptions, mesh: Step) -> Step:
         allowed = {} if options.tolerance is None else {"max_miss": options.tolerance}
         return graph.add("minimize_angles", "optimum", sphere_mesh=start, **target, **allowed)
     angles = graph.add("minimize_angles", "angles", sphere_mesh=start, **target)
-    moves = {"tolerance": graph.param("tolerance", options.tolerance, min=0)} if may_move else {}
+    moves = (
+        {"tolerance": graph.param("tolerance", options.tolerance, min=0)} if may_move else {}
+    )
     return graph.add(
         "optimize_spheres", "optimum", sphere_mesh=angles.sphere_mesh, **target, **moves,
         **_support_weights(options),
@@ -149,7 +152,9 @@ def _support_weights(options: PanelOptions) -> dict[str, float]:
 def _beams(graph: Graph, options: PanelOptions, spheres: Wire) -> dict[str, Step]:
     """Nodes, annuli and beams; their drawing is written as well."""
     nodes = graph.add("support_structure", "nodes", sphere_mesh=spheres)
-    depth = {} if options.depth is None else {"depth": graph.param("depth", options.depth, min=0)}
+    depth = (
+        {} if options.depth is None else {"depth": graph.param("depth", options.depth, min=0)}
+    )
     annuli = graph.add("annulus_support", "annuli", sphere_mesh=spheres, **depth)
     thickness = {}
     if options.beam_thickness is not None:
@@ -203,8 +208,9 @@ def run_job(
 
     Raises
     ------
-    InputError, NodeError, GraphError
-        If the input cannot be used or no panel can be made; nothing is written then.
+    InputError, ConvergenceError, NodeError, GraphError
+        If the input cannot be used, the optimisation does not come to rest, or no panel can be
+        made; nothing is written then.
     """
     began = time.perf_counter()
     clock = _StepClock(progress)
@@ -212,6 +218,7 @@ def run_job(
     with replacing_all(folder) as staging:
         with chdir(staging):
             _refuse_nothing(graph.run("panels.report", on_step=clock.note, read_from=here))
+            _refuse_unfinished(graph.run("optimum.report", read_from=here))
             graph.run(*graph.ends, on_step=clock.note, read_from=here)
             found = graph.run("report", on_step=clock.note, read_from=here)
         graph.save(staging / "graph.json")
@@ -226,12 +233,28 @@ def run_job(
                 "optimize": clock.seconds.get("optimum", 0.0),
                 "step": clock.seconds.get("step", 0.0),
             },
-            "warnings": [text for messages in graph.messages.values() for text in messages],
+            "warnings": [
+                text
+                for step, messages in graph.messages.items()
+                # The angles alone are of no interest once more is asked for.
+                if step != "angles"
+                for text in messages
+            ],
         }
         text = json.dumps(report, indent=1, allow_nan=False) + "\n"
         (staging / "report.json").write_text(text, encoding="utf-8")
         files = tuple(sorted(path.name for path in staging.iterdir()))
     return report, files
+
+
+def _refuse_unfinished(optimum: Mapping[str, Any]) -> None:
+    if not optimum["converged"]:
+        stage = optimum["stages"][-1]
+        raise ConvergenceError(
+            f"the optimisation did not come to rest in {stage['iterations']} iterations of "
+            f"its stage {stage['name']!r}: allow more tolerance, or look for nearly degenerate "
+            "faces"
+        )
 
 
 def _refuse_nothing(cut: Mapping[str, Any]) -> None:

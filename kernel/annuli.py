@@ -184,3 +184,21 @@ def corner_mismatch(annuli: Annuli) -> FloatArray:
     count = np.bincount(groups)[:, None]
     means = sum_by(groups, points.reshape(-1, 6), len(first)) / count
     return norm(points - means[groups].reshape(-1, 2, 3)).max(axis=1).reshape(-1, 2)
+
+
+def mean_end_depth(annuli: Annuli) -> float:
+    """
+    Mean length of the ends of the annuli.
+
+    Parameters
+    ----------
+    annuli : Annuli
+        B annuli.
+
+    Returns
+    -------
+    float
+        From outer to inner corner, in model units; 0 without annuli.
+    """
+    lengths = norm(annuli.corners[:, :, 1] - annuli.corners[:, :, 0])
+    return float(lengths.mean()) if lengths.size else 0.0

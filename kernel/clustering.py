@@ -114,7 +114,11 @@ def cluster_radii(
 
 
 def relax_moulds(
-    sphere_mesh: SphereMesh, clusters: RadiusClusters, tolerance: float
+    sphere_mesh: SphereMesh,
+    clusters: RadiusClusters,
+    tolerance: float,
+    regularity: float = 0.0,
+    support: float = 0.0,
 ) -> tuple[SphereMesh, Optimization]:
     """
     Let vertices and spheres of given radii move to where the angles are smallest.
@@ -127,6 +131,8 @@ def relax_moulds(
         The moulds.
     tolerance : float
         How far vertices may move, in mean edges.
+    regularity, support : float
+        Weights of upright planes and of nodes without torsion.
 
     Returns
     -------
@@ -147,7 +153,8 @@ def relax_moulds(
     """
     radii = np.maximum(clusters.radii[clusters.labels], _circle_radii(sphere_mesh.mesh))
     conditions = Conditions(tolerance=tolerance, fixed_radii=radii)
-    return move_vertices(sphere_mesh, EnergyWeights(closeness=RELAXED_CLOSENESS), conditions)
+    weights = EnergyWeights(closeness=RELAXED_CLOSENESS, regularity=regularity, support=support)
+    return move_vertices(sphere_mesh, weights, conditions)
 
 
 def _circle_radii(mesh: Mesh) -> FloatArray:

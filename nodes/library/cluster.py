@@ -28,6 +28,8 @@ def cluster_radii(
     k: Annotated[int, Port(min=1)],
     relax: bool = True,  # noqa: FBT001, FBT002 - a toggle on the canvas
     tolerance: Annotated[float, Port(min=0)] = 0.05,
+    regularity: Annotated[float, Port(min=0)] = 0.0,
+    support: Annotated[float, Port(min=0)] = 0.0,
     seed: Annotated[int, Port(min=0)] = 0,
 ) -> Clusters:
     """
@@ -43,6 +45,9 @@ def cluster_radii(
         Whether vertices move, so that the panels of given radii meet more smoothly.
     tolerance : float
         How far vertices move at most, in mean edges.
+    regularity, support : float
+        Weights that keep planes upright and nodes free of torsion while vertices move, as in
+        `optimize_spheres`.
     seed : int
         Seed of the clustering.
 
@@ -63,7 +68,9 @@ def cluster_radii(
     clustered, clusters = clustering.cluster_radii(sphere_mesh, k, seed)
     result, move = clustered, 0.0
     if relax and tolerance > 0:
-        relaxed, run = clustering.relax_moulds(clustered, clusters, tolerance)
+        relaxed, run = clustering.relax_moulds(
+            clustered, clusters, tolerance, regularity=regularity, support=support
+        )
         if run.vertex_miss <= COMMON_VERTEX:
             result, move = relaxed, run.vertex_move
         else:

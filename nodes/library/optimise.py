@@ -6,9 +6,10 @@ from typing import Annotated, Any, Literal, NamedTuple
 import numpy as np
 
 from ...kernel import optimization, pencil, strips
+from ...kernel.analysis import circularity
 from ...kernel.arrays import FloatArray
 from ...kernel.energies.table import EnergyWeights
-from ...kernel.errors import ConvergenceError, InputError
+from ...kernel.errors import ConvergenceError, InputError, name_ids
 from ...kernel.fit import face_planes
 from ...kernel.mesh import Mesh, mean_edge_length
 from ...kernel.sphere_mesh import SphereMesh, intersection_angles, vertex_error
@@ -64,10 +65,12 @@ def minimize_angles(
             f"{run.step:.1e} rad): look for nearly degenerate faces"
         )
     if max_miss is not None and run.circle_miss > max(max_miss, CIRCULAR):
+        misses = circularity(result.mesh) / mean_edge_length(result.mesh)
+        faces = np.flatnonzero(misses > max(max_miss, CIRCULAR)).tolist()
         raise ConvergenceError(
-            f"the vertices of some faces lie on no common circle: they miss it by up to "
+            f"the vertices of faces {name_ids(faces)} lie on no circle: they miss it by up to "
             f"{run.circle_miss:.3g} mean edges and {max_miss:g} is allowed; let vertices move "
-            f"by a tolerance of about {run.circle_miss:.2g}"
+            "by a tolerance of about as much"
         )
     outcome = _outcome(result, sphere_mesh.mesh)
     relative = outcome["vertex_error"]["relative_to_edge"]

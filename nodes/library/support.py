@@ -7,7 +7,7 @@ import numpy as np
 
 from ...kernel import annulus_support as annulus
 from ...kernel import beam_cutting, support
-from ...kernel.annuli import Annuli, corner_mismatch
+from ...kernel.annuli import Annuli, corner_mismatch, mean_end_depth
 from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.beam_checks import RejectedBeam
 from ...kernel.beams import Beams, beam_lengths, beam_volumes
@@ -90,7 +90,8 @@ def annulus_support(
     sphere_mesh : SphereMesh
         The sphere mesh.
     depth : float, optional
-        Depth of the annuli, measured on the node axes. Give this or `kappa`.
+        Depth of the annuli, measured on the node axes; without this and `kappa`, a quarter of
+        the mean edge.
     kappa : float, optional
         Power R² - r² of the two circles of every annulus: all are concentric. The ends reach
         from a vertex towards its mirror point; the flatter the arc, the less deep.
@@ -108,8 +109,11 @@ def annulus_support(
         ``end_depth`` (min, max), ``outward`` (ends that reach to the outer side), ``made``
         and ``rejected`` (id and reason).
     """
+    edge = mean_edge_length(sphere_mesh.mesh)
+    if depth is None and kappa is None:
+        depth = edge / 4
     found = annulus.annulus_support(sphere_mesh, depth, kappa, np.radians(max_tilt))
-    report = annulus.annulus_report(found, mean_edge_length(sphere_mesh.mesh))
+    report = annulus.annulus_report(found, edge)
     _warn_of_rejected(found.rejected, "annuli")
     return AnnulusSet(found.annuli, report)
 
@@ -124,7 +128,7 @@ class BeamSet(NamedTuple):
 @node
 def beams(
     annuli: Annuli,
-    thickness: Annotated[float, Port(min=0)],
+    thickness: Annotated[float | None, Port(min=0)] = None,
     node_gap: Annotated[float, Port(min=0)] = 0.0,
     node_radius: Annotated[float, Port(min=0)] = 0.0,
 ) -> BeamSet:
@@ -135,8 +139,9 @@ def beams(
     ----------
     annuli : Annuli
         The annuli.
-    thickness : float
-        Thickness of the beams, half to either side, in model units.
+    thickness : float, optional
+        Thickness of the beams, half to either side, in model units; by default a tenth of the
+        mean depth at the nodes.
     node_gap : float
         Width of the gap between neighbouring beams, or between beams and node cylinders.
     node_radius : float
@@ -152,6 +157,8 @@ def beams(
         ``written``, ``rejected`` (id and reason), ``volume`` in cubed model units, ``longest``
         piece, and ``end_mismatch`` (how far the ends at a node are apart).
     """
+    if thickness is None:
+        thickness = mean_end_depth(annuli) / 10
     made, rejected = beam_cutting.cut_beams(annuli, thickness, node_gap, node_radius)
     _warn_of_rejected(rejected, "beams")
     report = {

@@ -165,13 +165,16 @@ def audit(
 
 
 @node
-def panel_report(
+def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     sphere_mesh: SphereMesh,
     optimum: Mapping[str, Any],
     cut: Mapping[str, Any],
     moulds: Mapping[str, Any] | None = None,
     blanks: Mapping[str, Any] | None = None,
     audit: Mapping[str, Any] | None = None,
+    nodes: Mapping[str, Any] | None = None,
+    annuli: Mapping[str, Any] | None = None,
+    beams: Mapping[str, Any] | None = None,
     units: Units = "m",
 ) -> Mapping[str, Any]:
     """
@@ -182,7 +185,7 @@ def panel_report(
     sphere_mesh : SphereMesh
         What the panels were cut from.
     optimum : mapping
-        Report of `minimize_angles`.
+        Report of `minimize_angles` or `optimize_spheres`.
     cut : mapping
         Report of `panels`.
     moulds : mapping, optional
@@ -191,6 +194,12 @@ def panel_report(
         Result of `mould_blanks`.
     audit : mapping, optional
         Report of `audit`.
+    nodes : mapping, optional
+        Report of `support_structure`.
+    annuli : mapping, optional
+        Report of `annulus_support`.
+    beams : mapping, optional
+        Report of `beams`.
     units : str
         Model units.
 
@@ -200,8 +209,8 @@ def panel_report(
         ``input`` (vertices, faces, units), ``angles_deg`` (planar, spherical; with moulds
         ``unclustered`` as well, and spherical is what is built), ``vertex_error`` and
         ``edge_gap`` (max, relative_to_edge), ``thickness``, ``moulds`` (count, radii,
-        panels_per_mould, blanks), ``support`` and ``beams`` (none), ``panels`` (written,
-        rejected) and ``audit``.
+        panels_per_mould, blanks), ``support`` (torsion_deg_max, beam_tilt_deg_p95; None without
+        one), ``panels`` and ``beams`` (written, rejected) and ``audit``.
     """
     mesh = sphere_mesh.mesh
     angles = dict(optimum["angles_deg"])
@@ -218,8 +227,17 @@ def panel_report(
         "edge_gap": dict(cut["edge_gap"]),
         "thickness": dict(cut["thickness"]),
         "moulds": found | {"blanks": list(blanks["blanks"]) if blanks else []},
-        "support": None,
+        "support": nodes
+        and {
+            "torsion_deg_max": nodes["torsion_deg"]["max"],
+            "beam_tilt_deg_p95": nodes["beam_tilt_deg"]["p95"],
+        },
         "panels": {"written": cut["written"], "rejected": list(cut["rejected"])},
-        "beams": {"written": 0, "rejected": []},
+        "beams": {
+            "written": beams["written"] if beams else 0,
+            "rejected": [
+                entry for found in (annuli, beams) if found for entry in found["rejected"]
+            ],
+        },
         "audit": dict(audit) if audit is not None else None,
     }

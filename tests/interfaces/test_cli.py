@@ -216,3 +216,68 @@ def _assert_refused(arguments: list[str], out: Path, expected: str) -> None:
     assert expected in lines[0]
     assert result.stdout == ""
     assert not out.exists()
+
+
+# Support, tolerance, target
+
+
+def panel(mesh: Path, out: Path, *options: str) -> Result:
+    return CliRunner().invoke(main, ["panel", str(mesh), "-o", str(out), *options])
+
+
+def noisy_vase(folder: Path) -> Path:
+    net = vase_net(12, 6, 1.0, 2.0, 0.3)
+    noise = np.random.default_rng(1).normal(size=net.vertices.shape)
+    return write_mesh(Mesh(net.vertices + 0.002 * noise, net.faces), folder / "noisy.obj")
+
+
+def test_support_writes_beams_and_says_how_straight_they_are(
+    vase: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    options = ("--support", "--thickness", "0.02", "--depth", "0.1", "--json")
+    result = panel(vase, out, *options)
+    assert result.exit_code == 0, result.stderr
+    report = json.loads(result.stdout)
+    assert report["support"]["torsion_deg_max"] <= 0.05
+    assert report["support"]["beam_tilt_deg_p95"] <= 20
+    assert report["beams"]["written"] > 0
+    assert report["beams"]["rejected"] == []
+    assert report["panels"]["rejected"] == []
+    assert (out / "beams.dxf").stat().st_size > 1000
+    text = (out / "panels.step").read_text(encoding="utf-8")
+    assert "PRODUCT('B0000'" in text
+    assert "PRODUCT('P0000'" in text
+    steps = json.loads((out / "graph.json").read_text(encoding="utf-8"))["steps"]
+    assert {"angles", "optimum", "nodes", "annuli", "beams", "drawing"} <= set(steps)
+
+
+def test_a_tolerance_brings_vertices_onto_common_spheres(tmp_path: Path) -> None:
+    mesh = noisy_vase(tmp_path)
+    result = panel(mesh, tmp_path / "out", "--tolerance", "0.1", "--json")
+    assert result.exit_code == 0, result.stderr
+    report = json.loads(result.stdout)
+    assert report["vertex_error"]["relative_to_edge"] <= 1e-6
+    assert report["angles_deg"]["spherical"]["mean"] < report["angles_deg"]["planar"]["mean"]
+
+
+def test_no_tolerance_at_all_refuses_faces_without_a_circle(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    result = panel(noisy_vase(tmp_path), out, "--tolerance", "0")
+    assert result.exit_code == 4
+    assert result.stderr.count("\n") == 1
+    assert "lie on no circle" in result.stderr
+    assert not out.exists()
+
+
+def test_target_angle(vase: Path, tmp_path: Path) -> None:
+    result = panel(vase, tmp_path / "out", "--target-angle", "30", "--json")
+    assert result.exit_code == 0, result.stderr
+    assert 20 < json.loads(result.stdout)["angles_deg"]["spherical"]["mean"] < 40
+
+
+@pytest.mark.parametrize(
+    "option", [("--tolerance", "-1"), ("--target-angle", "91"), ("--target-angle", "x")]
+)
+def test_options_out_of_range(option: tuple[str, str], vase: Path, tmp_path: Path) -> None:
+    assert panel(vase, tmp_path / "out", *option).exit_code == 2
