@@ -68,3 +68,15 @@ TRANSFORM_DIGITS: Final = 1e-6
 
 AT_INFINITY: Final = 1e-6
 """Vertices this close, in mean edges, to the point sent to infinity have no usable image."""
+
+NODE_ROUNDING: Final = 1e-12
+"""Residuals of a node below this, in mean edges and radians, are rounding."""
+
+TORSION_FREE: Final = 1e-8
+"""Fourth singular value of the spheres around a node, relative to the first, that is none."""
+
+NODE_ON_SPHERES: Final = 1e-6
+"""Nodes of a planarised mesh lie this close to their spheres, in mean edges."""
+
+FLATTEST: Final = 1e-3
+"""Curvature, in inverse mean edges, below which a sphere is as good as a plane."""

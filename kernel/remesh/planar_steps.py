@@ -1,0 +1,187 @@
+"""
+Gauss-Newton steps towards planar nodes, by elimination of the nodes.
+
+Nodes are coupled with faces alone: their unknowns are eliminated in one batch, and a sparse
+system of the faces is left.
+"""
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from ..arrays import FloatArray, dot, sum_by
+from ..solvers.levenberg_marquardt import DampedStep
+from ..spheres import minkowski
+from .planar_system import (
+    FACE,
+    NODE,
+    POINT,
+    CornerJacobian,
+    Net,
+    PlanarSystem,
+    Residuals,
+    Weights,
+    corner_jacobian,
+    residuals,
+    split_step,
+    sum_blocks,
+)
+
+Sparse: TypeAlias = Any
+"""A sparse array of SciPy, which has no types for them."""
+
+
+def linearize(
+    system: PlanarSystem, net: Net, weights: Weights
+) -> Callable[[float], DampedStep]:
+    """
+    Gauss-Newton steps from a net.
+
+    Parameters
+    ----------
+    system : PlanarSystem
+        The problem.
+    net : Net
+        The net.
+    weights : Weights
+        Factors of what keeps the net near its start.
+
+    Returns
+    -------
+    callable
+        From a damping to the step, which is measured as closeness is.
+
+    Notes
+    -----
+    The nodes are eliminated by the inverses of their 7 by 7 blocks. Faces are left coupled
+    where they share a node or an edge, nine blocks of 5 by 5 in a row of the matrix on quads.
+    """
+    from scipy.sparse import bsr_array
+
+    mesh = system.mesh
+    jacobian = corner_jacobian(system, net)
+    miss = residuals(system, net, weights)
+    face_blocks, node_blocks = _diagonal_blocks(system, net, weights, jacobian)
+    face_slope, node_slope = _slopes(system, net, weights, jacobian, miss)
+    mixed = jacobian.by_face.transpose(0, 2, 1) @ jacobian.by_node
+    shape = (FACE * mesh.n_faces, NODE * mesh.n_vertices)
+    # Corners are stored face after face: they are the compressed rows of the coupling.
+    coupling: Sparse = bsr_array((mixed, mesh.corners, mesh.offsets), shape=shape)
+    fairness = _fairness_matrix(system, weights)
+    metric = np.diag(system.scales**2)
+
+    def _step(damping: float) -> DampedStep:
+        nodes: FloatArray = node_blocks + damping * np.eye(NODE)
+        faces: FloatArray = face_blocks + damping * metric
+        inverse = _block_diagonal(np.asarray(np.linalg.inv(nodes), np.float64))
+        reduction = coupling @ inverse
+        matrix = _block_diagonal(faces) + fairness - reduction @ coupling.T
+        rows = _solve(matrix, reduction @ node_slope - face_slope)
+        step = np.concatenate([rows, -(inverse @ (node_slope + coupling.T @ rows))])
+        ahead = _advanced(system, net, weights, jacobian, miss, step)
+        return DampedStep(step, float(sum((r**2).sum() for r in ahead)))
+
+    return _step
+
+
+def _diagonal_blocks(
+    system: PlanarSystem, net: Net, weights: Weights, jacobian: CornerJacobian
+) -> tuple[FloatArray, FloatArray]:
+    """Blocks of JᵀJ of the faces (F, 5, 5), without fairness, and of the nodes (V, 7, 7)."""
+    mesh, by_face, by_node = system.mesh, *jacobian
+    closeness = weights.closeness**2
+    metric = np.diag(system.scales**2)
+    products = by_face.transpose(0, 2, 1) @ by_face
+    faces = sum_blocks(mesh.topology.corner_faces, products, mesh.n_faces)
+    dual = _dual(net.rows)
+    faces += 4 * dual[:, :, None] * dual[:, None] + closeness * metric
+    nodes = sum_blocks(mesh.corners, by_node.transpose(0, 2, 1) @ by_node, mesh.n_vertices)
+    nodes[:, :POINT, :POINT] += closeness * np.eye(POINT)
+    nodes[:, POINT:, POINT:] += 4 * net.normals[:, :, None] * net.normals[:, None]
+    # The normals of the boundary take no part.
+    nodes[~system.is_inner, POINT:, POINT:] = np.eye(NODE - POINT)
+    return faces, nodes
+
+
+def _slopes(
+    system: PlanarSystem,
+    net: Net,
+    weights: Weights,
+    jacobian: CornerJacobian,
+    miss: Residuals,
+) -> tuple[FloatArray, FloatArray]:
+    """Products Jᵀr of the faces (5 F,) and of the nodes (7 V,)."""
+    mesh = system.mesh
+    by_face = np.einsum("hri,hr->hi", jacobian.by_face, miss.corners)
+    by_node = np.einsum("hri,hr->hi", jacobian.by_node, miss.corners)
+    faces = sum_by(mesh.topology.corner_faces, by_face, mesh.n_faces)
+    faces += 2 * miss.rows[:, None] * _dual(net.rows)
+    faces += weights.closeness * system.scales * miss.changes
+    faces += weights.fairness * system.scales * (system.differences.T @ miss.jumps)
+    nodes = sum_by(mesh.corners, by_node, mesh.n_vertices)
+    nodes[:, :POINT] += weights.closeness * miss.shifts
+    nodes[:, POINT:] += 2 * miss.normals[:, None] * net.normals
+    return faces.ravel(), nodes.ravel()
+
+
+def _advanced(
+    system: PlanarSystem,
+    net: Net,
+    weights: Weights,
+    jacobian: CornerJacobian,
+    miss: Residuals,
+    step: FloatArray,
+) -> Residuals:
+    """Residuals after a step, as the linear model has them."""
+    mesh = system.mesh
+    rows, shifts, common = split_step(step, mesh.n_faces)
+    at_faces = rows[mesh.topology.corner_faces]
+    at_nodes = np.concatenate([shifts, common], axis=1)[mesh.corners]
+    corners = np.einsum("hri,hi->hr", jacobian.by_face, at_faces)
+    corners += np.einsum("hri,hi->hr", jacobian.by_node, at_nodes)
+    changes = system.scales * rows
+    return Residuals(
+        miss.corners + corners,
+        miss.rows + 2 * minkowski(net.rows, rows),
+        miss.normals + 2 * dot(net.normals, common),
+        miss.shifts + weights.closeness * shifts,
+        miss.changes + weights.closeness * changes,
+        miss.jumps + weights.fairness * (system.differences @ changes),
+    )
+
+
+def _dual(rows: FloatArray) -> FloatArray:
+    """Coefficients (F, 5) of the linear forms ``<<S, .>>``."""
+    return np.concatenate([-2 * rows[:, 4:], rows[:, 1:4], -2 * rows[:, :1]], axis=1)
+
+
+def _fairness_matrix(system: PlanarSystem, weights: Weights) -> Sparse:
+    from scipy.sparse import bsr_array
+
+    laplacian = (system.differences.T @ system.differences).tocsr()
+    blocks = weights.fairness**2 * laplacian.data[:, None, None] * np.diag(system.scales**2)
+    size = FACE * system.mesh.n_faces
+    return bsr_array((blocks, laplacian.indices, laplacian.indptr), shape=(size, size))
+
+
+def _block_diagonal(blocks: FloatArray) -> Sparse:
+    from scipy.sparse import bsr_array
+
+    count, size = blocks.shape[:2]
+    columns, starts = np.arange(count), np.arange(count + 1)
+    return bsr_array((blocks, columns, starts), shape=(count * size, count * size))
+
+
+def _solve(matrix: Sparse, right: FloatArray) -> FloatArray:
+    """Solve a definite system: without pivots, in an order that keeps the factors sparse."""
+    from scipy.sparse import linalg
+
+    solver: Any = linalg
+    factors = solver.splu(
+        matrix.tocsc(),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
+    return np.asarray(factors.solve(right), np.float64)
