@@ -169,8 +169,8 @@ def _block_diagonal(blocks: FloatArray) -> Sparse:
     from scipy.sparse import bsr_array
 
     count, size = blocks.shape[:2]
-    columns, starts = np.arange(count), np.arange(count + 1)
-    return bsr_array((blocks, columns, starts), shape=(count * size, count * size))
+    starts = np.arange(count + 1, dtype=np.int64)
+    return bsr_array((blocks, starts[:-1], starts), shape=(count * size, count * size))
 
 
 def _solve(matrix: Sparse, right: FloatArray) -> FloatArray:

@@ -2,10 +2,11 @@
 Least squares for planar nodes: unknowns, residuals and their derivatives.
 
 Seen from its node, a sphere through the node is a row ``(A, N, 0)``: half its curvature and its
-normal there. The spheres around a node span a subspace of dimension 3 where their ``(A, N)``
-have a common normal m in R⁴; its last three components point along the node axis. The lift of
-the node is the other normal of the subspace of R⁵. With two free normals instead there would be
-a gauge to fix.
+normal there. The spheres around a node span a subspace of dimension 3 where their ``(a A, N)``
+have a common normal m in R⁴, with any factor a; the last three components of m point along the
+node axis. The lift of the node is the other normal of the subspace of R⁵. With two free normals
+instead there would be a gauge to fix. The factor makes curvatures as large as normals: without
+it spheres that are nearly planes would pass for planar around any node.
 
 Unknowns: the row S of each face, in coordinates local to it; of each node the shift of its
 point and the normal m. Lengths are in mean edges. Every residual belongs to a corner, a face, a
@@ -55,7 +56,7 @@ class Net:
     shifts : (V, 3) float array
         Nodes, relative to the start.
     normals : (V, 4) float array
-        Common normal m of the ``(A, N)`` around each interior node; zero on the boundary.
+        Common normal m of the ``(a A, N)`` around each interior node; zero on the boundary.
     """
 
     rows: FloatArray
@@ -81,7 +82,8 @@ class PlanarSystem:
     differences : (E, F) sparse array
         First minus second of the faces of each interior edge.
     scales : (5,) float array
-        By which changes of the coefficients of a row are measured.
+        Units ``(a, 1, 1, 1, 1)`` of the coefficients of a row; 1 / a is the curvature of the
+        net, its root mean square.
     """
 
     mesh: Mesh
@@ -99,7 +101,7 @@ class Residuals(NamedTuple):
     Attributes
     ----------
     corners : (H, 2) float array
-        Incidence of node and sphere, and ``m · (A, N)``: with unit rows and normals the
+        Incidence of node and sphere, and ``m · (a A, N)``: with unit rows and normals the
         distance of the node, and the sine of the angle from the subspace.
     rows : (F,) float array
         ``<<S, S>> - 1``.
@@ -153,8 +155,8 @@ def planar_system(sphere_mesh: SphereMesh) -> PlanarSystem:
 
     Notes
     -----
-    A change of A is measured by the curvatures of the net: measured by its effect within a face
-    it would be all but free, and radii that vary along the net tilt the node axes.
+    A change of A is measured by the curvature of the net. By its effect within a face it would
+    be all but free, and radii that vary along the net tilt the node axes.
     """
     from scipy.sparse import csr_array
 
@@ -163,8 +165,10 @@ def planar_system(sphere_mesh: SphereMesh) -> PlanarSystem:
     rows = rescale(sphere_mesh.local_spheres, 1 / size)
     corners = local_corners(mesh) / size
     is_inner = ~topology.is_boundary_vertex
+    curvature = max(2 * float(np.sqrt((rows[:, 0] ** 2).mean())), FLATTEST)
+    scales = np.array([1 / curvature, 1.0, 1.0, 1.0, 1.0])
     seen = rows[topology.corner_faces]
-    arrows = np.concatenate([seen[:, :1], normals(seen, corners)], axis=1)
+    arrows = np.concatenate([scales[0] * seen[:, :1], normals(seen, corners)], axis=1)
     gram = sum_blocks(mesh.corners, arrows[:, :, None] * arrows[:, None], mesh.n_vertices)
     common = np.linalg.eigh(gram)[1][..., 0] * is_inner[:, None]
     edges = np.arange(len(topology.edge_faces))
@@ -172,8 +176,6 @@ def planar_system(sphere_mesh: SphereMesh) -> PlanarSystem:
     places = (np.tile(edges, 2), topology.edge_faces.T.ravel())
     differences = csr_array((signs, places), shape=(len(edges), mesh.n_faces))
     start = Net(rows, np.zeros((mesh.n_vertices, 3)), common)
-    curvature = max(2 * float(np.sqrt((rows[:, 0] ** 2).mean())), FLATTEST)
-    scales = np.array([1 / curvature, 1.0, 1.0, 1.0, 1.0])
     return PlanarSystem(mesh, start, corners, is_inner, differences, scales)
 
 
@@ -196,7 +198,8 @@ def residuals(system: PlanarSystem, net: Net, weights: Weights) -> Residuals:
         The first three vanish for a torsion-free sphere mesh of unit rows.
     """
     rows, points, common = _at_corners(system, net)
-    tilt = common[:, 0] * rows[:, 0] + dot(common[:, 1:], normals(rows, points))
+    curvatures = system.scales[0] * rows[:, 0]
+    tilt = common[:, 0] * curvatures + dot(common[:, 1:], normals(rows, points))
     changes = system.scales * (net.rows - system.start.rows)
     return Residuals(
         np.stack([evaluate(rows, points), tilt], axis=1),
@@ -273,12 +276,12 @@ def corner_jacobian(system: PlanarSystem, net: Net) -> CornerJacobian:
     by_face[:, 0, 0] = dot(points, points)
     by_face[:, 0, 1:4] = -points
     by_face[:, 0, 4] = 1
-    by_face[:, 1, 0] = common[:, 0] - 2 * dot(axes, points)
+    by_face[:, 1, 0] = common[:, 0] * system.scales[0] - 2 * dot(axes, points)
     by_face[:, 1, 1:4] = axes
     by_node = np.zeros((len(rows), 2, NODE))
     by_node[:, 0, :3] = -arrows
     by_node[:, 1, :3] = -2 * rows[:, :1] * axes
-    by_node[:, 1, 3] = rows[:, 0]
+    by_node[:, 1, 3] = system.scales[0] * rows[:, 0]
     by_node[:, 1, 4:] = arrows
     by_node[:, 1] *= system.is_inner[system.mesh.corners, None]
     return CornerJacobian(by_face, by_node)
