@@ -80,3 +80,6 @@ NODE_ON_SPHERES: Final = 1e-6
 
 FLATTEST: Final = 1e-3
 """Curvature, in inverse mean edges, below which a sphere is as good as a plane."""
+
+BLEND_STEP: Final = 0.01
+"""How sharply the least blend that makes a congruence fit is found."""
