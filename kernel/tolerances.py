@@ -69,8 +69,8 @@ TRANSFORM_DIGITS: Final = 1e-6
 AT_INFINITY: Final = 1e-6
 """Vertices this close, in mean edges, to the point sent to infinity have no usable image."""
 
-NODE_ROUNDING: Final = 1e-12
-"""Residuals of a node below this, in mean edges and radians, are rounding."""
+NODE_EXACT: Final = 1e-10
+"""Residuals of a node below this, in mean edges and radians, count as zero."""
 
 TORSION_FREE: Final = 1e-8
 """Fourth singular value of the spheres around a node, relative to the first, that is none."""

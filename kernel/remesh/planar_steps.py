@@ -21,7 +21,6 @@ from .planar_system import (
     Net,
     PlanarSystem,
     Residuals,
-    Weights,
     corner_jacobian,
     residuals,
     split_step,
@@ -32,9 +31,37 @@ Sparse: TypeAlias = Any
 """A sparse array of SciPy, which has no types for them."""
 
 
-def linearize(
-    system: PlanarSystem, net: Net, weights: Weights
-) -> Callable[[float], DampedStep]:
+def step_metric(system: PlanarSystem, fairness: float) -> Sparse:
+    """
+    Squared norm by which steps of the spheres are measured.
+
+    Parameters
+    ----------
+    system : PlanarSystem
+        The problem.
+    fairness : float
+        Weight of the differences between the steps of neighbouring spheres, relative to the
+        steps themselves.
+
+    Returns
+    -------
+    (5 F, 5 F) sparse array
+        Positive definite; coefficients in the units of the problem.
+    """
+    from scipy.sparse import bsr_array, csr_array, eye_array
+
+    neighbors, n_faces = system.mesh.topology.edge_faces, system.mesh.n_faces
+    edges = np.arange(len(neighbors))
+    signs = np.repeat([1.0, -1.0], len(edges))
+    places = (np.tile(edges, 2), neighbors.T.ravel())
+    differences: Sparse = csr_array((signs, places), shape=(len(edges), n_faces))
+    norm = (eye_array(n_faces) + fairness**2 * (differences.T @ differences)).tocsr()
+    blocks = norm.data[:, None, None] * np.diag(system.scales**2)
+    shape = (FACE * n_faces, FACE * n_faces)
+    return bsr_array((blocks, norm.indices, norm.indptr), shape=shape)
+
+
+def linearize(system: PlanarSystem, net: Net, metric: Sparse) -> Callable[[float], DampedStep]:
     """
     Gauss-Newton steps from a net.
 
@@ -44,13 +71,13 @@ def linearize(
         The problem.
     net : Net
         The net.
-    weights : Weights
-        Factors of what keeps the net near its start.
+    metric : (5 F, 5 F) sparse array
+        What the damping multiplies, for the spheres; of nodes it is the plain norm.
 
     Returns
     -------
     callable
-        From a damping to the step, which is measured as closeness is.
+        From a damping to the step.
 
     Notes
     -----
@@ -60,56 +87,44 @@ def linearize(
     from scipy.sparse import bsr_array
 
     mesh = system.mesh
-    jacobian = corner_jacobian(system, net)
-    miss = residuals(system, net, weights)
-    face_blocks, node_blocks = _diagonal_blocks(system, net, weights, jacobian)
-    face_slope, node_slope = _slopes(system, net, weights, jacobian, miss)
+    jacobian, miss = corner_jacobian(system, net), residuals(system, net)
+    face_blocks, node_blocks = _diagonal_blocks(system, net, jacobian)
+    face_slope, node_slope = _slopes(system, net, jacobian, miss)
     mixed = jacobian.by_face.transpose(0, 2, 1) @ jacobian.by_node
     shape = (FACE * mesh.n_faces, NODE * mesh.n_vertices)
     # Corners are stored face after face: they are the compressed rows of the coupling.
     coupling: Sparse = bsr_array((mixed, mesh.corners, mesh.offsets), shape=shape)
-    fairness = _fairness_matrix(system, weights)
-    metric = np.diag(system.scales**2)
+    faces = _block_diagonal(face_blocks)
 
     def _step(damping: float) -> DampedStep:
-        nodes: FloatArray = node_blocks + damping * np.eye(NODE)
-        faces: FloatArray = face_blocks + damping * metric
-        inverse = _block_diagonal(np.asarray(np.linalg.inv(nodes), np.float64))
+        nodes = np.linalg.inv(node_blocks + damping * np.eye(NODE))
+        inverse = _block_diagonal(np.asarray(nodes, np.float64))
         reduction = coupling @ inverse
-        matrix = _block_diagonal(faces) + fairness - reduction @ coupling.T
+        matrix = faces + damping * metric - reduction @ coupling.T
         rows = _solve(matrix, reduction @ node_slope - face_slope)
         step = np.concatenate([rows, -(inverse @ (node_slope + coupling.T @ rows))])
-        ahead = _advanced(system, net, weights, jacobian, miss, step)
+        ahead = _advanced(system, net, jacobian, miss, step)
         return DampedStep(step, float(sum((r**2).sum() for r in ahead)))
 
     return _step
 
 
 def _diagonal_blocks(
-    system: PlanarSystem, net: Net, weights: Weights, jacobian: CornerJacobian
+    system: PlanarSystem, net: Net, jacobian: CornerJacobian
 ) -> tuple[FloatArray, FloatArray]:
-    """Blocks of JᵀJ of the faces (F, 5, 5), without fairness, and of the nodes (V, 7, 7)."""
+    """Blocks of JᵀJ of the faces (F, 5, 5) and of the nodes (V, 7, 7)."""
     mesh, by_face, by_node = system.mesh, *jacobian
-    closeness = weights.closeness**2
-    metric = np.diag(system.scales**2)
     products = by_face.transpose(0, 2, 1) @ by_face
     faces = sum_blocks(mesh.topology.corner_faces, products, mesh.n_faces)
     dual = _dual(net.rows)
-    faces += 4 * dual[:, :, None] * dual[:, None] + closeness * metric
+    faces += 4 * dual[:, :, None] * dual[:, None]
     nodes = sum_blocks(mesh.corners, by_node.transpose(0, 2, 1) @ by_node, mesh.n_vertices)
-    nodes[:, :POINT, :POINT] += closeness * np.eye(POINT)
     nodes[:, POINT:, POINT:] += 4 * net.normals[:, :, None] * net.normals[:, None]
-    # The normals of the boundary take no part.
-    nodes[~system.is_inner, POINT:, POINT:] = np.eye(NODE - POINT)
     return faces, nodes
 
 
 def _slopes(
-    system: PlanarSystem,
-    net: Net,
-    weights: Weights,
-    jacobian: CornerJacobian,
-    miss: Residuals,
+    system: PlanarSystem, net: Net, jacobian: CornerJacobian, miss: Residuals
 ) -> tuple[FloatArray, FloatArray]:
     """Products Jᵀr of the faces (5 F,) and of the nodes (7 V,)."""
     mesh = system.mesh
@@ -117,10 +132,7 @@ def _slopes(
     by_node = np.einsum("hri,hr->hi", jacobian.by_node, miss.corners)
     faces = sum_by(mesh.topology.corner_faces, by_face, mesh.n_faces)
     faces += 2 * miss.rows[:, None] * _dual(net.rows)
-    faces += weights.closeness * system.scales * miss.changes
-    faces += weights.fairness * system.scales * (system.differences.T @ miss.jumps)
     nodes = sum_by(mesh.corners, by_node, mesh.n_vertices)
-    nodes[:, :POINT] += weights.closeness * miss.shifts
     nodes[:, POINT:] += 2 * miss.normals[:, None] * net.normals
     return faces.ravel(), nodes.ravel()
 
@@ -128,7 +140,6 @@ def _slopes(
 def _advanced(
     system: PlanarSystem,
     net: Net,
-    weights: Weights,
     jacobian: CornerJacobian,
     miss: Residuals,
     step: FloatArray,
@@ -140,29 +151,16 @@ def _advanced(
     at_nodes = np.concatenate([shifts, common], axis=1)[mesh.corners]
     corners = np.einsum("hri,hi->hr", jacobian.by_face, at_faces)
     corners += np.einsum("hri,hi->hr", jacobian.by_node, at_nodes)
-    changes = system.scales * rows
     return Residuals(
         miss.corners + corners,
         miss.rows + 2 * minkowski(net.rows, rows),
         miss.normals + 2 * dot(net.normals, common),
-        miss.shifts + weights.closeness * shifts,
-        miss.changes + weights.closeness * changes,
-        miss.jumps + weights.fairness * (system.differences @ changes),
     )
 
 
 def _dual(rows: FloatArray) -> FloatArray:
     """Coefficients (F, 5) of the linear forms ``<<S, .>>``."""
     return np.concatenate([-2 * rows[:, 4:], rows[:, 1:4], -2 * rows[:, :1]], axis=1)
-
-
-def _fairness_matrix(system: PlanarSystem, weights: Weights) -> Sparse:
-    from scipy.sparse import bsr_array
-
-    laplacian = (system.differences.T @ system.differences).tocsr()
-    blocks = weights.fairness**2 * laplacian.data[:, None, None] * np.diag(system.scales**2)
-    size = FACE * system.mesh.n_faces
-    return bsr_array((blocks, laplacian.indices, laplacian.indptr), shape=(size, size))
 
 
 def _block_diagonal(blocks: FloatArray) -> Sparse:

@@ -9,12 +9,12 @@ instead there would be a gauge to fix. The factor makes curvatures as large as n
 it spheres that are nearly planes would pass for planar around any node.
 
 Unknowns: the row S of each face, in coordinates local to it; of each node the shift of its
-point and the normal m. Lengths are in mean edges. Every residual belongs to a corner, a face, a
-node or a pair of neighbouring faces.
+point and the normal m. Lengths are in mean edges. Every residual belongs to a corner, a face or
+a node.
 """
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,26 +22,10 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, sum_by
 from ..mesh import Mesh, local_corners, mean_edge_length
 from ..sphere_mesh import SphereMesh
 from ..spheres import evaluate, minkowski, normals, rescale
-from ..tolerances import FLATTEST, NODE_ROUNDING
+from ..tolerances import FLATTEST, NODE_EXACT
 
 FACE, POINT, NODE = 5, 3, 7
 """Unknowns of a face, of the point of a node, and of a node."""
-
-
-class Weights(NamedTuple):
-    """
-    Factors of the residuals that keep a net near its start.
-
-    Attributes
-    ----------
-    closeness : float
-        Of the shifts of the nodes and the changes of the spheres.
-    fairness : float
-        Of the differences between the changes of neighbouring spheres.
-    """
-
-    closeness: float
-    fairness: float
 
 
 @dataclass(frozen=True)
@@ -74,13 +58,11 @@ class PlanarSystem:
     mesh : Mesh
         The mesh at the start; its corners and their faces are the incidences.
     start : Net
-        What changes are counted from.
+        The net at the start.
     corners : (H, 3) float array
         Corners at the start, local to their face.
     is_inner : (V,) bool array
         Nodes that shall be planar; the others just lie on their spheres.
-    differences : (E, F) sparse array
-        First minus second of the faces of each interior edge.
     scales : (5,) float array
         Units ``(a, 1, 1, 1, 1)`` of the coefficients of a row; 1 / a is the curvature of the
         net, its root mean square.
@@ -90,7 +72,6 @@ class PlanarSystem:
     start: Net
     corners: FloatArray
     is_inner: BoolArray
-    differences: Any
     scales: FloatArray
 
 
@@ -107,20 +88,11 @@ class Residuals(NamedTuple):
         ``<<S, S>> - 1``.
     normals : (V,) float array
         ``|m|² - 1``.
-    shifts : (V, 3) float array
-        Weighted shifts.
-    changes : (F, 5) float array
-        Weighted changes of the rows.
-    jumps : (E, 5) float array
-        Weighted differences of the changes of neighbours.
     """
 
     corners: FloatArray
     rows: FloatArray
     normals: FloatArray
-    shifts: FloatArray
-    changes: FloatArray
-    jumps: FloatArray
 
 
 class CornerJacobian(NamedTuple):
@@ -158,8 +130,6 @@ def planar_system(sphere_mesh: SphereMesh) -> PlanarSystem:
     A change of A is measured by the curvature of the net. By its effect within a face it would
     be all but free, and radii that vary along the net tilt the node axes.
     """
-    from scipy.sparse import csr_array
-
     mesh, topology = sphere_mesh.mesh, sphere_mesh.mesh.topology
     size = mean_edge_length(mesh)
     rows = rescale(sphere_mesh.local_spheres, 1 / size)
@@ -171,17 +141,13 @@ def planar_system(sphere_mesh: SphereMesh) -> PlanarSystem:
     arrows = np.concatenate([scales[0] * seen[:, :1], normals(seen, corners)], axis=1)
     gram = sum_blocks(mesh.corners, arrows[:, :, None] * arrows[:, None], mesh.n_vertices)
     common = np.linalg.eigh(gram)[1][..., 0] * is_inner[:, None]
-    edges = np.arange(len(topology.edge_faces))
-    signs = np.repeat([1.0, -1.0], len(edges))
-    places = (np.tile(edges, 2), topology.edge_faces.T.ravel())
-    differences = csr_array((signs, places), shape=(len(edges), mesh.n_faces))
     start = Net(rows, np.zeros((mesh.n_vertices, 3)), common)
-    return PlanarSystem(mesh, start, corners, is_inner, differences, scales)
+    return PlanarSystem(mesh, start, corners, is_inner, scales)
 
 
-def residuals(system: PlanarSystem, net: Net, weights: Weights) -> Residuals:
+def residuals(system: PlanarSystem, net: Net) -> Residuals:
     """
-    How far a net is from planar nodes, and from its start.
+    How far a net is from planar nodes.
 
     Parameters
     ----------
@@ -189,29 +155,23 @@ def residuals(system: PlanarSystem, net: Net, weights: Weights) -> Residuals:
         The problem.
     net : Net
         The net.
-    weights : Weights
-        Factors of what keeps the net near its start.
 
     Returns
     -------
     Residuals
-        The first three vanish for a torsion-free sphere mesh of unit rows.
+        They vanish for a torsion-free sphere mesh of unit rows.
     """
     rows, points, common = _at_corners(system, net)
     curvatures = system.scales[0] * rows[:, 0]
     tilt = common[:, 0] * curvatures + dot(common[:, 1:], normals(rows, points))
-    changes = system.scales * (net.rows - system.start.rows)
     return Residuals(
         np.stack([evaluate(rows, points), tilt], axis=1),
         minkowski(net.rows, net.rows) - 1,
         (dot(net.normals, net.normals) - 1) * system.is_inner,
-        weights.closeness * net.shifts,
-        weights.closeness * changes,
-        weights.fairness * (system.differences @ changes),
     )
 
 
-def energies(system: PlanarSystem, net: Net, weights: Weights) -> FloatArray:
+def energies(system: PlanarSystem, net: Net) -> FloatArray:
     """
     Sums of the squared residuals.
 
@@ -221,17 +181,16 @@ def energies(system: PlanarSystem, net: Net, weights: Weights) -> FloatArray:
         The problem.
     net : Net
         The net.
-    weights : Weights
-        Factors of what keeps the net near its start.
 
     Returns
     -------
-    (6,) float array
-        One for each kind of residual. Residuals at rounding count as zero, so that a descent
-        ends there.
+    (3,) float array
+        One for each kind of residual. All are zero if no residual is above `NODE_EXACT`: on
+        closed nets the constraints are nearly dependent, and the last digits come slowly.
     """
-    miss = residuals(system, net, weights)
-    return np.array([(r[np.abs(r) > NODE_ROUNDING] ** 2).sum() for r in miss])
+    miss = residuals(system, net)
+    is_exact = all((np.abs(r) <= NODE_EXACT).all() for r in miss)
+    return np.array([0.0 if is_exact else (r**2).sum() for r in miss])
 
 
 def move(net: Net, step: FloatArray) -> Net:

@@ -5,10 +5,11 @@ The planes of the circles around a node meet in a line, the node axis, exactly i
 span a subspace of dimension 3 in R⁵ and pass through the node: then the mesh of spheres has
 planar faces in P⁴.
 
-A net that is nearly planar moves in two stages. The first weighs closeness to the start and
-fairness of the change against planarity: it says where to go, but ends in a compromise. The
-second has the constraints alone: from so near, Gauss-Newton steps of least change reach them
-in a few quadratic steps, without moving the net noticeably any more.
+Nothing but the constraints is minimised. There are about two of them less than unknowns for
+every face, and of all Gauss-Newton steps the damping picks the least one: what keeps a net near
+its start and fair is the norm that the damping uses, not a term of the energy. Such terms would
+end in a compromise, in which it is cheaper for two spheres of a short edge to become one than
+for the net to move; and a node whose spheres share a circle is planar and of no use.
 
 Meshes with Spherical Faces, Prop. 4.3 and Sec. 6.4.
 """
@@ -22,25 +23,15 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from ..curvature import vertex_normals
 from ..errors import InputError
 from ..mesh import Mesh, local_corners, mean_edge_length
-from ..solvers.levenberg_marquardt import Descent, Status, levenberg_marquardt
+from ..solvers.levenberg_marquardt import Status, levenberg_marquardt
 from ..sphere_mesh import SphereMesh
 from ..spheres import recenter, rescale
 from ..tolerances import DEGENERATE
-from .planar_steps import linearize
-from .planar_system import (
-    Net,
-    PlanarSystem,
-    Weights,
-    energies,
-    move,
-    planar_system,
-)  # fmt: skip
+from .planar_steps import linearize, step_metric
+from .planar_system import Net, PlanarSystem, energies, move, planar_system
 
-APPROACH = 1e-3
-"""Relative fall of the energy that ends the first stage: the second does the rest."""
-
-STEPS = 40
-"""Largest number of linear systems of a stage."""
+STEPS = 60
+"""Largest number of linear systems."""
 
 
 @dataclass(frozen=True)
@@ -55,15 +46,15 @@ class Planarization:
     shifts : (V,) float array
         How far each node moved, in mean edges.
     status : {"converged", "stalled", "exhausted"}
-        How the second stage ended; if it converged, residuals are at rounding.
-    iterations : tuple of int
-        Linear systems solved in the two stages.
+        How the descent ended; if it converged, nodes are planar to `NODE_EXACT`.
+    iterations : int
+        Linear systems solved.
     """
 
     sphere_mesh: SphereMesh
     shifts: FloatArray
     status: Status
-    iterations: tuple[int, int]
+    iterations: int
 
 
 @dataclass(frozen=True)
@@ -91,9 +82,7 @@ class Nodes:
     is_real: BoolArray
 
 
-def planarize(
-    sphere_mesh: SphereMesh, closeness: float = 0.01, fairness: float = 0.1
-) -> Planarization:
+def planarize(sphere_mesh: SphereMesh, fairness: float = 1.0) -> Planarization:
     """
     Make the nodes of a sphere mesh planar in P⁴, and put them on their spheres.
 
@@ -102,9 +91,9 @@ def planarize(
     sphere_mesh : SphereMesh
         A mesh of any face degrees whose spheres nearly pass through the nodes and are nearly
         planar around them: from a conjugate net on a congruence. Planes are welcome.
-    closeness, fairness : float
-        Weights λ, with mean edge 1, of the shifts of nodes and the changes of spheres, and of
-        the differences between the changes of neighbouring spheres, in the first stage.
+    fairness : float
+        How much it counts against a step that neighbouring spheres change differently,
+        relative to how much the steps themselves count.
 
     Returns
     -------
@@ -114,14 +103,13 @@ def planarize(
     Raises
     ------
     InputError
-        If a weight is negative or not finite, or there is no weight at all.
+        If the fairness is negative or not finite.
 
     Notes
     -----
-    A quad net of F faces has about 2 F degrees of freedom left: convergence is quadratic unless
-    the spheres of a node are about to share a circle. Then their subspace loses a dimension,
-    the Jacobian its rank, and steps only halve the residuals; they come to a stop short of
-    rounding. This happens where neighbouring spheres differ by less than they must move.
+    Convergence is quadratic unless the spheres of a node are about to share a circle: then
+    their subspace loses a dimension, the Jacobian its rank, and steps only halve the residuals.
+    This happens where neighbouring spheres differ by less than they must move.
 
     Fairness is of the spheres: nodes follow from them, and are coupled with nothing else.
 
@@ -129,35 +117,21 @@ def planarize(
     ----------
     Meshes with Spherical Faces, Prop. 4.3 and Sec. 6.4; Tang et al. 2014.
     """
-    weights = np.array([closeness, fairness])
-    if not (np.isfinite(weights).all() and (weights >= 0).all() and weights.any()):
-        raise InputError(
-            "closeness and fairness must not be negative nor both zero, "
-            f"not {closeness} and {fairness}"
-        )
+    if not (np.isfinite(fairness) and fairness >= 0):
+        raise InputError(f"the fairness must not be negative, not {fairness}")
     system = planar_system(sphere_mesh)
-    near = _descend(system, system.start, Weights(closeness, fairness), APPROACH)
-    landed = _descend(system, near.state, Weights(0.0, 0.0), 0.0)
-    net = landed.state
-    return Planarization(
-        _assembled(system, net),
-        norm(net.shifts),
-        landed.status,
-        (near.iterations, landed.iterations),
-    )
-
-
-def _descend(
-    system: PlanarSystem, start: Net, weights: Weights, tolerance: float
-) -> Descent[Net]:
-    return levenberg_marquardt(
-        start,
-        lambda net: energies(system, net, weights),
-        lambda net: linearize(system, net, weights),
+    metric = step_metric(system, fairness)
+    descent = levenberg_marquardt(
+        system.start,
+        lambda net: energies(system, net),
+        lambda net: linearize(system, net, metric),
         move,
-        tolerance,
-        STEPS,
+        tolerance=0.0,
+        max_iterations=STEPS,
     )
+    result = _assembled(system, descent.state)
+    shifts = norm(descent.state.shifts)
+    return Planarization(result, shifts, descent.status, descent.iterations)
 
 
 def _assembled(system: PlanarSystem, net: Net) -> SphereMesh:

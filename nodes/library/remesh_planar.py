@@ -24,9 +24,7 @@ class Planarized(NamedTuple):
 
 @node
 def planarize_p4(
-    sphere_mesh: SphereMesh,
-    closeness: Annotated[float, Port(min=0)] = 0.01,
-    fairness: Annotated[float, Port(min=0)] = 0.1,
+    sphere_mesh: SphereMesh, fairness: Annotated[float, Port(min=0)] = 1.0
 ) -> Planarized:
     """
     Give a sphere mesh torsion-free nodes: planar faces in the point model of Möbius geometry.
@@ -35,9 +33,9 @@ def planarize_p4(
     ----------
     sphere_mesh : SphereMesh
         A mesh of any face degrees that nearly has such nodes, as `p4_remesh` makes them.
-    closeness, fairness : float
-        How much moving nodes and spheres, and changing neighbouring spheres differently,
-        counts against planarity at first, with mean edge 1; in the end planarity alone counts.
+    fairness : float
+        How much it counts that neighbouring spheres change differently, relative to how much
+        changes count; larger for rough nets.
 
     Returns
     -------
@@ -45,7 +43,7 @@ def planarize_p4(
         Moved nodes and changed spheres on the same faces: around every interior node the
         spheres pass through the node and through one more common point.
     report : mapping
-        ``status``, ``iterations`` of the two stages; ``planarity`` (largest fourth singular
+        ``status``, ``iterations``; ``planarity`` (largest fourth singular
         value of the spheres around a node, relative to the first), ``corner_gap`` (largest
         distance of a node from its spheres, in mean edges) and ``real_nodes`` (share of the
         interior nodes whose spheres meet in two real points), each ``before`` and ``after``;
@@ -53,28 +51,28 @@ def planarize_p4(
         null if there is no axis), ``moved`` (``max`` and ``mean`` over the nodes, in mean
         edges) and ``nodes_without_axis`` (ids).
     """
-    result = planarize(sphere_mesh, closeness, fairness)
+    result = planarize(sphere_mesh, fairness)
     nodes = measure_nodes(result.sphere_mesh)
     before = _quality(sphere_mesh, measure_nodes(sphere_mesh))
     after = _quality(result.sphere_mesh, nodes)
     if after["planarity"] > TORSION_FREE or after["corner_gap"] > NODE_ON_SPHERES:
         worst = np.argsort(-nodes.planarity, kind="stable")[:3].tolist()
         raise ConvergenceError(
-            f"the nodes are not free of torsion after {sum(result.iterations)} steps: "
+            f"the nodes are not free of torsion after {result.iterations} steps: "
             f"planarity {after['planarity']:.1e} (from {before['planarity']:.1e}), worst at "
-            f"vertices {name_ids(worst)}; start from a finer net of conjugate directions, or "
-            "relax the congruence first"
+            f"vertices {name_ids(worst)}; try more fairness, a finer net of conjugate "
+            "directions, or relax the congruence first"
         )
     angles = np.degrees(axis_angles(result.sphere_mesh, nodes))
     lost = np.flatnonzero(nodes.is_inner & np.isnan(angles)).tolist()
     if lost:
         warn(
             f"the nodes at vertices {name_ids(lost)} have no axis: their spheres share a "
-            "circle, or all of them are planes"
+            "circle (then try more fairness), or all of them are planes"
         )
     report = {
         "status": result.status,
-        "iterations": list(result.iterations),
+        "iterations": result.iterations,
         **{key: {"before": before[key], "after": after[key]} for key in before},
         "axis_angles_deg": _spread(angles[np.isfinite(angles)]),
         "moved": {"max": float(result.shifts.max()), "mean": float(result.shifts.mean())},

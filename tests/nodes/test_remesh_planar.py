@@ -29,7 +29,7 @@ def test_the_report_says_what_was_reached() -> None:
     result = planarize_p4(start)
     report = json.loads(json.dumps(result.report, allow_nan=False))
     assert report["status"] == "converged"
-    assert len(report["iterations"]) == 2
+    assert 2 < report["iterations"] < 30
     assert report["planarity"]["before"] > 1e-4
     assert report["planarity"]["after"] < 1e-9
     assert report["corner_gap"]["before"] > 1e-3
@@ -53,5 +53,5 @@ def test_planes_stay_and_have_no_axes() -> None:
 
 def test_too_few_steps_are_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(planarize, "STEPS", 2)
-    with pytest.raises(ConvergenceError, match="not free of torsion after 4 steps"):
+    with pytest.raises(ConvergenceError, match="not free of torsion after 2 steps"):
         planarize_p4(shaken(0.05))
