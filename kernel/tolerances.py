@@ -69,7 +69,7 @@ TRANSFORM_DIGITS: Final = 1e-6
 AT_INFINITY: Final = 1e-6
 """Vertices this close, in mean edges, to the point sent to infinity have no usable image."""
 
-NODE_EXACT: Final = 1e-10
+NODE_EXACT: Final = 5e-10
 """Residuals of a node below this, in mean edges and radians, count as zero."""
 
 TORSION_FREE: Final = 1e-8
