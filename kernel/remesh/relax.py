@@ -23,7 +23,7 @@ from ..curvature import principal_curvatures, vertex_normals
 from ..errors import ConvergenceError, InputError, name_ids
 from ..mesh import Mesh, face_centroids, face_vector_areas, mean_edge_length
 from ..spheres import minkowski, recenter
-from ..tolerances import BLEND_STEP, EPSILON, FLATTEST
+from ..tolerances import BLEND_STEP, FLATTEST
 
 SHARPER = 2.0
 """Curvature of the spheres of constant radius, relative to the sharpest of the surface."""
@@ -213,11 +213,6 @@ def _local_rows(mesh: Mesh, spheres: FloatArray, normals: FloatArray) -> FloatAr
     if spheres.shape != (mesh.n_vertices, 5):
         raise InputError(f"spheres must have shape ({mesh.n_vertices}, 5), not {spheres.shape}")
     rows = recenter(spheres, mesh.vertices)
-    # What is left of the last coefficient at a vertex on its sphere is rounding.
-    square = dot(mesh.vertices, mesh.vertices)
-    terms = np.abs(spheres[:, 0]) * square + norm(spheres[:, 1:4]) * np.sqrt(square)
-    rounding = 8 * EPSILON * (terms + np.abs(spheres[:, 4]))
-    rows[np.abs(rows[:, 4]) <= rounding, 4] = 0.0
     rows = np.where(dot(rows[:, 1:4], normals) < 0, -1.0, 1.0)[:, None] * rows
     norms = minkowski(rows, rows)
     distances = np.abs(rows[:, 4]) / np.sqrt(np.where(norms > 0, norms, np.nan))

@@ -31,11 +31,16 @@ from spheremesh.kernel.sphere_mesh import vertex_error
 from spheremesh.kernel.spheres import (
     center_radius,
     from_center_radius,
+    lift_points,
     normalize,
     recenter,
     rescale,
 )
 from spheremesh.kernel.surfaces import ellipsoid_net, torus_net, vase_net
+
+PRODUCT = np.zeros((5, 5))
+PRODUCT[1:4, 1:4] = np.eye(3)
+PRODUCT[0, 4] = PRODUCT[4, 0] = -2.0
 
 
 def constant_radius_torus(n: int = 24, m: int = 12) -> SphereMesh:
@@ -172,8 +177,9 @@ def test_law_e3_axes_are_normal_to_the_faces_of_the_centers() -> None:
 
 @pytest.mark.parametrize(("radius", "is_real"), [(0.5, False), (0.7, False), (0.72, True)])
 def test_nodes_are_real_if_the_radii_reach_the_node(radius: float, *, is_real: bool) -> None:
-    """Four unit squares and spheres about their centres, at 1 / sqrt 2 from the node."""
+    """Four unit squares and spheres about their centres, at 1 / sqrt 2 from the axis."""
     grid = np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1], [0.0]), -1).reshape(-1, 3)
+    grid[4, 2] = 0.3
     mesh = Mesh(grid, [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]])
     centers = np.array([[-1, -1, 0], [1, -1, 0], [-1, 1, 0], [1, 1, 0]]) / 2
     spheres = from_center_radius(centers, np.full(4, radius**2))
@@ -192,6 +198,22 @@ def test_boundary_nodes_lie_on_their_spheres_and_nothing_more() -> None:
     assert vertex_error(strip).max() > 1e-3
     assert planarize(strip).status == "converged"
     assert_torsion_free(planarize(strip).sphere_mesh)
+
+
+def test_boundary_nodes_of_many_faces_need_not_be_planar() -> None:
+    """Four of the five quads around a vertex, each with the sphere through its corners."""
+    rng = np.random.default_rng(2)
+    turn = 2 * np.pi * np.arange(10) / 10
+    ring = np.stack([np.cos(turn), np.sin(turn), 0.3 * rng.normal(size=10)], 1)
+    points = np.vstack([[[0, 0, 0]], ring])
+    quads = np.array([[0, 1 + 2 * i, 2 + 2 * i, 3 + 2 * i] for i in range(4)])
+    rows = np.linalg.svd(lift_points(points)[quads] @ PRODUCT)[2][:, 4]
+    normals_up = rows[:, 3] > 0
+    spheres = normalize(np.where(normals_up, 1.0, -1.0)[:, None] * rows)
+    start = SphereMesh(Mesh(points, quads), spheres)
+    assert vertex_error(start).max() < 1e-12
+    assert np.linalg.svd(start.spheres, compute_uv=False)[3] > 0.01
+    assert planarize(start).shifts.max() == 0
 
 
 def test_faces_of_mixed_degree() -> None:
