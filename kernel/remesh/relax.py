@@ -113,9 +113,9 @@ def relax_congruence(
     Notes
     -----
     The blend is of unit rows: for touching spheres of curvatures, which keeps them touching.
-    One blend for all vertices, found by bisection. A blend that varies, largest where the net is
-    complex, makes the radii vary more: on freeform surfaces it had to change the curvatures by
-    half more and left the axes in the surface.
+    One blend for all vertices, found by bisection. A blend that varies, largest where the net
+    is complex, makes the radii vary more: on freeform surfaces it had to change the curvatures
+    by half more and left the axes in the surface.
 
     References
     ----------
