@@ -143,3 +143,18 @@ LINE_CORNER: Final = 0.5235987755982988
 
 MOSTLY_EVEN: Final = 0.95
 """Share of edges of nearly the length asked for below which remeshing warns."""
+
+NODE_EXACT: Final = 5e-10
+"""Residuals of a node below this, in mean edges and radians, count as zero."""
+
+TORSION_FREE: Final = 1e-8
+"""Fourth singular value of the spheres around a node, relative to the first, that is none."""
+
+NODE_ON_SPHERES: Final = 1e-6
+"""Nodes of a planarised mesh lie this close to their spheres, in mean edges."""
+
+FLATTEST: Final = 1e-3
+"""Curvature, in inverse mean edges, below which a sphere is as good as a plane."""
+
+BLEND_STEP: Final = 0.01
+"""How sharply the least blend that makes a congruence fit is found."""

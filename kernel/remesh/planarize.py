@@ -1,0 +1,227 @@
+"""
+Planarisation: sphere meshes whose nodes are free of torsion.
+
+The planes of the circles around a node meet in a line, the node axis, exactly if the spheres
+span a subspace of dimension 3 in R⁵ and pass through the node: then the mesh of spheres has
+planar faces in P⁴.
+
+Nothing but the constraints is minimised. There are about two of them less than unknowns for
+every face, and of all Gauss-Newton steps the damping picks the least one: what keeps a net near
+its start and fair is the norm that the damping uses, not a term of the energy. Such terms would
+end in a compromise, in which it is cheaper for two spheres of a short edge to become one than
+for the net to move; and a node whose spheres share a circle is planar and of no use.
+
+Meshes with Spherical Faces, Prop. 4.3 and Sec. 6.4.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
+from ..curvature import vertex_normals
+from ..errors import InputError
+from ..mesh import Mesh, local_corners, mean_edge_length
+from ..solvers.levenberg_marquardt import Status, levenberg_marquardt
+from ..sphere_mesh import SphereMesh
+from ..spheres import recenter, rescale
+from ..tolerances import DEGENERATE
+from .planar_steps import linearize, step_metric
+from .planar_system import Net, PlanarSystem, energies, move, planar_system
+
+STEPS = 60
+"""Largest number of linear systems."""
+
+
+@dataclass(frozen=True)
+class Planarization:
+    """
+    A planarised sphere mesh and how it was reached.
+
+    Attributes
+    ----------
+    sphere_mesh : SphereMesh
+        Moved nodes and changed spheres, on the same faces.
+    shifts : (V,) float array
+        How far each node moved, in mean edges.
+    status : {"converged", "stalled", "exhausted"}
+        How the descent ended; if it converged, nodes are planar to `NODE_EXACT`.
+    iterations : int
+        Linear systems solved.
+    """
+
+    sphere_mesh: SphereMesh
+    shifts: FloatArray
+    status: Status
+    iterations: int
+
+
+@dataclass(frozen=True)
+class Nodes:
+    """
+    What the spheres around each node have in common.
+
+    Attributes
+    ----------
+    is_inner : (V,) bool array
+        Nodes inside the mesh; the others have none of what follows.
+    planarity : (V,) float array
+        Fourth singular value of the rows seen from the node, relative to the first; zero on
+        the boundary and for less than four spheres.
+    axes : (V, 3) float array
+        Unit directions of the node axes, through both common points; NaN where there is none,
+        as on the boundary, where spheres share a circle, and where all of them are planes.
+    is_real : (V,) bool array
+        Whether the spheres meet in two real points, by least squares.
+    """
+
+    is_inner: BoolArray
+    planarity: FloatArray
+    axes: FloatArray
+    is_real: BoolArray
+
+
+def planarize(sphere_mesh: SphereMesh, fairness: float = 1.0) -> Planarization:
+    """
+    Make the nodes of a sphere mesh planar in P⁴, and put them on their spheres.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        A mesh of any face degrees whose spheres nearly pass through the nodes and are nearly
+        planar around them: from a conjugate net on a congruence. Planes are welcome.
+    fairness : float
+        How much it counts against a step that neighbouring spheres change differently,
+        relative to how much the steps themselves count.
+
+    Returns
+    -------
+    Planarization
+        Torsion-free if it converged. Nets that are planar are returned as they are.
+
+    Raises
+    ------
+    InputError
+        If the fairness is negative or not finite.
+
+    Notes
+    -----
+    Convergence is quadratic unless the spheres of a node are about to share a circle: then
+    their subspace loses a dimension, the Jacobian its rank, and steps only halve the residuals.
+    This happens where neighbouring spheres differ by less than they must move.
+
+    Fairness is of the spheres: nodes follow from them, and are coupled with nothing else.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Prop. 4.3 and Sec. 6.4; Tang et al. 2014.
+    """
+    if not (np.isfinite(fairness) and fairness >= 0):
+        raise InputError(f"the fairness must not be negative, not {fairness}")
+    system = planar_system(sphere_mesh)
+    metric = step_metric(system, fairness)
+    descent = levenberg_marquardt(
+        system.start,
+        lambda net: energies(system, net),
+        lambda net: linearize(system, net, metric),
+        move,
+        tolerance=0.0,
+        max_iterations=STEPS,
+    )
+    result = _assembled(system, descent.state)
+    shifts = norm(descent.state.shifts)
+    return Planarization(result, shifts, descent.status, descent.iterations)
+
+
+def _assembled(system: PlanarSystem, net: Net) -> SphereMesh:
+    mesh, faces = system.mesh, system.mesh.topology.corner_faces
+    size = mean_edge_length(mesh)
+    drift = sum_by(faces, net.shifts[mesh.corners], mesh.n_faces) / mesh.degrees[:, None]
+    rows = rescale(recenter(net.rows, drift), size)
+    moved = Mesh(mesh.vertices + size * net.shifts, mesh.faces)
+    return SphereMesh.from_local(moved, rows)
+
+
+def measure_nodes(sphere_mesh: SphereMesh) -> Nodes:
+    """
+    Planarity, axes and reality of the nodes of a sphere mesh.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+
+    Returns
+    -------
+    Nodes
+        By least squares where the nodes are not planar.
+
+    Notes
+    -----
+    The spheres orthogonal to those of a node are a pencil. Its plane holds their centres: the
+    axis is normal to it. Its points, null vectors of the product, are the common points.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Prop. 4.2 and 4.3.
+    """
+    mesh = sphere_mesh.mesh
+    size = mean_edge_length(mesh)
+    local = rescale(sphere_mesh.local_spheres, 1 / size)[mesh.topology.corner_faces]
+    rows = recenter(local, local_corners(mesh) / size)
+    planarity = np.zeros(mesh.n_vertices)
+    axes = np.full((mesh.n_vertices, 3), np.nan)
+    is_real = np.zeros(mesh.n_vertices, np.bool_)
+    for nodes, corners in _stars(mesh):
+        _, values, basis = np.linalg.svd(rows[corners])
+        if values.shape[1] > 3:
+            planarity[nodes] = values[:, 3] / values[:, 0]
+        is_full = values[:, 2] > DEGENERATE * values[:, 0]
+        # Forms on rows; the first and last coefficients trade places in the sphere they stand
+        # for, so that without a last coefficient it is a plane.
+        first, second = basis[:, 3], basis[:, 4]
+        plane = second[:, 4:] * first[:, 1:4] - first[:, 4:] * second[:, 1:4]
+        has_axis = is_full & (norm(plane) > DEGENERATE)
+        axes[nodes[has_axis]] = unit(plane[has_axis])
+        mixed = _form(first, second)
+        is_real[nodes] = is_full & (mixed**2 > _form(first, first) * _form(second, second))
+    return Nodes(~mesh.topology.is_boundary_vertex, planarity, axes, is_real)
+
+
+def _form(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Minkowski product of the spheres that linear forms of rows stand for."""
+    ends = first[:, 0] * second[:, 4] + first[:, 4] * second[:, 0]
+    return dot(first[:, 1:4], second[:, 1:4]) - ends / 2
+
+
+def _stars(mesh: Mesh) -> Iterator[tuple[IntArray, IntArray]]:
+    """Interior nodes (n,) of equal valence k > 2, with their corners (n, k)."""
+    valences = np.bincount(mesh.corners, minlength=mesh.n_vertices)
+    order = np.argsort(mesh.corners, kind="stable")
+    starts = np.cumsum(valences) - valences
+    valences = np.where(mesh.topology.is_boundary_vertex, 0, valences)
+    for valence in np.unique(valences[valences > 2]).tolist():
+        nodes = np.flatnonzero(valences == valence)
+        yield nodes, order[starts[nodes][:, None] + np.arange(valence)]
+
+
+def axis_angles(sphere_mesh: SphereMesh, nodes: Nodes) -> FloatArray:
+    """
+    Angles between the node axes and the normals of the mesh.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+    nodes : Nodes
+        Measures of its nodes.
+
+    Returns
+    -------
+    (V,) float array
+        Radians from 0 to π/2; NaN where there is no axis.
+    """
+    normals = vertex_normals(sphere_mesh.mesh)
+    across = norm(np.cross(nodes.axes, normals))
+    return np.arctan2(across, np.abs(dot(nodes.axes, normals)))
