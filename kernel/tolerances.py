@@ -68,3 +68,9 @@ TRANSFORM_DIGITS: Final = 1e-6
 
 AT_INFINITY: Final = 1e-6
 """Vertices this close, in mean edges, to the point sent to infinity have no usable image."""
+
+SINGLE_EPSILON: Final = 1.1920928955078125e-07
+"""Spacing of float32 at 1."""
+
+SAME_PANEL: Final = 1e-6
+"""Panels are identical where a motion brings all corners this close, in sizes (1 µm per m)."""

@@ -12,7 +12,8 @@ import rhino3dm
 
 from spheremesh.fabrication.brep_audit import verify_brep_bytes, verify_breps
 from spheremesh.fabrication.brep_layout import BrepLayout, UnreadableError, parse_brep
-from spheremesh.fabrication.opennurbs import CRC, brep_streams, edge_streams
+from spheremesh.fabrication.chunks import CRC
+from spheremesh.fabrication.opennurbs import brep_streams, edge_streams
 from spheremesh.kernel.arcs import arc_points
 from spheremesh.kernel.arrays import FloatArray
 from spheremesh.kernel.circles import circle_pencils, face_circles, pencil_spheres
