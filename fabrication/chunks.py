@@ -1,10 +1,10 @@
 """
 Streams of openNURBS objects: chunks with checksums, laid out once and filled for many objects.
 
-All numbers are little-endian: i = int32, q = int64, d = float64. A chunk is ``i type, q length``
-and a body of that length. Where bit 15 of the type is set, the body ends in the CRC-32 of those
-of its bytes that belong to no inner chunk; where bit 31 is set, there is no body
-(`opennurbs_archive.cpp`). An object is::
+All numbers are little-endian: i = int32, q = int64, d = float64. A chunk is
+``i type, q length`` and a body of that length. Where bit 15 of the type is set, the body ends
+in the CRC-32 of those of its bytes that belong to no inner chunk; where bit 31 is set, there is
+no body (`opennurbs_archive.cpp`). An object is::
 
     CLASS { CLASS_UUID { 16 bytes, crc }  CLASS_DATA { the object, crc }  CLASS_END }
 

@@ -32,6 +32,7 @@ units, N along x_u × x_v, and at A = 0 the plane itself. Circles on
 the sphere are circular arcs in (u, v): trims are exact rational quadratics.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -119,27 +120,65 @@ def brep_streams(panels: Panels, meshes: RenderMeshes | None = None) -> list[byt
     lengths = arc_lengths(arcs)
     points = panels.corners + panels.origins[panels.corner_panels]
     result = [b""] * panels.n_panels
-    for degree in np.unique(panels.degrees).tolist():
+    for group, spans, kind in _groups(panels, arcs, meshes):
+        corners = group.corner_ids
+        numbers = {
+            "vertex": points[corners],
+            "edge": lengths[corners],
+            "curve": curves[corners],
+            **_patch_numbers(group, spans),
+        }
+        face_mesh: tuple[Piece, ...] = (b"\0",)
+        if meshes is not None:
+            numbers |= mesh_numbers(meshes, group.ids)
+            face_mesh = (b"\1", mesh_object(meshes.triangles[kind]))
+        template = assemble(_brep(int(corners.shape[1]), spans, face_mesh))
+        for panel, stream in zip(group.ids, fill(template, numbers), strict=True):
+            result[panel] = stream
+    return result
+
+
+def face_streams(panels: Panels) -> tuple[list[bytes], list[bytes]]:
+    """
+    Surfaces and trims of the outer faces, to be joined.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels with H corners.
+
+    Returns
+    -------
+    surfaces : list of bytes
+        P objects, in model coordinates.
+    trims : list of bytes
+        H curves over [-1, 1] in (u, v).
+    """
+    surfaces, trims = [b""] * panels.n_panels, [b""] * len(panels.corners)
+    for group, spans, _ in _groups(panels, panel_arcs(panels), None):
+        numbers = _patch_numbers(group, spans)
+        filled = fill(assemble(_surface(spans)), numbers)
+        for panel, stream in zip(group.ids, filled, strict=True):
+            surfaces[panel] = stream
+        for side, corners in enumerate(group.corner_ids.T):
+            filled = fill(assemble(_trim_curve(side, spans)), numbers)
+            for corner, stream in zip(corners, filled, strict=True):
+                trims[corner] = stream
+    return surfaces, trims
+
+
+def _groups(
+    panels: Panels, arcs: Arcs, meshes: RenderMeshes | None
+) -> Iterator[tuple[_Charts, int, int]]:
+    """Panels whose streams have one layout, their spans and the kind of their meshes."""
+    degrees: list[int] = np.unique(panels.degrees).tolist()
+    for degree in degrees:
         charts = _charts(panels, arcs, np.flatnonzero(panels.degrees == degree))
         spans = _spans(charts)
         kinds = np.zeros_like(spans) if meshes is None else meshes.kinds[charts.ids]
-        for count, kind in np.unique(np.stack([spans, kinds], 1), axis=0).tolist():
-            group = _take(charts, (spans == count) & (kinds == kind))
-            corners = group.corner_ids
-            numbers = {
-                "vertex": points[corners],
-                "edge": lengths[corners],
-                "curve": curves[corners],
-                **_patch_numbers(group, count),
-            }
-            face_mesh: tuple[Piece, ...] = (b"\0",)
-            if meshes is not None:
-                numbers |= mesh_numbers(meshes, group.ids)
-                face_mesh = (b"\1", mesh_object(meshes.triangles[kind]))
-            streams = fill(assemble(_brep(degree, count, face_mesh)), numbers)
-            for panel, stream in zip(group.ids, streams, strict=True):
-                result[panel] = stream
-    return result
+        pairs: list[list[int]] = np.unique(np.stack([spans, kinds], 1), axis=0).tolist()
+        for count, kind in pairs:
+            yield _take(charts, (spans == count) & (kinds == kind)), count, kind
 
 
 def edge_streams(panels: Panels) -> list[bytes]:

@@ -17,7 +17,7 @@ import numpy as np
 from ..kernel.arrays import FloatArray, IntArray
 from ..kernel.panels import Panels
 from ..kernel.tessellation import tessellate
-from .chunks import ANONYMOUS, Buffer, Chunk, Slot, class_object, doubles, ints
+from .chunks import ANONYMOUS, Buffer, Chunk, Slot, assemble, class_object, doubles, fill, ints
 
 MESH: Final = bytes.fromhex("e4d4d74e47e9d311bfe50010830122f0")
 MESH_VERSION: Final = b"\x38"
@@ -142,3 +142,26 @@ def mesh_object(triangles: IntArray) -> Chunk:
 
 def _n_points(triangles: IntArray) -> int:
     return int(triangles.max()) + 1
+
+
+def mesh_streams(meshes: RenderMeshes) -> list[bytes]:
+    """
+    Each mesh as the stream of an `ON_Mesh`.
+
+    Parameters
+    ----------
+    meshes : RenderMeshes
+        The triangles of P panels.
+
+    Returns
+    -------
+    list of bytes
+        P objects, in model coordinates.
+    """
+    result = [b""] * len(meshes.kinds)
+    for kind, triangles in enumerate(meshes.triangles):
+        members = np.flatnonzero(meshes.kinds == kind)
+        filled = fill(assemble(mesh_object(triangles)), mesh_numbers(meshes, members))
+        for panel, stream in zip(members, filled, strict=True):
+            result[panel] = stream
+    return result

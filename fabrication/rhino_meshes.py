@@ -221,12 +221,7 @@ def write_3dm(mesh: Mesh, path: Path) -> None:
         If Rhino calls the mesh invalid or cannot write the file.
     """
     rhino = _rhino3dm()
-    ngon_mesh = _to_rhino(rhino, mesh)
-    is_valid, reason = ngon_mesh.IsValidWithLog
-    if not is_valid:
-        raise InputError(
-            f"Rhino calls the mesh invalid ({' '.join(reason.split())}); write .obj"
-        )
+    ngon_mesh = to_rhino_mesh(mesh)
     model = rhino.File3dm()
     # A mesh has no units: Rhino must not scale it as if it were in millimetres.
     model.Settings.ModelUnitSystem = getattr(rhino.UnitSystem, "None")
@@ -236,7 +231,36 @@ def write_3dm(mesh: Mesh, path: Path) -> None:
         raise InputError("rhino3dm cannot write the file; check the disk")
 
 
-def _to_rhino(rhino: RhinoObject, mesh: Mesh) -> RhinoObject:
+def to_rhino_mesh(mesh: Mesh) -> RhinoObject:
+    """
+    A mesh as an object of rhino3dm.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh; faces with more than four corners become ngons.
+
+    Returns
+    -------
+    rhino3dm.Mesh
+        The object, with float64 vertices.
+
+    Raises
+    ------
+    InputError
+        If Rhino calls it invalid.
+    """
+    rhino = _rhino3dm()
+    result = _with_faces(rhino, mesh)
+    is_valid, reason = result.IsValidWithLog
+    if not is_valid:
+        raise InputError(
+            f"Rhino calls the mesh invalid ({' '.join(reason.split())}); write .obj"
+        )
+    return result
+
+
+def _with_faces(rhino: RhinoObject, mesh: Mesh) -> RhinoObject:
     plain = rhino.Mesh()
     add_vertex, add_face = plain.Vertices.AddPoint3d, plain.Faces.AddFace
     for x, y, z in mesh.vertices.tolist():

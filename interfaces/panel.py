@@ -88,7 +88,7 @@ def panel_graph(options: PanelOptions) -> Graph:
         joint_gap=joint_gap, labels=labels,
     )  # fmt: skip
     graph.add("write_step", "step", panels=panels.panels, path="panels.step")
-    graph.add("write_3dm", "rhino", panels=panels.panels, path="model.3dm")
+    graph.add("write_3dm", "rhino", panels=panels.panels, path="model.3dm", reference=mesh)
     graph.add("write_schedule", "table", panels=panels.panels, path="schedule.csv")
     graph.add("write_schedule", "list", panels=panels.panels, path="schedule.json")
     graph.add("render", "picture", panels=panels.panels, path="preview.png")

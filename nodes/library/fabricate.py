@@ -5,9 +5,10 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 from ...fabrication import rhino, schedule, step
 from ...fabrication.files import check_suffix, replacing
-from ...kernel import cutting
+from ...kernel import cutting, panel_kinds
 from ...kernel.arrays import IntArray
 from ...kernel.errors import name_ids
+from ...kernel.mesh import Mesh
 from ...kernel.panels import Panels
 from ...kernel.sphere_mesh import SphereMesh
 from ...viewer.render import render_image
@@ -21,6 +22,13 @@ class PanelSet(NamedTuple):
     """The panels that can be made, and what was found while cutting them."""
 
     panels: Panels
+    report: Mapping[str, Any]
+
+
+class PanelGroups(NamedTuple):
+    """Panels grouped by shape."""
+
+    kinds: IntArray
     report: Mapping[str, Any]
 
 
@@ -111,6 +119,9 @@ def write_3dm(
     path: WritePath,
     units: Units = "m",
     version: Annotated[int, Port(min=6, max=8)] = 8,
+    reference: Mesh | SphereMesh | None = None,
+    shape: Literal["panels", "blocks", "shell"] = "panels",
+    layers: tuple[Literal["Edges", "Centres"], ...] = ("Edges",),
 ) -> str:
     """
     Write panels to a Rhino file: exact trimmed spheres, layers per mould, user text.
@@ -125,13 +136,52 @@ def write_3dm(
         Model units; those of the file.
     version : int
         Rhino version of the file.
+    reference : Mesh or SphereMesh, optional
+        The design mesh, for a layer of its own.
+    shape : {"panels", "blocks", "shell"}
+        A surface per panel; instances of a block wherever panels are identical; or all panels
+        joined into one polysurface, which needs panels cut along intersections without joint.
+    layers : tuple of {"Edges", "Centres"}
+        Further layers: the edges of the panels, the centres of their spheres.
 
     Returns
     -------
     str
         The path. The document carries the graph that is running.
     """
-    return str(rhino.write_3dm(panels, path, units, running_graph(), version))
+    mesh = reference.mesh if isinstance(reference, SphereMesh) else reference
+    contents = rhino.RhinoContents(shape, layers, mesh)
+    file = rhino.write_3dm(panels, path, units, running_graph(), version, contents=contents)
+    if file.rejected:
+        shown = "; ".join(f"{panel.id}: {panel.reason}" for panel in file.rejected[:8])
+        more = f"; {len(file.rejected) - 8} more" if len(file.rejected) > 8 else ""
+        warn(f"{len(file.rejected)} panels are not in {file.path.name}: {shown}{more}")
+    if file.n_open:
+        warn(f"{file.n_open} edges stay open in {file.path.name}: the panels lie apart there")
+    return str(file.path)
+
+
+@node
+def identical_panels(panels: Panels) -> PanelGroups:
+    """
+    Group panels that are equal up to a motion: they can be made from one drawing.
+
+    Parameters
+    ----------
+    panels : Panels
+        The panels.
+
+    Returns
+    -------
+    kinds : (P,) int array
+        Kind of each panel, numbered by first appearance; mirror images are different kinds.
+    report : mapping
+        ``panels``, ``kinds``, ``repeated_kinds`` (of two panels or more), ``repeated_panels``
+        (panels in these), ``largest_kind``, and ``deviation``: how far panels of a kind differ,
+        in model units.
+    """
+    found = panel_kinds.identical_panels(panels)
+    return PanelGroups(found.kinds, panel_kinds.panel_kinds_report(found))
 
 
 @node
