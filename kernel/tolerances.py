@@ -74,3 +74,9 @@ SINGLE_EPSILON: Final = 1.1920928955078125e-07
 
 SAME_PANEL: Final = 1e-6
 """Panels are identical where a motion brings all corners this close, in sizes (1 µm per m)."""
+
+EDGE_MISS: Final = 0.01
+"""A trimmed face whose edges lie farther off its surface, in edge lengths, is refused."""
+
+CLOSED: Final = 1e-6
+"""A surface whose ends lie this close, relative to its size, is closed there."""
