@@ -97,14 +97,15 @@ class RhinoFile(NamedTuple):
         Panels that it lacks, with their reasons.
     objects : mapping of str to int
         Number of objects by openNURBS's names: ``Brep``, ``ArcCurve``, ...
-    n_open : int
-        Edges of neighbours that lie too far apart for the shell and stay open in it.
+    notes : tuple of str
+        What else differs from what was asked for: edges that the shell leaves open, a
+        reference mesh that Rhino refuses.
     """
 
     path: Path
     rejected: tuple[RejectedPanel, ...]
     objects: Mapping[str, int]
-    n_open: int
+    notes: tuple[str, ...]
 
 
 _PANELS_AND_EDGES: Final = RhinoContents()
@@ -165,28 +166,18 @@ def write_3dm(
     if version not in VERSIONS:
         raise InputError(f"unknown Rhino version {version}: use one of {VERSIONS}")
     model = new_model(units)
-    sound, rejected = _judge(model, panels, render_meshes=contents.render_meshes)
-    exact = sound.panels
     _set_strings(model, graph_json, title)
-    moulds = _add_moulds(model, exact)
-    attributes = _panel_attributes(model, exact, moulds, units)
-    n_open = 0
-    if contents.shape == "panels":
-        _add_panels(model, sound, attributes)
-    elif contents.shape == "blocks":
-        _add_blocks(model, sound, moulds, attributes)
-    elif exact.n_panels:
-        n_open = _add_shell(model, sound, moulds[-1].place, model_tolerance(units))
-    _add_further_layers(model, exact, contents)
-    if exact.n_panels:
-        add_views(model, exact.corners + exact.origins[exact.corner_panels])
+    rejected, n_open = _add_panels(model, panels, contents, units)
+    notes = [f"{n_open} edges of neighbours lie apart and stay open"] if n_open else []
+    if contents.reference is not None:
+        notes += _add_reference(model, contents.reference)
     data, objects = encode_model(model, version), count_objects(model)
     if len(read_brep_streams(data)) != objects.get("Brep", 0):
         raise InputError(f"cannot write {path}: rhino3dm did not encode the model")
     target = Path(path)
     with replacing(target) as temporary:
         temporary.write_bytes(data)
-    return RhinoFile(target, rejected, objects, n_open)
+    return RhinoFile(target, rejected, objects, tuple(notes))
 
 
 class _Sound(NamedTuple):
@@ -271,9 +262,29 @@ def _panel_attributes(
     return result
 
 
-def _add_panels(model: RhinoModel, sound: _Sound, attributes: list[Untyped]) -> None:
-    for brep, each in zip(sound.breps, attributes, strict=True):
-        model.file.Objects.AddBrep(brep, each)
+def _add_panels(
+    model: RhinoModel, panels: Panels, contents: RhinoContents, units: str
+) -> tuple[tuple[RejectedPanel, ...], int]:
+    """All that is known of panels; those rejected, and edges that the shell leaves open."""
+    sound, rejected = _judge(model, panels, render_meshes=contents.render_meshes)
+    exact = sound.panels
+    moulds = _add_moulds(model, exact)
+    attributes = _panel_attributes(model, exact, moulds, units)
+    n_open = 0
+    if contents.shape == "panels":
+        for brep, each in zip(sound.breps, attributes, strict=True):
+            model.file.Objects.AddBrep(brep, each)
+    elif contents.shape == "blocks":
+        _add_blocks(model, sound, moulds, attributes)
+    elif exact.n_panels:
+        n_open = _add_shell(model, sound, moulds[-1].place, model_tolerance(units))
+    if "Edges" in contents.layers:
+        _add_edges(model, exact)
+    if "Centres" in contents.layers:
+        _add_centers(model, exact)
+    if exact.n_panels:
+        add_views(model, exact.corners + exact.origins[exact.corner_panels])
+    return rejected, n_open
 
 
 def _add_blocks(
@@ -314,18 +325,6 @@ def _add_shell(model: RhinoModel, sound: _Sound, place: Place, largest_gap: floa
     return shell.n_open
 
 
-def _add_further_layers(model: RhinoModel, panels: Panels, contents: RhinoContents) -> None:
-    if "Edges" in contents.layers:
-        _add_edges(model, panels)
-    if "Centres" in contents.layers:
-        _add_centers(model, panels)
-    if contents.reference is not None:
-        # It would flicker through the panels: it is there to be switched on.
-        place = add_layer(model, "Reference", UNLABELLED, visible=False)
-        attributes = object_attributes(model, "Reference", "mesh", place)
-        model.file.Objects.AddMesh(to_rhino_mesh(contents.reference), attributes)
-
-
 def _add_edges(model: RhinoModel, panels: Panels) -> None:
     place = add_layer(model, "Edges", _BLACK)
     owners: list[int] = panels.corner_panels.tolist()
@@ -343,3 +342,15 @@ def _add_centers(model: RhinoModel, panels: Panels) -> None:
         if np.isfinite(radius):
             attributes = object_attributes(model, name, "centre", place)
             model.file.Objects.AddPoint(model.library.Point3d(*center), attributes)
+
+
+def _add_reference(model: RhinoModel, mesh: Mesh) -> list[str]:
+    """The design; or why it is left out."""
+    try:
+        rhino_mesh = to_rhino_mesh(mesh)
+    except InputError as error:
+        return [f"the reference is left out: {error}"]
+    # It would flicker through the panels: it is there to be switched on.
+    place = add_layer(model, "Reference", UNLABELLED, visible=False)
+    model.file.Objects.AddMesh(rhino_mesh, object_attributes(model, "Reference", "mesh", place))
+    return []

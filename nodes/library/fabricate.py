@@ -156,8 +156,8 @@ def write_3dm(
         shown = "; ".join(f"{panel.id}: {panel.reason}" for panel in file.rejected[:8])
         more = f"; {len(file.rejected) - 8} more" if len(file.rejected) > 8 else ""
         warn(f"{len(file.rejected)} panels are not in {file.path.name}: {shown}{more}")
-    if file.n_open:
-        warn(f"{file.n_open} edges stay open in {file.path.name}: the panels lie apart there")
+    for note in file.notes:
+        warn(f"{file.path.name}: {note}")
     return str(file.path)
 
 

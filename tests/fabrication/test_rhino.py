@@ -292,6 +292,14 @@ def test_reference_is_the_design(path: Path) -> None:
     assert np.array_equal(mesh.vertices, design().vertices)
 
 
+def test_a_reference_that_rhino_refuses_is_left_out(panels: Panels, tmp_path: Path) -> None:
+    degenerate = Mesh([[0, 0, 0], [1, 0, 0], [1, 0, 0]], [[0, 1, 2]])
+    few = select_panels(panels, np.arange(panels.n_panels) < 2)
+    file = write_3dm(few, tmp_path / "a.3dm", contents=RhinoContents(reference=degenerate))
+    assert "the reference is left out: Rhino calls the mesh invalid" in file.notes[0]
+    assert "Mesh" not in file.objects
+
+
 def test_groups_and_views(model: Any, panels: Panels) -> None:  # noqa: ANN401
     assert [group.Name for group in model.Groups] == [f"Mould {i:02d}" for i in range(1, 6)]
     for label, item in zip(panels.labels, on_layer(model, "Panels"), strict=True):
@@ -374,7 +382,7 @@ def test_shell_joins_what_meets(tmp_path: Path) -> None:
         (select_panels(panels, np.arange(48) != 7), 96, 48),
     ):
         file = write_3dm(given, tmp_path / "shell.3dm", contents=shell)
-        assert (file.objects, file.n_open) == ({"Brep": 1}, 0)
+        assert (file.objects, file.notes) == ({"Brep": 1}, ())
         (item,) = rhino3dm.File3dm.Read(str(file.path)).Objects
         brep = item.Geometry
         assert brep.IsValid
@@ -404,8 +412,8 @@ def test_shell_leaves_wide_edges_open(tmp_path: Path) -> None:
     moved[7] += (0.0, 0.0, 0.01)
     apart = replace(panels, origins=moved)
     file = write_3dm(apart, tmp_path / "shell.3dm", contents=RhinoContents("shell"))
-    assert file.n_open == 4
-    with pytest.warns(NodeWarning, match="4 edges stay open in shell.3dm"):
+    assert file.notes == ("4 edges of neighbours lie apart and stay open",)
+    with pytest.warns(NodeWarning, match=r"shell.3dm: 4 edges of neighbours lie apart"):
         nodes.write_3dm(apart, tmp_path / "shell.3dm", shape="shell")
 
 
