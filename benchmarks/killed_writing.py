@@ -3,13 +3,15 @@ Is a file always whole? Kills writers at random moments and looks at what is lef
 
     python benchmarks/killed_writing.py [KILLS] [EXPORTS]
 
-For .3dm and STEP: a process writes a new file over an old one, is killed by SIGKILL after a
-random part of the time that writing takes, and then the file must be the old one or a whole new
-one. What killed processes left beside it is counted: hidden files, as nothing can tidy up after
-SIGKILL. Before that, EXPORTS whole programs must end with exit code 0.
+For .3dm and STEP: a process writes a new file over an old one and is killed by SIGKILL, half of
+the times at a random moment, half of them as soon as there are first bytes on the disk, or a
+few milliseconds later. Then the file must be the old one or a whole new one. What killed
+processes left beside it is counted: hidden files, as nothing can tidy up after SIGKILL. Before
+that, EXPORTS whole programs must end with exit code 0.
 """
 
 import multiprocessing
+import os
 import random
 import subprocess
 import sys
@@ -18,6 +20,8 @@ import time
 import warnings
 from collections import Counter
 from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 import rhino3dm
@@ -45,13 +49,24 @@ def export(path: Path) -> int:
     return done.returncode
 
 
-def kill(write: Writer, panels: Panels, path: Path, delay: float) -> None:
-    """Write in another process and kill it after a time."""
+def kill(write: Writer, panels: Panels, path: Path, wait: Callable[[], None]) -> None:
+    """Write in another process and kill it when the wait is over."""
     process = FORK.Process(target=write, args=(panels, path))
     process.start()
-    time.sleep(delay)
+    wait()
     process.kill()
     process.join()
+
+
+def wait_for_bytes(path: Path, delay: float) -> None:
+    """Wait until the file has changed or something lies beside it, and a moment longer."""
+    end = time.perf_counter() + 60
+    while time.perf_counter() < end:
+        with suppress(FileNotFoundError):
+            sizes = {each.name: each.stat().st_size for each in os.scandir(path.parent)}
+            if sizes.pop(path.name) != len(OLD) or any(sizes.values()):
+                break
+    time.sleep(delay)
 
 
 def is_whole(path: Path, n_panels: int) -> bool:
@@ -74,9 +89,13 @@ def torment(write: Writer, panels: Panels, path: Path, kills: int) -> Counter[st
     process.join()
     seconds = time.perf_counter() - began
     found: Counter[str] = Counter()
-    for _ in range(kills):
+    for i in range(kills):
         path.write_bytes(OLD)
-        kill(write, panels, path, random.uniform(0, 1.1 * seconds))  # noqa: S311
+        if i % 2:
+            wait = partial(time.sleep, random.uniform(0, 1.6 * seconds))  # noqa: S311
+        else:
+            wait = partial(wait_for_bytes, path, random.choice((0.0, 0.002)))  # noqa: S311
+        kill(write, panels, path, wait)
         if path.read_bytes() == OLD:
             found["old"] += 1
         else:
