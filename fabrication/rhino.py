@@ -70,7 +70,7 @@ class RhinoContents:
     ----------
     shape : {"panels", "blocks", "shell"}
         One Brep per panel; the same with a block definition and instances wherever panels are
-        identical; or all panels joined into one Brep.
+        identical (to `SAME_PANEL` of their size); or all panels joined into one Brep.
     layers : tuple of {"Edges", "Centres"}
         Further layers: an arc or line for every edge of every panel; the centres of spheres.
     reference : Mesh, optional
