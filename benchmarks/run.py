@@ -42,7 +42,7 @@ def optimise(n_span: int, n_length: int) -> Figures:
 
 def write(kind: str) -> Figures:
     """One file of 5,000 panels."""
-    from spheremesh.fabrication.rhino import write_3dm
+    from spheremesh.fabrication.rhino import RhinoContents, write_3dm
     from spheremesh.fabrication.step import write_step
     from spheremesh.nodes import cluster_radii, fit_spheres, minimize_angles, panels, roof_mesh
 
@@ -54,7 +54,7 @@ def write(kind: str) -> Figures:
     if kind == "step":
         write_step(cut, path)
     else:
-        write_3dm(cut, path)
+        write_3dm(cut, path, contents=RhinoContents(render_meshes=kind == "3dm"))
     return {
         "panels": cut.n_panels,
         "write_s": time.process_time() - began,
@@ -91,6 +91,7 @@ STAGES: dict[str, Callable[[], Figures]] = {
     "optimise_500k": lambda: optimise(500, 1000),
     "step_5k": lambda: write("step"),
     "3dm_5k": lambda: write("3dm"),
+    "3dm_5k_bare": lambda: write("3dm without render meshes"),
 }
 
 

@@ -18,8 +18,11 @@ from numpy.typing import NDArray
 from ..kernel.arrays import BoolArray, FloatArray, IntArray, dot, norm
 from ..kernel.spheres import minkowski, normals, signed_distance
 from ..kernel.tolerances import EPSILON, EXACT_BREP
-from .brep_layout import BrepLayout, Curve, Side, Surface, UnreadableError, parse_brep
-from .opennurbs import CRC, LINE_CURVE, PLANE_SURFACE, Checksum
+from .brep_layout import BrepLayout, Curve, Side, Surface, parse_brep
+from .chunks import CRC, Checksum
+from .cursor import UnreadableError
+from .mesh_audit import mesh_defects, mesh_distances
+from .opennurbs import LINE_CURVE, PLANE_SURFACE
 
 _SAMPLES = 9
 """Points per Bézier span of a trim and per edge, the ends included."""
@@ -49,6 +52,8 @@ class BrepErrors:
         From the ends of edges to the vertices.
     to_sphere : float
         From vertices, edges and surface to the sphere.
+    mesh_to_sphere : float
+        From the vertices of the render mesh to the sphere; 0 without one.
     is_counter_clockwise : bool
         Whether the loop runs counter-clockwise in (u, v).
     is_outward : bool
@@ -62,6 +67,7 @@ class BrepErrors:
     trim_to_vertex: float = np.inf
     edge_to_vertex: float = np.inf
     to_sphere: float = np.inf
+    mesh_to_sphere: float = np.inf
     is_counter_clockwise: bool = False
     is_outward: bool = False
 
@@ -75,7 +81,13 @@ class BrepErrors:
         float
             Distance, in model units.
         """
-        return max(self.trim_to_edge, self.trim_to_vertex, self.edge_to_vertex, self.to_sphere)
+        return max(
+            self.trim_to_edge,
+            self.trim_to_vertex,
+            self.edge_to_vertex,
+            self.to_sphere,
+            self.mesh_to_sphere,
+        )
 
     def reason(self) -> str:
         """
@@ -95,6 +107,7 @@ class BrepErrors:
             (self.trim_to_vertex, "the loop is open at a vertex"),
             (self.edge_to_vertex, "an edge does not end in its vertices"),
             (self.to_sphere, "the surface is not the sphere of the panel"),
+            (self.mesh_to_sphere, "the render mesh leaves the sphere"),
         ):
             if not distance <= allowed:
                 return f"{text}: {distance:.3g} where {allowed:.3g} is allowed"
@@ -190,6 +203,13 @@ def _measure(
             origins = samples.vertices.mean(1)
             rows = _fit_spheres(samples, origins)
         distances = _distances(samples, rows, origins)
+        on_meshes = np.zeros(len(streams))
+        if layout.mesh is not None:
+            on_meshes = mesh_distances(streams, layout.mesh, rows, origins)
+            for defect, is_bad in mesh_defects(streams, layout.mesh, rows, origins):
+                for i in np.flatnonzero(is_bad):
+                    defects[i] = defects[i] or defect
+        distances = np.column_stack([distances, on_meshes])
         turns = _signed_areas(samples.outlines)
         faces = _facing(samples, rows, origins) * np.sign(turns)
         if layout.is_reversed:

@@ -8,41 +8,30 @@ can be judged together.
 
 import struct
 from collections.abc import Generator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..kernel.arrays import BoolArray
+from .chunks import ANONYMOUS, CHUNK_HEADER, CLASS, CRC, SHORT_FLAG, Checksum
+from .cursor import Buffer, Cursor, UnreadableError
 from .opennurbs import (
-    ANONYMOUS,
     ARC_CURVE,
     BOUNDARY_TRIM,
     BREP,
-    CHUNK_HEADER,
-    CLASS,
-    CLASS_DATA,
-    CLASS_END,
-    CLASS_UUID,
-    CRC,
-    CRC_FLAG,
     LINE_CURVE,
     NURBS_CURVE,
     NURBS_SURFACE,
     OUTER_LOOP,
     PLANE_SURFACE,
-    SHORT_FLAG,
-    Checksum,
 )
+from .render_meshes import MESH, MESH_VERSION
 
 _OBJECT_TABLE = 0x10000013
 _OBJECT_RECORD = 0x20008070
 _FILE_HEADER = 32
-
-
-class UnreadableError(Exception):
-    """A stream that is not a sound `ON_Brep` of one face; the message says where."""
 
 
 class Curve(NamedTuple):
@@ -76,6 +65,15 @@ class Side(NamedTuple):
     edge_domain: int
 
 
+class FaceMesh(NamedTuple):
+    """A render mesh: its triangles and the buffers of points (both precisions) and normals."""
+
+    triangles: NDArray[np.unsignedinteger]
+    floats: Buffer
+    normals: Buffer
+    points: Buffer
+
+
 @dataclass(frozen=True)
 class BrepLayout:
     """
@@ -89,6 +87,8 @@ class BrepLayout:
         The sides in the order of the loop.
     is_reversed : bool
         Whether the face looks against the normal of its surface.
+    mesh : FaceMesh, optional
+        The render mesh.
     checksums : tuple of Checksum
         Its checksums.
     numbers : tuple of (int, int)
@@ -100,85 +100,10 @@ class BrepLayout:
     surface: Surface
     sides: tuple[Side, ...]
     is_reversed: bool
+    mesh: FaceMesh | None
     checksums: tuple[Checksum, ...]
     numbers: tuple[tuple[int, int], ...]
     fixed: BoolArray
-
-
-class _Cursor:
-    """Reads a stream from front to back and notes where numbers and checksums stand."""
-
-    def __init__(self, data: bytes) -> None:
-        self.data = data
-        self.position = 0
-        self.limit = len(data)
-        self.checksums: list[Checksum] = []
-        self.own: list[tuple[int, int]] = []
-        self.begin = 0
-        self.numbers: list[tuple[int, int]] = []
-
-    def take(self, count: int) -> int:
-        start = self.position
-        if not 0 <= count <= self.limit - start:
-            raise UnreadableError(f"the stream is cut short at byte {start}")
-        self.position += count
-        return start
-
-    def ints(self, count: int) -> tuple[int, ...]:
-        start = self.take(4 * count)
-        return struct.unpack_from(f"<{count}i", self.data, start)
-
-    def doubles(self, count: int) -> int:
-        start = self.take(8 * count)
-        self.numbers.append((start, count))
-        return start
-
-    def counted_ints(self) -> tuple[int, ...]:
-        return self.ints(self.ints(1)[0])
-
-    def expect(self, expected: bytes, name: str) -> None:
-        start = self.take(len(expected))
-        if self.data[start : self.position] != expected:
-            raise UnreadableError(f"{name} expected at byte {start}")
-
-    @contextmanager
-    def chunk(self, typecode: int) -> Generator[None]:
-        start = self.take(CHUNK_HEADER.size)
-        found, length = CHUNK_HEADER.unpack_from(self.data, start)
-        if found != typecode:
-            raise UnreadableError(f"chunk {typecode:#x} expected at byte {start}")
-        tail = CRC.size if typecode & CRC_FLAG else 0
-        if not tail <= length <= self.limit - self.position:
-            raise UnreadableError(f"the chunk at byte {start} reaches beyond its end")
-        outer_limit, outer_own = self.limit, [*self.own, (self.begin, start)]
-        self.limit = self.position + length - tail
-        self.own, self.begin = [], self.position
-        yield
-        if self.position != self.limit:
-            raise UnreadableError(f"the chunk at byte {start} has bytes left over")
-        if tail:
-            ranges = (*self.own, (self.begin, self.position))
-            self.checksums.append(Checksum(self.position, ranges))
-        self.limit, self.own = outer_limit, outer_own
-        self.take(tail)
-        self.begin = self.position
-
-    @contextmanager
-    def object(self) -> Generator[bytes]:
-        with self.chunk(CLASS):
-            with self.chunk(CLASS_UUID):
-                start = self.take(16)
-            with self.chunk(CLASS_DATA):
-                yield self.data[start : start + 16]
-            self.expect(CHUNK_HEADER.pack(CLASS_END, 0), "the end of an object")
-
-    @contextmanager
-    def table(self, minor: int = 0) -> Generator[int]:
-        with self.chunk(ANONYMOUS):
-            version = self.data[self.take(1)]
-            if version not in range(16, 17 + minor):
-                raise UnreadableError(f"a table of unknown version before {self.position}")
-            yield self.ints(1)[0]
 
 
 def read_brep_streams(data: bytes) -> list[bytes]:
@@ -240,7 +165,7 @@ def parse_brep(stream: bytes) -> BrepLayout:
         trims that are lines or rational quadratics in Bézier spans, edges that are lines or
         arcs, a plane or a rational biquadratic surface in Bézier spans.
     """
-    cursor = _Cursor(stream)
+    cursor = Cursor(stream)
     with cursor.object() as uuid:
         if uuid != BREP:
             raise UnreadableError("the stream is not a Brep")
@@ -254,9 +179,10 @@ def parse_brep(stream: bytes) -> BrepLayout:
         loop = _loop(cursor)
         is_reversed = _face(cursor)
         cursor.doubles(6)
-        for _ in range(2):
-            with cursor.chunk(ANONYMOUS):
-                cursor.expect(b"\0", "a face without mesh")
+        with cursor.chunk(ANONYMOUS):
+            mesh = _face_mesh(cursor)
+        with cursor.chunk(ANONYMOUS):
+            cursor.expect(b"\0", "a face without analysis mesh")
         cursor.ints(1)
         with cursor.chunk(ANONYMOUS):
             cursor.ints(2)
@@ -266,6 +192,10 @@ def parse_brep(stream: bytes) -> BrepLayout:
     fixed = np.ones(len(stream), bool)
     for start, count in cursor.numbers:
         fixed[start : start + 8 * count] = False
+    for buffer in () if mesh is None else mesh[1:]:
+        # Deflated bytes are compared: each stream is then judged on its own.
+        if not buffer.is_deflated:
+            fixed[buffer.start : buffer.stop] = False
     for checksum in cursor.checksums:
         fixed[checksum.place : checksum.place + CRC.size] = False
     try:
@@ -274,10 +204,10 @@ def parse_brep(stream: bytes) -> BrepLayout:
         raise UnreadableError("an index points at nothing") from error
     _check_chain(sides, trims, loop, len(surfaces))
     checksums, numbers = tuple(cursor.checksums), tuple(cursor.numbers)
-    return BrepLayout(surfaces[0], sides, is_reversed, checksums, numbers, fixed)
+    return BrepLayout(surfaces[0], sides, is_reversed, mesh, checksums, numbers, fixed)
 
 
-def _curves(cursor: _Cursor) -> list[Curve]:
+def _curves(cursor: Cursor) -> list[Curve]:
     curves: list[Curve] = []
     with cursor.table() as count:
         for _ in range(count):
@@ -287,7 +217,7 @@ def _curves(cursor: _Cursor) -> list[Curve]:
     return curves
 
 
-def _curve(cursor: _Cursor, uuid: bytes) -> Curve:
+def _curve(cursor: Cursor, uuid: bytes) -> Curve:
     version = cursor.take(1)
     if uuid in (LINE_CURVE, ARC_CURVE):
         count = 6 if uuid == LINE_CURVE else 28
@@ -313,7 +243,7 @@ def _curve(cursor: _Cursor, uuid: bytes) -> Curve:
     return Curve(uuid, ends, points, n_points, knots, n_knots)
 
 
-def _surfaces(cursor: _Cursor) -> list[Surface]:
+def _surfaces(cursor: Cursor) -> list[Surface]:
     surfaces: list[Surface] = []
     with cursor.table() as count:
         for _ in range(count):
@@ -324,7 +254,7 @@ def _surfaces(cursor: _Cursor) -> list[Surface]:
     return surfaces
 
 
-def _surface(cursor: _Cursor, uuid: bytes) -> Surface:
+def _surface(cursor: Cursor, uuid: bytes) -> Surface:
     if uuid == PLANE_SURFACE:
         points = cursor.doubles(16)
         domains = cursor.doubles(8)
@@ -344,7 +274,7 @@ def _surface(cursor: _Cursor, uuid: bytes) -> Surface:
     return Surface(uuid, (places[0], places[1]), cursor.doubles(4 * n_u * n_v), (n_u, n_v))
 
 
-def _vertices(cursor: _Cursor) -> list[int]:
+def _vertices(cursor: Cursor) -> list[int]:
     places: list[int] = []
     with cursor.table() as count:
         for _ in range(count):
@@ -364,7 +294,7 @@ class _Use(NamedTuple):
     domain: int
 
 
-def _edges(cursor: _Cursor) -> list[_Use]:
+def _edges(cursor: Cursor) -> list[_Use]:
     edges: list[_Use] = []
     with cursor.table() as count:
         for _ in range(count):
@@ -379,7 +309,7 @@ def _edges(cursor: _Cursor) -> list[_Use]:
     return edges
 
 
-def _trims(cursor: _Cursor) -> list[_Use]:
+def _trims(cursor: Cursor) -> list[_Use]:
     trims: list[_Use] = []
     with cursor.table() as count:
         for _ in range(count):
@@ -395,7 +325,7 @@ def _trims(cursor: _Cursor) -> list[_Use]:
     return trims
 
 
-def _loop(cursor: _Cursor) -> tuple[int, ...]:
+def _loop(cursor: Cursor) -> tuple[int, ...]:
     with cursor.table() as count:
         if count != 1:
             raise UnreadableError(f"{count} loops instead of one")
@@ -407,7 +337,7 @@ def _loop(cursor: _Cursor) -> tuple[int, ...]:
     return trims
 
 
-def _face(cursor: _Cursor) -> bool:
+def _face(cursor: Cursor) -> bool:
     with cursor.chunk(ANONYMOUS):
         version = cursor.data[cursor.take(1)]
         (count,) = cursor.ints(1)
@@ -422,6 +352,41 @@ def _face(cursor: _Cursor) -> bool:
         if version == 0x12:
             cursor.expect(b"\0", "a face without colour")
     return bool(is_reversed)
+
+
+def _face_mesh(cursor: Cursor) -> FaceMesh | None:
+    """Follow ON_Mesh::Read; every part that render meshes of panels lack must be empty."""
+    if cursor.data[cursor.take(1)] == 0:
+        return None
+    with cursor.object() as uuid:
+        if uuid != MESH:
+            raise UnreadableError("the render mesh is no mesh")
+        cursor.expect(MESH_VERSION, "mesh version 3.8")
+        n_points, n_faces = cursor.ints(2)
+        cursor.take(64 + 16 + 64 + 4)
+        cursor.expect(bytes(5), "a mesh without parameters and curvatures")
+        (size,) = cursor.ints(1)
+        if size not in (1, 2, 4):
+            raise UnreadableError(f"vertex ids of {size} bytes in the render mesh")
+        place = cursor.take(4 * size * n_faces)
+        faces = np.frombuffer(cursor.data, f"<u{size}", 4 * n_faces, place).reshape(-1, 4)
+        floats, normals = cursor.buffer(12 * n_points), cursor.buffer(12 * n_points)
+        for _ in range(3):
+            cursor.buffer(0)
+        cursor.take(4 + 16)
+        cursor.buffer(0)
+        with cursor.chunk(ANONYMOUS):
+            cursor.take(160)
+        cursor.take(3)
+        cursor.expect(b"\0\1", "a mesh without ngons, with precise vertices")
+        with cursor.chunk(ANONYMOUS):
+            if cursor.ints(3) != (1, 0, n_points):
+                raise UnreadableError("the render mesh has another number of precise vertices")
+            points = cursor.buffer(24 * n_points)
+        cursor.take(48)
+    if n_faces < 1 or faces.max() >= n_points or (faces[:, 2] != faces[:, 3]).any():
+        raise UnreadableError("the render mesh is not made of triangles of its vertices")
+    return FaceMesh(faces[:, :3], floats, normals, points)
 
 
 def _side(

@@ -19,12 +19,9 @@ from .off import format_off, read_off
 from .ply import format_ply, read_ply
 from .polygons import Polygons, to_mesh
 from .rhino_meshes import read_3dm, write_3dm
+from .rhino_surfaces import GridSize
 from .stl import format_stl, read_stl
 
-_LAYERED_READERS: Final[dict[str, Callable[[bytes, str], Polygons]]] = {
-    ".obj": read_obj,
-    ".3dm": read_3dm,
-}
 _READERS: Final[dict[str, Callable[[bytes], Polygons]]] = {
     ".off": read_off,
     ".ply": read_ply,
@@ -40,9 +37,13 @@ SUFFIXES: Final = (*_FORMATTERS, ".3dm")
 """The formats of mesh files, by suffix; capitals do."""
 
 
-def read_mesh(path: str | os.PathLike[str], layer: str = "") -> Mesh:
+def read_mesh(
+    path: str | os.PathLike[str], layer: str = "", n_u: int = 24, n_v: int = 24
+) -> Mesh:
     """
     Read a mesh with faces of mixed degree from an OBJ, OFF, PLY, STL or Rhino .3dm file.
+
+    Surfaces of a .3dm are read as grids of quads whose vertices lie exactly on them.
 
     Parameters
     ----------
@@ -52,6 +53,10 @@ def read_mesh(path: str | os.PathLike[str], layer: str = "") -> Mesh:
         Read only a part of the file. OBJ: the groups and objects whose name starts so. .3dm:
         the layer of this full path (``Roof::Panels``) with its sublayers. The other formats
         have no layers. Empty reads all.
+    n_u, n_v : int
+        Quads along u and v of each face where a .3dm holds surfaces or polysurfaces and no
+        meshes. Faces trimmed by other than four edges take even numbers; faces of a
+        polysurface meet where the numbers along their common edge agree.
 
     Returns
     -------
@@ -68,12 +73,16 @@ def read_mesh(path: str | os.PathLike[str], layer: str = "") -> Mesh:
     """
     source = Path(path)
     suffix = _suffix(source, "read")
-    if layer and suffix not in _LAYERED_READERS:
+    if layer and suffix in _READERS:
         raise InputError(f"cannot read {source}: {suffix} files have no layers; drop {layer!r}")
+    if min(n_u, n_v) < 1:
+        raise InputError(f"a grid of {n_u} by {n_v} quads has no faces; ask for at least 1")
     data = _read_bytes(source)
     try:
-        if suffix in _LAYERED_READERS:
-            return to_mesh(_LAYERED_READERS[suffix](data, layer))
+        if suffix == ".3dm":
+            return to_mesh(read_3dm(data, layer, GridSize(n_u, n_v)))
+        if suffix == ".obj":
+            return to_mesh(read_obj(data, layer))
         return to_mesh(_READERS[suffix](data))
     except InputError as error:
         raise InputError(f"cannot read {source}: {error}") from error

@@ -3,17 +3,10 @@ Exact trimmed spherical faces as openNURBS objects, written byte by byte.
 
 rhino3dm can read any Brep but builds only simple ones; it decodes the streams made here. The
 layout is that of openNURBS, which is public (`opennurbs_3dm.h` for type codes,
-`opennurbs_archive.cpp` for chunks, `opennurbs_brep_io.cpp`, `opennurbs_arccurve.cpp`,
-`opennurbs_linecurve.cpp`, `opennurbs_nurbscurve.cpp`, `opennurbs_nurbssurface.cpp`,
-`opennurbs_planesurface.cpp`). All numbers are little-endian: i = int32, q = int64, d = float64.
-
-A chunk is ``i type, q length`` and a body of that length. Where bit 15 of the type is set, the
-body ends in the CRC-32 of those of its bytes that belong to no inner chunk; where bit 31 is
-set, there is no body. An object is::
-
-    CLASS { CLASS_UUID { 16 bytes, crc }  CLASS_DATA { the object, crc }  CLASS_END }
-
-and begins with one byte, 16 x major + minor version:
+`opennurbs_brep_io.cpp`, `opennurbs_arccurve.cpp`, `opennurbs_linecurve.cpp`,
+`opennurbs_nurbscurve.cpp`, `opennurbs_nurbssurface.cpp`, `opennurbs_planesurface.cpp`); chunks
+and objects are those of `fabrication.chunks`. An object begins with one byte, 16 x major +
+minor version:
 
 - `ON_LineCurve` 1.0: from ddd, to ddd, domain dd, i dimension.
 - `ON_ArcCurve` 1.0: plane (origin, x, y, z axes, equation: 16 d), d radius, three points of the
@@ -25,8 +18,8 @@ and begins with one byte, 16 x major + minor version:
 - `ON_PlaneSurface` 1.1: plane 16 d, domains of u and v, extents of u and v (dd each).
 - `ON_Brep` 3.3: anonymous chunks with version byte and count: curves in (u,v), curves in space
   and surfaces (each ``i 1`` and the object), vertices, edges, trims, loops, faces; then the
-  box 6 d, chunks of render and analysis meshes (one byte 0 per face), i solid, a chunk with the
-  region topology (none). The records are in `_brep`.
+  box 6 d, chunks of render and analysis meshes (per face one byte 0, or 1 and the mesh),
+  i solid, a chunk with the region topology (none). The records are in `_brep`.
 
 Knot vectors of openNURBS lack the first and last knot of other notations.
 
@@ -39,12 +32,9 @@ units, N along x_u × x_v, and at A = 0 the plane itself. Circles on
 the sphere are circular arcs in (u, v): trims are exact rational quadratics.
 """
 
-import math
-import struct
-import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Final, NamedTuple, TypeAlias
+from typing import Final
 
 import numpy as np
 
@@ -52,15 +42,19 @@ from ..kernel.arcs import ArcCircles, Arcs, arc_circles, arc_lengths, arc_points
 from ..kernel.arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..kernel.panels import Panels, panel_arcs
 from ..kernel.spheres import normals, project
-
-CLASS: Final = 0x00027FFA
-CLASS_UUID: Final = 0x0002FFFB
-CLASS_DATA: Final = 0x0002FFFC
-CLASS_END: Final = 0x80027FFF
-ANONYMOUS: Final = 0x40008000
-
-CRC_FLAG: Final = 0x8000
-SHORT_FLAG: Final = 0x80000000
+from .chunks import (
+    ANONYMOUS,
+    Chunk,
+    Piece,
+    Slot,
+    assemble,
+    class_object,
+    doubles,
+    fill,
+    ints,
+    table,
+)
+from .render_meshes import RenderMeshes, mesh_numbers, mesh_object
 
 ARC_CURVE: Final = bytes.fromhex("2abe33cfb409d411bffb0010830122f0")
 LINE_CURVE: Final = bytes.fromhex("dbd4d74e47e9d311bfe50010830122f0")
@@ -69,8 +63,6 @@ NURBS_SURFACE: Final = bytes.fromhex("ded4d74e47e9d311bfe50010830122f0")
 PLANE_SURFACE: Final = bytes.fromhex("dfd4d74e47e9d311bfe50010830122f0")
 BREP: Final = bytes.fromhex("c5dbb56060e6d311bfe40010830122f0")
 
-CHUNK_HEADER: Final = struct.Struct("<Iq")
-CRC: Final = struct.Struct("<I")
 BOUNDARY_TRIM: Final = 1
 OUTER_LOOP: Final = 1
 
@@ -80,73 +72,6 @@ _MARGIN = 0.02
 _ONE_SPAN_BULGE = 0.5
 _ONE_SPAN_WEIGHT = 0.25
 """Arcs that bulge more, and patches with a smaller middle weight, are cut into two spans."""
-
-
-class Checksum(NamedTuple):
-    """
-    Place of a CRC-32 in a stream and the ranges (start, stop) of bytes that it covers.
-
-    Attributes
-    ----------
-    place : int
-        Where its four bytes begin.
-    ranges : tuple of (int, int)
-        The bytes of its chunk that are in no inner chunk.
-    """
-
-    place: int
-    ranges: tuple[tuple[int, int], ...]
-
-    def compute(self, stream: memoryview) -> int:
-        """
-        The checksum of a stream.
-
-        Parameters
-        ----------
-        stream : memoryview
-            The bytes.
-
-        Returns
-        -------
-        int
-            CRC-32 of the ranges, one after the other.
-        """
-        value = 0
-        for start, stop in self.ranges:
-            value = zlib.crc32(stream[start:stop], value)
-        return value
-
-
-class _Slot(NamedTuple):
-    """Float64 numbers filled in for each panel: row `row` of the named array."""
-
-    name: str
-    row: int
-    size: int
-
-
-class _Chunk(NamedTuple):
-    """A typed piece of a stream."""
-
-    typecode: int
-    body: "tuple[_Piece, ...]"
-
-
-_Piece: TypeAlias = bytes | _Slot | _Chunk
-
-
-@dataclass(frozen=True)
-class _Template:
-    """
-    A stream whose numbers are still zero.
-
-    `slots` pairs each slot with its place, `checksums` each checksum's place with the ranges
-    of bytes that it covers.
-    """
-
-    data: bytes
-    slots: tuple[tuple[_Slot, int], ...]
-    checksums: tuple[Checksum, ...]
 
 
 @dataclass(frozen=True)
@@ -169,7 +94,7 @@ class _Charts:
     reaches: FloatArray
 
 
-def brep_streams(panels: Panels) -> list[bytes]:
+def brep_streams(panels: Panels, meshes: RenderMeshes | None = None) -> list[bytes]:
     """
     Outer faces of panels, each as the stream of one `ON_Brep`.
 
@@ -177,6 +102,8 @@ def brep_streams(panels: Panels) -> list[bytes]:
     ----------
     panels : Panels
         P panels, of spheres and planes.
+    meshes : RenderMeshes, optional
+        Their render meshes, for viewers that cannot make their own.
 
     Returns
     -------
@@ -193,22 +120,65 @@ def brep_streams(panels: Panels) -> list[bytes]:
     lengths = arc_lengths(arcs)
     points = panels.corners + panels.origins[panels.corner_panels]
     result = [b""] * panels.n_panels
-    for degree in np.unique(panels.degrees):
+    for group, spans, kind in _groups(panels, arcs, meshes):
+        corners = group.corner_ids
+        numbers = {
+            "vertex": points[corners],
+            "edge": lengths[corners],
+            "curve": curves[corners],
+            **_patch_numbers(group, spans),
+        }
+        face_mesh: tuple[Piece, ...] = (b"\0",)
+        if meshes is not None:
+            numbers |= mesh_numbers(meshes, group.ids)
+            face_mesh = (b"\1", mesh_object(meshes.triangles[kind]))
+        template = assemble(_brep(int(corners.shape[1]), spans, face_mesh))
+        for panel, stream in zip(group.ids, fill(template, numbers), strict=True):
+            result[panel] = stream
+    return result
+
+
+def face_streams(panels: Panels) -> tuple[list[bytes], list[bytes]]:
+    """
+    Surfaces and trims of the outer faces, to be joined.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels with H corners.
+
+    Returns
+    -------
+    surfaces : list of bytes
+        P objects, in model coordinates.
+    trims : list of bytes
+        H curves over [-1, 1] in (u, v).
+    """
+    surfaces, trims = [b""] * panels.n_panels, [b""] * len(panels.corners)
+    for group, spans, _ in _groups(panels, panel_arcs(panels), None):
+        numbers = _patch_numbers(group, spans)
+        filled = fill(assemble(_surface(spans)), numbers)
+        for panel, stream in zip(group.ids, filled, strict=True):
+            surfaces[panel] = stream
+        for side, corners in enumerate(group.corner_ids.T):
+            filled = fill(assemble(_trim_curve(side, spans)), numbers)
+            for corner, stream in zip(corners, filled, strict=True):
+                trims[corner] = stream
+    return surfaces, trims
+
+
+def _groups(
+    panels: Panels, arcs: Arcs, meshes: RenderMeshes | None
+) -> Iterator[tuple[_Charts, int, int]]:
+    """Panels whose streams have one layout, their spans and the kind of their meshes."""
+    degrees: list[int] = np.unique(panels.degrees).tolist()
+    for degree in degrees:
         charts = _charts(panels, arcs, np.flatnonzero(panels.degrees == degree))
         spans = _spans(charts)
-        for count in np.unique(spans):
-            group = _take(charts, spans == count)
-            corners = group.corner_ids
-            numbers = {
-                "vertex": points[corners],
-                "edge": lengths[corners],
-                "curve": curves[corners],
-                **_patch_numbers(group, int(count)),
-            }
-            streams = _fill(_assemble(_brep(int(degree), int(count))), numbers)
-            for panel, stream in zip(group.ids, streams, strict=True):
-                result[panel] = stream
-    return result
+        kinds = np.zeros_like(spans) if meshes is None else meshes.kinds[charts.ids]
+        pairs: list[list[int]] = np.unique(np.stack([spans, kinds], 1), axis=0).tolist()
+        for count, kind in pairs:
+            yield _take(charts, (spans == count) & (kinds == kind)), count, kind
 
 
 def edge_streams(panels: Panels) -> list[bytes]:
@@ -231,8 +201,8 @@ def edge_streams(panels: Panels) -> list[bytes]:
     result = [b""] * len(records)
     for is_straight in np.unique(is_line).tolist():
         ids = np.flatnonzero(is_line == is_straight)
-        template = _assemble(_edge_curve(0, is_straight=is_straight))
-        streams = _fill(template, {"curve": records[ids, None]})
+        template = assemble(_edge_curve(0, is_straight=is_straight))
+        streams = fill(template, {"curve": records[ids, None]})
         for edge, stream in zip(ids, streams, strict=True):
             result[edge] = stream
     return result
@@ -240,116 +210,55 @@ def edge_streams(panels: Panels) -> list[bytes]:
 
 # Bytes
 
-
-def _assemble(piece: _Piece) -> _Template:
-    """Lay out a piece: constant bytes, places of numbers, places of checksums."""
-    if isinstance(piece, bytes):
-        return _Template(piece, (), ())
-    if isinstance(piece, _Slot):
-        return _Template(bytes(8 * piece.size), ((piece, 0),), ())
-    data = bytearray(CHUNK_HEADER.size)
-    slots: list[tuple[_Slot, int]] = []
-    checksums: list[Checksum] = []
-    own: list[tuple[int, int]] = []
-    for inner_piece in piece.body:
-        inner, here = _assemble(inner_piece), len(data)
-        slots += [(slot, here + place) for slot, place in inner.slots]
-        checksums += [_shifted(checksum, here) for checksum in inner.checksums]
-        data += inner.data
-        if not isinstance(inner_piece, _Chunk):
-            own.append((here, len(data)))
-    if piece.typecode & CRC_FLAG:
-        checksums.append(Checksum(len(data), tuple(own)))
-        data += bytes(CRC.size)
-    CHUNK_HEADER.pack_into(data, 0, piece.typecode, len(data) - CHUNK_HEADER.size)
-    return _Template(bytes(data), tuple(slots), tuple(checksums))
+_EMPTY_BOX = doubles(1, 0, 0, -1, 0, 0)
 
 
-def _shifted(checksum: Checksum, by: int) -> Checksum:
-    ranges = tuple((start + by, stop + by) for start, stop in checksum.ranges)
-    return Checksum(checksum.place + by, ranges)
-
-
-def _fill(template: _Template, numbers: Mapping[str, FloatArray]) -> Iterator[bytes]:
-    """Streams of a template, one per row of the arrays (n, count of slots, ...)."""
-    rows = len(next(iter(numbers.values())))
-    streams = np.tile(np.frombuffer(template.data, np.uint8), (rows, 1))
-    for slot, place in template.slots:
-        values = numbers[slot.name][:, slot.row]
-        values = values.reshape(rows, math.prod(values.shape[1:]))[:, : slot.size]
-        raw = np.ascontiguousarray(values, "<f8").view(np.uint8)
-        streams[:, place : place + 8 * slot.size] = raw
-    for row in streams:
-        stream = bytearray(row.tobytes())
-        with memoryview(stream) as view:
-            for checksum in template.checksums:
-                CRC.pack_into(stream, checksum.place, checksum.compute(view))
-        yield bytes(stream)
-
-
-def _ints(*values: int) -> bytes:
-    return struct.pack(f"<{len(values)}i", *values)
-
-
-def _doubles(*values: float) -> bytes:
-    return struct.pack(f"<{len(values)}d", *values)
-
-
-def _object(uuid: bytes, *body: _Piece) -> _Chunk:
-    name = _Chunk(CLASS_UUID, (uuid,))
-    end = CHUNK_HEADER.pack(CLASS_END, 0)
-    return _Chunk(CLASS, (name, _Chunk(CLASS_DATA, body), end))
-
-
-_EMPTY_BOX = _doubles(1, 0, 0, -1, 0, 0)
-
-
-def _edge_curve(edge: int, *, is_straight: bool) -> _Chunk:
+def _edge_curve(edge: int, *, is_straight: bool) -> Chunk:
     if is_straight:
-        return _object(LINE_CURVE, b"\x10", _Slot("curve", edge, 8), _ints(3))
-    return _object(ARC_CURVE, b"\x10", _Slot("curve", edge, 30), _ints(3))
+        return class_object(LINE_CURVE, b"\x10", Slot("curve", edge, 8), ints(3))
+    return class_object(ARC_CURVE, b"\x10", Slot("curve", edge, 30), ints(3))
 
 
-def _trim_curve(trim: int, spans: int) -> _Chunk:
+def _trim_curve(trim: int, spans: int) -> Chunk:
     if spans == 0:
-        return _object(LINE_CURVE, b"\x10", _Slot("trim", trim, 8), _ints(2))
+        return class_object(LINE_CURVE, b"\x10", Slot("trim", trim, 8), ints(2))
     count = 2 * spans + 1
-    knots = _doubles(*np.repeat(np.linspace(-1, 1, spans + 1), 2))
-    head = _ints(2, 1, 3, count, 0, 0) + _EMPTY_BOX
-    points = _Slot("trim", trim, 3 * count)
-    return _object(
-        NURBS_CURVE, b"\x11", head, _ints(count + 1), knots, _ints(count), points, b"\0"
+    knots = doubles(*np.repeat(np.linspace(-1, 1, spans + 1), 2))
+    head = ints(2, 1, 3, count, 0, 0) + _EMPTY_BOX
+    points = Slot("trim", trim, 3 * count)
+    return class_object(
+        NURBS_CURVE, b"\x11", head, ints(count + 1), knots, ints(count), points, b"\0"
     )
 
 
-def _surface(spans: int) -> _Chunk:
+def _surface(spans: int) -> Chunk:
     if spans == 0:
-        return _object(PLANE_SURFACE, b"\x11", _Slot("patch", 0, 24))
+        return class_object(PLANE_SURFACE, b"\x11", Slot("patch", 0, 24))
     count = 2 * spans + 1
-    head = _ints(3, 1, 3, 3, count, count, 0, 0) + _EMPTY_BOX
-    knots_u, knots_v = _Slot("knots", 0, count + 1), _Slot("knots", 1, count + 1)
-    points = _Slot("patch", 0, 4 * count * count)
-    return _object(
-        NURBS_SURFACE, b"\x10", head, _ints(count + 1), knots_u, _ints(count + 1), knots_v,
-        _ints(count * count), points,
+    head = ints(3, 1, 3, 3, count, count, 0, 0) + _EMPTY_BOX
+    knots_u, knots_v = Slot("knots", 0, count + 1), Slot("knots", 1, count + 1)
+    points = Slot("patch", 0, 4 * count * count)
+    return class_object(
+        NURBS_SURFACE, b"\x10", head, ints(count + 1), knots_u, ints(count + 1), knots_v,
+        ints(count * count), points,
     )  # fmt: skip
 
 
-def _brep(k: int, spans: int) -> _Chunk:
+def _brep(k: int, spans: int, face_mesh: tuple[Piece, ...]) -> Chunk:
     """A Brep of one face with k edges; `spans` of its trims and surface, 0 for a plane."""
-    one = _ints(1)
+    one = ints(1)
     sides = range(k)
     trims = [(one, _trim_curve(i, spans)) for i in sides]
     curves = [(one, _edge_curve(i, is_straight=spans == 0)) for i in sides]
     # index, point, edges that meet here, tolerance
     vertices = [
-        (_ints(i), _Slot("vertex", i, 3), _ints(2, (i - 1) % k, i), _doubles(0)) for i in sides
+        (ints(i), Slot("vertex", i, 3), ints(2, (i - 1) % k, i), doubles(0)) for i in sides
     ]
     # index, curve, reversed, domain of the curve, vertices, trims, tolerance, domain
     edges = [
         (
-            _ints(i, i, 0), _doubles(0), _Slot("edge", i, 1), _ints(i, (i + 1) % k, 1, i),
-            _doubles(0, 0), _Slot("edge", i, 1),
+            ints(i, i, 0), doubles(0), Slot("edge", i, 1), ints(i, (i + 1) % k, 1, i),
+            doubles(0, 0), Slot("edge", i, 1),
         )
         for i in sides
     ]  # fmt: skip
@@ -357,26 +266,21 @@ def _brep(k: int, spans: int) -> _Chunk:
     # domain, flags of the proxy, legacy tolerances
     uses = [
         (
-            _ints(i, i) + _doubles(-1, 1) + _ints(i, i, (i + 1) % k, 0, BOUNDARY_TRIM, 0, 0)
-            + _doubles(0, 0, -1, 1) + bytes(32) + _doubles(0, 0),
+            ints(i, i) + doubles(-1, 1) + ints(i, i, (i + 1) % k, 0, BOUNDARY_TRIM, 0, 0)
+            + doubles(0, 0, -1, 1) + bytes(32) + doubles(0, 0),
         )
         for i in sides
     ]  # fmt: skip
     # index, trims, type, face
-    loop = _ints(0, k, *sides, OUTER_LOOP, 0)
+    loop = ints(0, k, *sides, OUTER_LOOP, 0)
     # index, loops, surface, reversed, material channel; then the face's uuid
-    face = _ints(0, 1, 0, 0, 0, 0) + bytes(16)
-    return _object(
-        BREP, b"\x33", _table(0, trims), _table(0, curves), _table(0, [(one, _surface(spans))]),
-        _table(0, vertices), _table(0, edges), _table(0, uses), _table(0, [(loop,)]),
-        _table(1, [(face,)]), _Slot("box", 0, 6), _Chunk(ANONYMOUS, (b"\0",)),
-        _Chunk(ANONYMOUS, (b"\0",)), _ints(0), _Chunk(ANONYMOUS, (_ints(1, 1), b"\0")),
+    face = ints(0, 1, 0, 0, 0, 0) + bytes(16)
+    return class_object(
+        BREP, b"\x33", table(0, trims), table(0, curves), table(0, [(one, _surface(spans))]),
+        table(0, vertices), table(0, edges), table(0, uses), table(0, [(loop,)]),
+        table(1, [(face,)]), Slot("box", 0, 6), Chunk(ANONYMOUS, face_mesh),
+        Chunk(ANONYMOUS, (b"\0",)), ints(0), Chunk(ANONYMOUS, (ints(1, 1), b"\0")),
     )  # fmt: skip
-
-
-def _table(minor: int, records: "Sequence[tuple[_Piece, ...]]") -> _Chunk:
-    pieces = (piece for record in records for piece in record)
-    return _Chunk(ANONYMOUS, (bytes([16 + minor]), _ints(len(records)), *pieces))
 
 
 # Geometry

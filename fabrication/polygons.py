@@ -1,5 +1,6 @@
 """What a mesh file says: polygons, before they are known to be a mesh."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -96,6 +97,52 @@ def _raise_at_line(polygons: Polygons) -> None:
             raise InputError(
                 f"line {line}: the face has a repeated corner; remove the duplicate"
             )
+
+
+def join_polygons(parts: Sequence[Polygons]) -> Polygons:
+    """
+    Polygons of several lists in one, without their lines.
+
+    Parameters
+    ----------
+    parts : sequence of Polygons
+        At least one list.
+
+    Returns
+    -------
+    Polygons
+        All vertices and faces, one list after the other.
+    """
+    starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    return Polygons(
+        np.concatenate([part.vertices for part in parts]),
+        np.concatenate([part.corners + k for part, k in zip(parts, starts, strict=False)]),
+        np.concatenate([part.degrees for part in parts]),
+    )
+
+
+def drop_repeats(polygons: Polygons) -> Polygons:
+    """
+    Polygons without corners that repeat the one before, and without faces of no area left.
+
+    Parameters
+    ----------
+    polygons : Polygons
+        Polygons whose coincident vertices are one.
+
+    Returns
+    -------
+    Polygons
+        The same vertices; a quad with a side of no length is a triangle.
+    """
+    owners = np.repeat(np.arange(len(polygons.degrees)), polygons.degrees)
+    ends = np.cumsum(polygons.degrees)
+    before = np.arange(len(owners)) - 1
+    before[ends - polygons.degrees] = ends - 1
+    keep = polygons.corners != polygons.corners[before]
+    degrees = np.bincount(owners[keep], minlength=len(polygons.degrees))
+    keep &= (degrees > 2)[owners]
+    return Polygons(polygons.vertices, polygons.corners[keep], degrees[degrees > 2])
 
 
 def drop_unused(polygons: Polygons) -> Polygons:

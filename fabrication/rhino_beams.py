@@ -5,21 +5,45 @@ An extrusion is what a flat piece is before its ends are mitred: the contour in 
 the thickness, whose ends lie on the node axes. The mitres are in the STEP file.
 """
 
-from typing import Any, TypeAlias
-
 import numpy as np
 
 from ..kernel.arcs import ArcCircles, Arcs, arc_circles
 from ..kernel.arrays import FloatArray
 from ..kernel.beams import Beams, beam_lengths, node_axis_segments, section_arcs
+from ..kernel.colors import BEAM
 from ..kernel.errors import InputError
 from ..kernel.support import node_name
+from .rhino_model import RhinoModel, Untyped, add_layer, object_attributes
 
-# What comes from rhino3dm is not typed: its stub lacks setters, indices and overloads.
-_Untyped: TypeAlias = Any
+_BLACK = (0, 0, 0)
 
 
-def beam_extrusions(library: _Untyped, beams: Beams) -> list[_Untyped]:
+def add_beams(model: RhinoModel, beams: Beams, units: str) -> None:
+    """
+    Add beams on the layer ``Beams`` and the node axes on the layer ``Axes``.
+
+    Parameters
+    ----------
+    model : RhinoModel
+        The model.
+    beams : Beams
+        The beams.
+    units : str
+        Model units.
+    """
+    place = add_layer(model, "Beams", BEAM)
+    solids, texts = beam_extrusions(model.library, beams), beam_text(beams, units)
+    for name, solid, text in zip(beams.annuli.ids, solids, texts, strict=True):
+        attributes = object_attributes(model, name, "beam", place)
+        for key, value in text.items():
+            attributes.SetUserString(key, value)
+        model.file.Objects.AddExtrusion(solid, attributes)
+    place = add_layer(model, "Axes", _BLACK)
+    for name, line in axis_lines(model.library, beams):
+        model.file.Objects.AddCurve(line, object_attributes(model, name, "axis", place))
+
+
+def beam_extrusions(library: Untyped, beams: Beams) -> list[Untyped]:
     """
     A capped extrusion per beam.
 
@@ -43,7 +67,7 @@ def beam_extrusions(library: _Untyped, beams: Beams) -> list[_Untyped]:
     outer, inner = section_arcs(beams)
     circles = arc_circles(outer), arc_circles(inner)
     lifts = beams.annuli.origins - beams.annuli.frames[:, 2] * beams.thickness / 2
-    result: list[_Untyped] = []
+    result: list[Untyped] = []
     refused: list[str] = []
     for i, name in enumerate(beams.annuli.ids):
         lift = lifts[i]
@@ -71,8 +95,8 @@ def beam_extrusions(library: _Untyped, beams: Beams) -> list[_Untyped]:
 
 
 def _curve(
-    library: _Untyped, arcs: Arcs, circles: ArcCircles, i: int, lift: FloatArray
-) -> _Untyped:
+    library: Untyped, arcs: Arcs, circles: ArcCircles, i: int, lift: FloatArray
+) -> Untyped:
     """Arc or line i, by its circle: three points would lose the radius of a flat arc."""
     start, end = arcs.starts[i] + lift, arcs.ends[i] + lift
     radius = float(circles.radii[i])
@@ -137,7 +161,7 @@ def _radius(value: float) -> str:
     return f"{value:.12g}" if np.isfinite(value) else "straight"
 
 
-def axis_lines(library: _Untyped, beams: Beams) -> list[tuple[str, _Untyped]]:
+def axis_lines(library: Untyped, beams: Beams) -> list[tuple[str, Untyped]]:
     """
     The node axes between the outer and the inner corners of the beams.
 

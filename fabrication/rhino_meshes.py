@@ -1,4 +1,4 @@
-"""Meshes with ngons in Rhino .3dm files."""
+"""Meshes with ngons, and grids on surfaces, in Rhino .3dm files."""
 
 import base64
 import struct
@@ -16,11 +16,14 @@ from ..kernel.arrays import FloatArray, IntArray
 from ..kernel.errors import InputError
 from ..kernel.mesh import Mesh
 from ..kernel.tolerances import COINCIDENT
-from .polygons import Polygons, drop_unused, mean_side, weld
+from .polygons import Polygons, drop_repeats, drop_unused, join_polygons, mean_side, weld
+from .rhino_surfaces import SURFACES, GridSize, sample_object
 from .triangles import fan_triangles
 
 RhinoObject: TypeAlias = Any
 """An object of rhino3dm, whose stubs lack iteration and half of the methods."""
+
+_GRID = GridSize(24, 24)
 
 _CHUNK = struct.Struct("<Iq")
 _CLASS, _CLASS_DATA, _ANONYMOUS = 0x00027FFA, 0x0002FFFC, 0x40008000
@@ -28,17 +31,19 @@ _CLASS_DATA_START = 44
 """After the head of the class chunk (12 bytes) and the chunk of its id (12 + 16 + 4)."""
 
 
-def read_3dm(data: bytes, layer: str = "") -> Polygons:
+def read_3dm(data: bytes, layer: str = "", size: GridSize = _GRID) -> Polygons:
     """
-    Polygons of all the meshes in a .3dm file, joined.
+    Polygons of all the meshes in a .3dm file, joined; without meshes, grids on its surfaces.
 
     Parameters
     ----------
     data : bytes
         Content of the file.
     layer : str
-        Full path of a layer, such as ``Roof::Panels``: read only the meshes on it and on its
-        sublayers; empty reads all. Meshes inside block definitions are never read.
+        Full path of a layer, such as ``Roof::Panels``: read only what is on it and on its
+        sublayers; empty reads all. Objects inside block definitions are never read.
+    size : GridSize
+        Quads along u and v of each face of surfaces and polysurfaces.
 
     Returns
     -------
@@ -51,7 +56,8 @@ def read_3dm(data: bytes, layer: str = "") -> Polygons:
     Raises
     ------
     InputError
-        If the file cannot be read or holds no meshes there; the message says what it holds.
+        If the file cannot be read or holds neither meshes nor surfaces there; the message says
+        what it holds.
     """
     rhino = _rhino3dm()
     model = rhino.File3dm.FromByteArray(data)
@@ -59,16 +65,19 @@ def read_3dm(data: bytes, layer: str = "") -> Polygons:
         raise InputError("Rhino cannot read the file: it is damaged or no .3dm; save it again")
     objects = _objects_on(model, layer)
     meshes = [each for each in objects if isinstance(each, rhino.Mesh) and each.Faces.Count]
-    if not meshes:
-        kinds = Counter(type(each).__name__ for each in objects)
-        held = ", ".join(f"{count} {kind}" for kind, count in kinds.items()) or "no objects"
-        where = f"layer {layer!r}" if layer else "the file"
-        raise InputError(
-            f"{where} holds no meshes, but {held}; mesh them in Rhino (Mesh, QuadRemesh or "
-            "ExtractRenderMesh) and save"
-        )
-    return _join(
-        [_read_mesh(_class_data(base64.b64decode(each.Encode()["data"]))) for each in meshes]
+    if meshes:
+        encoded = (base64.b64decode(each.Encode()["data"]) for each in meshes)
+        return _weld([_read_mesh(_class_data(each)) for each in encoded])
+    surfaces = [each for each in objects if type(each).__name__ in SURFACES]
+    if surfaces:
+        grids = (grid for each in surfaces for grid in sample_object(each, size))
+        return drop_repeats(_weld(list(grids)))
+    kinds = Counter(type(each).__name__ for each in objects)
+    held = ", ".join(f"{count} {kind}" for kind, count in kinds.items()) or "no objects"
+    where = f"layer {layer!r}" if layer else "the file"
+    raise InputError(
+        f"{where} holds no meshes and no surfaces, but {held}; mesh them in Rhino (Mesh, "
+        "QuadRemesh or ExtractRenderMesh), explode blocks, and save"
     )
 
 
@@ -94,14 +103,8 @@ def _objects_on(model: RhinoObject, layer: str) -> list[RhinoObject]:
     return objects
 
 
-def _join(parts: list[Polygons]) -> Polygons:
-    starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
-    joined = Polygons(
-        np.concatenate([part.vertices for part in parts]),
-        np.concatenate([part.corners + k for part, k in zip(parts, starts, strict=False)]),
-        np.concatenate([part.degrees for part in parts]),
-    )
-    joined = drop_unused(joined)
+def _weld(parts: list[Polygons]) -> Polygons:
+    joined = drop_unused(join_polygons(parts))
     if joined.corners.max() >= len(joined.vertices) or not np.isfinite(joined.vertices).all():
         return joined
     vertices, ids = weld(joined.vertices, COINCIDENT * mean_side(joined))
@@ -221,12 +224,7 @@ def write_3dm(mesh: Mesh, path: Path) -> None:
         If Rhino calls the mesh invalid or cannot write the file.
     """
     rhino = _rhino3dm()
-    ngon_mesh = _to_rhino(rhino, mesh)
-    is_valid, reason = ngon_mesh.IsValidWithLog
-    if not is_valid:
-        raise InputError(
-            f"Rhino calls the mesh invalid ({' '.join(reason.split())}); write .obj"
-        )
+    ngon_mesh = to_rhino_mesh(mesh)
     model = rhino.File3dm()
     # A mesh has no units: Rhino must not scale it as if it were in millimetres.
     model.Settings.ModelUnitSystem = getattr(rhino.UnitSystem, "None")
@@ -236,7 +234,36 @@ def write_3dm(mesh: Mesh, path: Path) -> None:
         raise InputError("rhino3dm cannot write the file; check the disk")
 
 
-def _to_rhino(rhino: RhinoObject, mesh: Mesh) -> RhinoObject:
+def to_rhino_mesh(mesh: Mesh) -> RhinoObject:
+    """
+    A mesh as an object of rhino3dm.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh; faces with more than four corners become ngons.
+
+    Returns
+    -------
+    rhino3dm.Mesh
+        The object, with float64 vertices.
+
+    Raises
+    ------
+    InputError
+        If Rhino calls it invalid.
+    """
+    rhino = _rhino3dm()
+    result = _with_faces(rhino, mesh)
+    is_valid, reason = result.IsValidWithLog
+    if not is_valid:
+        raise InputError(
+            f"Rhino calls the mesh invalid ({' '.join(reason.split())}); write .obj"
+        )
+    return result
+
+
+def _with_faces(rhino: RhinoObject, mesh: Mesh) -> RhinoObject:
     plain = rhino.Mesh()
     add_vertex, add_face = plain.Vertices.AddPoint3d, plain.Faces.AddFace
     for x, y, z in mesh.vertices.tolist():

@@ -117,9 +117,6 @@ NEAR_CENTER: Final = 1e-3
 THIN: Final = 1e-6
 """A panel whose thickness is below this share of its size is refused (1 µm per m)."""
 
-SAME_PANEL: Final = 1e-6
-"""Panels whose corners and arcs agree within this share of the mean edge are identical."""
-
 ENCLOSING: Final = 1e-12
 """How far a point may stand out of a smallest enclosing cap, relative to its radius."""
 
@@ -158,3 +155,15 @@ FLATTEST: Final = 1e-3
 
 BLEND_STEP: Final = 0.01
 """How sharply the least blend that makes a congruence fit is found."""
+
+SINGLE_EPSILON: Final = 1.1920928955078125e-07
+"""Spacing of float32 at 1."""
+
+SAME_PANEL: Final = 1e-6
+"""Panels are identical where a motion brings all corners this close, in sizes (1 µm per m)."""
+
+EDGE_MISS: Final = 0.01
+"""A trimmed face whose edges lie farther off its surface, in edge lengths, is refused."""
+
+CLOSED: Final = 1e-6
+"""A surface whose ends lie this close, relative to its size, is closed there."""

@@ -9,6 +9,7 @@ from ...kernel import cutting
 from ...kernel.arrays import IntArray
 from ...kernel.beams import Beams
 from ...kernel.errors import name_ids
+from ...kernel.mesh import Mesh
 from ...kernel.panels import Panels
 from ...kernel.sphere_mesh import SphereMesh
 from ...viewer.render import render_image
@@ -135,6 +136,9 @@ def write_3dm(
     units: Units = "m",
     version: Annotated[int, Port(min=6, max=8)] = 8,
     beams: Beams | None = None,
+    reference: Mesh | SphereMesh | None = None,
+    shape: Literal["panels", "blocks", "shell"] = "panels",
+    layers: tuple[Literal["Edges", "Centres"], ...] = ("Edges",),
 ) -> str:
     """
     Write panels and beams to a Rhino file: exact trimmed spheres, layers per mould, user text.
@@ -151,13 +155,31 @@ def write_3dm(
         Rhino version of the file.
     beams : Beams, optional
         The beams, as extrusions of their flat contours, and the node axes.
+    reference : Mesh or SphereMesh, optional
+        The design mesh, for a layer of its own.
+    shape : {"panels", "blocks", "shell"}
+        A surface per panel; instances of a block wherever panels are identical; or all panels
+        joined into one polysurface, which needs panels cut along intersections without joint.
+    layers : tuple of {"Edges", "Centres"}
+        Further layers: the edges of the panels, the centres of their spheres.
 
     Returns
     -------
     str
         The path. The document carries the graph that is running.
     """
-    return str(rhino.write_3dm(panels, path, units, running_graph(), version, beams=beams))
+    mesh = reference.mesh if isinstance(reference, SphereMesh) else reference
+    contents = rhino.RhinoContents(shape, layers, mesh)
+    file = rhino.write_3dm(
+        panels, path, units, running_graph(), version, contents=contents, beams=beams
+    )
+    if file.rejected:
+        shown = "; ".join(f"{panel.id}: {panel.reason}" for panel in file.rejected[:8])
+        more = f"; {len(file.rejected) - 8} more" if len(file.rejected) > 8 else ""
+        warn(f"{len(file.rejected)} panels are not in {file.path.name}: {shown}{more}")
+    for note in file.notes:
+        warn(f"{file.path.name}: {note}")
+    return str(file.path)
 
 
 @node

@@ -16,7 +16,7 @@ Length = Annotated[float, Port(min=0)]
 
 
 @node
-def read_mesh(path: ReadPath, layer: str = "") -> Mesh:
+def read_mesh(path: ReadPath, layer: str = "", n_u: Count = 24, n_v: Count = 24) -> Mesh:
     """
     Read a mesh from a file.
 
@@ -26,13 +26,15 @@ def read_mesh(path: ReadPath, layer: str = "") -> Mesh:
         An OBJ, OFF, PLY, STL or Rhino .3dm file; polygons are kept as they are.
     layer : str
         Only what is on this layer (.3dm) or in this group (OBJ), and below.
+    n_u, n_v : int
+        Faces along u and v of each surface, where a .3dm holds surfaces and no meshes.
 
     Returns
     -------
     Mesh
         The mesh, in the units of the file.
     """
-    return mesh_files.read_mesh(path, layer)
+    return mesh_files.read_mesh(path, layer, n_u, n_v)
 
 
 @node

@@ -597,15 +597,14 @@ def test_3dm_errors_say_what_the_file_holds(tmp_path: Path) -> None:
     assert "non-manifold" in error_of(path)
 
     model = rhino3dm.File3dm()
-    sphere = rhino3dm.Sphere(rhino3dm.Point3d(0, 0, 0), 1)
-    model.Objects.AddBrep(rhino3dm.Brep.CreateFromSphere(sphere))
+    model.Objects.AddCircle(rhino3dm.Circle(1.0))
     model.Objects.AddMesh(rhino3dm.Mesh())
-    model.Objects.AddBrep(rhino3dm.Brep.CreateFromSphere(sphere))
+    model.Objects.AddCircle(rhino3dm.Circle(2.0))
     model.Write(str(tmp_path / "b.3dm"), 8)
     message = error_of(tmp_path / "b.3dm")
-    assert "no meshes" in message
-    assert "2 Brep" in message
-    assert "QuadRemesh" in message
+    assert "no meshes and no surfaces" in message
+    assert "2 NurbsCurve" in message
+    assert "explode blocks" in message
 
     rhino3dm.File3dm().Write(str(tmp_path / "c.3dm"), 8)
     assert "no objects" in error_of(tmp_path / "c.3dm")

@@ -3,6 +3,7 @@
 import base64
 import struct
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any, TypeAlias
 
@@ -12,9 +13,11 @@ import rhino3dm
 
 from spheremesh.fabrication.brep_audit import verify_brep_bytes, verify_breps
 from spheremesh.fabrication.brep_layout import BrepLayout, UnreadableError, parse_brep
-from spheremesh.fabrication.opennurbs import CRC, brep_streams, edge_streams
+from spheremesh.fabrication.chunks import CRC
+from spheremesh.fabrication.opennurbs import brep_streams, edge_streams
+from spheremesh.fabrication.render_meshes import panel_meshes
 from spheremesh.kernel.arcs import arc_points
-from spheremesh.kernel.arrays import FloatArray
+from spheremesh.kernel.arrays import FloatArray, IntArray
 from spheremesh.kernel.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.kernel.cutting import EdgeMode, cut_panels
 from spheremesh.kernel.mesh import Mesh
@@ -196,13 +199,14 @@ def test_without_a_sphere_the_surface_tells_it() -> None:
 # What the audit must catch
 
 
-@pytest.fixture(params=[3, 5, 8])
+@pytest.fixture(params=[3, 5, 8], scope="module")
 def specimen(request: pytest.FixtureRequest) -> Specimen:
+    """One panel, its stream with a render mesh."""
     panels = random_panels(200, 7)
     is_chosen = (panels.degrees == request.param) & (np.abs(panels.spheres[:, 0]) > 0.05)
     ids = np.flatnonzero(is_chosen)[:1]
     panels = select_panels(panels, np.isin(np.arange(panels.n_panels), ids))
-    return panels, brep_streams(panels)[0]
+    return panels, brep_streams(panels, panel_meshes(panels, 0.002))[0]
 
 
 def changed(stream: bytes, place: int, change: Change, count: int = 1) -> bytes:
@@ -264,6 +268,39 @@ def test_shifted_pole(specimen: Specimen) -> None:
     assert "leaves" in reason(panels, changed(stream, surface.knots[0], stretch, count))
 
 
+def test_patch_of_another_pole(specimen: Specimen) -> None:
+    """The same sphere and domain, projected from a pole beside the right one."""
+    panels, stream = specimen
+    surface = parse_brep(stream).surface
+    count = 4 * surface.n_points[0] * surface.n_points[1]
+    center = -panels.spheres[0, 1:4] / panels.spheres[0, 0] / -2 + panels.origins[0]
+    angle = 1e-9
+    turn = np.array([[1, -angle, 0], [angle, 1, 0], [0, 0, 1.0]])
+
+    def turned(values: FloatArray) -> FloatArray:
+        net = values.reshape(-1, 4).copy()
+        relative = net[:, :3] - net[:, 3:] * center
+        net[:, :3] = relative @ turn.T + net[:, 3:] * center
+        return net.ravel()
+
+    found = reason(panels, changed(stream, surface.points, turned, count))
+    assert "a trim leaves its edge" in found
+    errors = verify_brep_bytes(
+        changed(stream, surface.points, turned, count), panels.spheres[0], panels.origins[0]
+    )
+    assert errors.to_sphere < 1e-14 / abs(panels.spheres[0, 0])
+
+
+def test_bulging_trim(specimen: Specimen) -> None:
+    """A trim with the right ends that bulges a little more, or whose weight is off."""
+    panels, stream = specimen
+    middle = parse_brep(stream).sides[0].trim.points + 24
+    for place in (middle, middle + 8, middle + 16):
+        assert "a trim leaves its edge" in reason(
+            panels, changed(stream, place, lambda x: x + 1e-9)
+        )
+
+
 def test_bulging_surface(specimen: Specimen) -> None:
     panels, stream = specimen
     surface = parse_brep(stream).surface
@@ -323,14 +360,77 @@ def test_reversed_loop(specimen: Specimen) -> None:
 
 def test_face_that_looks_inwards(specimen: Specimen) -> None:
     panels, stream = specimen
-    errors = verify_brep_bytes(stream, -panels.spheres[0], panels.origins[0])
+    plain = brep_streams(panels)[0]
+    errors = verify_brep_bytes(plain, -panels.spheres[0], panels.origins[0])
     assert errors.reason() == "the face looks inwards"
+    assert verify_brep_bytes(stream, -panels.spheres[0], panels.origins[0]).reason()
 
 
 def test_another_sphere(specimen: Specimen) -> None:
     panels, stream = specimen
     row = panels.spheres[0] * (1, 1, 1, 1, 1) + (0, 0, 0, 0, 1e-9)
     assert "not the sphere" in verify_brep_bytes(stream, row, panels.origins[0]).reason()
+
+
+def mesh_change(stream: bytes, buffer: str, change: Change, count: int, dtype: str) -> bytes:
+    """The stream with some of the numbers of its render mesh replaced."""
+    layout = parse_brep(stream)
+    start = getattr(layout.mesh, buffer).start
+    data = bytearray(stream)
+    values = np.frombuffer(stream, dtype, count, start)
+    raw = change(values.astype(float)).astype(dtype).tobytes()
+    data[start : start + len(raw)] = raw
+    return resealed(bytes(data), layout)
+
+
+def test_moved_vertex_of_the_mesh(specimen: Specimen) -> None:
+    panels, stream = specimen
+    radius = 0.5 / abs(panels.spheres[0, 0])
+    same = mesh_change(stream, "points", lambda x: x, 3, "<f8")
+    assert same == stream
+    normal = normals(panels.spheres[0], panels.corners[0])
+    lifted = mesh_change(stream, "points", lambda x: x + 1e-11 * radius * normal, 3, "<f8")
+    assert "the render mesh leaves the sphere" in reason(panels, lifted)
+    rounded = mesh_change(stream, "floats", lambda x: x * (1 + 1e-6) + 1e-6, 3, "<f4")
+    assert "vertices of the render mesh differ" in reason(panels, rounded)
+    lost = mesh_change(stream, "points", lambda x: x * np.nan, 3, "<f8")
+    assert "not finite" in reason(panels, lost)
+
+
+def test_wrong_normal_of_the_mesh(specimen: Specimen) -> None:
+    panels, stream = specimen
+    tilted = mesh_change(stream, "normals", lambda x: x + np.array([1e-5, 0, -1e-5]), 3, "<f4")
+    assert "a normal of the render mesh" in reason(panels, tilted)
+    count = 3 * int(parse_brep(stream).mesh.triangles.max()) + 3
+    inside_out = mesh_change(stream, "normals", lambda x: -x, count, "<f4")
+    assert "a normal of the render mesh" in reason(panels, inside_out)
+
+
+def test_wrong_triangles_of_the_mesh(specimen: Specimen) -> None:
+    panels, _ = specimen
+    meshes = panel_meshes(panels, 0.002)
+    triangles = meshes.triangles[0]
+
+    def written(faces: IntArray) -> str:
+        return reason(panels, brep_streams(panels, replace(meshes, triangles=(faces,)))[0])
+
+    assert written(triangles) == ""
+    assert "the render mesh looks inwards" in written(triangles[:, ::-1])
+    stream = brep_streams(panels, meshes)[0]
+    count = struct.pack("<ii", triangles.max() + 1, len(triangles))
+    for wrong in (
+        struct.pack("<ii", triangles.max(), len(triangles)),
+        struct.pack("<ii", triangles.max() + 1, len(triangles) - 1),
+    ):
+        assert stream.count(count) == 1
+        assert reason(panels, stream.replace(count, wrong))
+    size = 1 if triangles.max() < 255 else 2
+    faces = triangles[:, [0, 1, 2, 2]].astype(f"<u{size}").tobytes()
+    beyond = np.full(len(faces) // size, triangles.max() + 1, f"<u{size}").tobytes()
+    assert stream.count(faces) == 1
+    assert "not made of triangles of its vertices" in reason(
+        panels, stream.replace(faces, beyond)
+    )
 
 
 def test_missing_trim(specimen: Specimen) -> None:
@@ -344,7 +444,7 @@ def test_missing_trim(specimen: Specimen) -> None:
 
 def test_truncated_streams(specimen: Specimen) -> None:
     panels, stream = specimen
-    for length in range(0, len(stream), 61):
+    for length in range(0, len(stream), 181):
         assert reason(panels, stream[:length])
         with pytest.raises(UnreadableError):
             parse_brep(stream[:length])
@@ -354,7 +454,7 @@ def test_truncated_streams(specimen: Specimen) -> None:
 def test_flipped_bits(specimen: Specimen) -> None:
     panels, stream = specimen
     rng = np.random.default_rng(8)
-    for place in rng.integers(0, len(stream), 300):
+    for place in rng.integers(0, len(stream), 100):
         data = bytearray(stream)
         data[place] ^= 1 << int(rng.integers(8))
         assert verify_brep_bytes(bytes(data)).reason(), place
@@ -362,6 +462,22 @@ def test_flipped_bits(specimen: Specimen) -> None:
     place = parse_brep(stream).sides[0].start
     numbers[place : place + 8] = struct.pack("<d", np.nan)
     assert "finite" in reason(panels, resealed(bytes(numbers), parse_brep(stream)))
+
+
+def test_deflated_meshes_are_checked(specimen: Specimen) -> None:
+    """As openNURBS writes them."""
+    panels, stream = specimen
+    written = encoded(decode(stream))
+    buffers = parse_brep(written).mesh[1:]
+    assert all(buffer.is_deflated for buffer in buffers)
+    assert reason(panels, written) == ""
+    for buffer in buffers:
+        for place in (buffer.start + 2, (buffer.start + buffer.stop) // 2, buffer.stop - 1):
+            data = bytearray(written)
+            data[place] ^= 1
+            assert reason(panels, bytes(data))
+    moved = replace(panels, origins=panels.origins + 1e-9)
+    assert verify_brep_bytes(written, moved.spheres[0], moved.origins[0]).mesh_to_sphere > 1e-11
 
 
 def test_one_bad_stream_does_not_touch_the_others() -> None:

@@ -1,0 +1,167 @@
+"""
+Render meshes of panels as openNURBS objects, for viewers that cannot mesh a Brep.
+
+They are written into the streams of the Breps: the setters of rhino3dm crash it at exit. Layout
+of `ON_Mesh` 3.8 (`opennurbs_mesh.cpp`): ii counts of vertices and faces, domains that are not
+set, three empty boxes of floats, i -1, flags, faces of four indices each (a triangle repeats
+its last), buffers of float32 vertices and normals, empty buffers, the tag of no texture
+mapping, and a chunk with the vertices as float64.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+
+from ..kernel.arrays import FloatArray, IntArray
+from ..kernel.panels import Panels
+from ..kernel.tessellation import tessellate
+from .chunks import ANONYMOUS, Buffer, Chunk, Slot, assemble, class_object, doubles, fill, ints
+
+MESH: Final = bytes.fromhex("e4d4d74e47e9d311bfe50010830122f0")
+MESH_VERSION: Final = b"\x38"
+
+UNSET_DOMAINS: Final = doubles(*[-1.23432101234321e308] * 8) + bytes(16)
+_EMPTY_BOXES = np.array([*[1, 1, 1, -1, -1, -1] * 2, 1, 1, -1, -1], "<f4").tobytes()
+_IDENTITY = doubles(*np.eye(4).ravel().tolist())
+
+
+@dataclass(frozen=True)
+class RenderMeshes:
+    """
+    Triangles of panels, those of the same triangulation together.
+
+    Attributes
+    ----------
+    kinds : (P,) int array
+        Triangulation of each panel.
+    triangles : tuple of (T, 3) int array
+        The triangulations; counter-clockwise about the normals.
+    starts : (P,) int array
+        First vertex of each panel; its triangulation tells how many there are.
+    points : (N, 3) float array
+        Vertices on the spheres, in model coordinates.
+    normals : (N, 3) float array
+        Exact unit normals there.
+    """
+
+    kinds: IntArray
+    triangles: tuple[IntArray, ...]
+    starts: IntArray
+    points: FloatArray
+    normals: FloatArray
+
+
+def panel_meshes(panels: Panels, tolerance: float) -> RenderMeshes:
+    """
+    Triangulate the outer faces of panels.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+    tolerance : float
+        Largest distance of a triangle from its sphere, relative to the radius of the panel.
+
+    Returns
+    -------
+    RenderMeshes
+        The triangles.
+    """
+    pieces = tessellate(panels, tolerance, solid=False)
+    order = np.argsort(pieces.panels, kind="stable")
+    triangles = pieces.triangles[order]
+    bounds = np.searchsorted(pieces.panels[order], np.arange(panels.n_panels + 1)).tolist()
+    known: dict[bytes, int] = {}
+    kinds: list[int] = []
+    starts: list[int] = []
+    for first, last in pairwise(bounds):
+        own = triangles[first:last]
+        starts.append(int(own.min()))
+        kinds.append(known.setdefault((own - starts[-1]).tobytes(), len(known)))
+    shapes = tuple(np.frombuffer(each, np.int64).reshape(-1, 3) for each in known)
+    return RenderMeshes(
+        np.array(kinds, np.int64),
+        shapes,
+        np.array(starts, np.int64),
+        pieces.points + pieces.origin,
+        pieces.normals,
+    )
+
+
+def mesh_numbers(meshes: RenderMeshes, panels: IntArray) -> dict[str, FloatArray]:
+    """
+    Numbers that fill the slots of `mesh_object`.
+
+    Parameters
+    ----------
+    meshes : RenderMeshes
+        The triangles.
+    panels : (n,) int array
+        Panels of one triangulation.
+
+    Returns
+    -------
+    dict of str to (n, 1, V, 3) float array
+        ``points`` and ``normals``.
+    """
+    count = _n_points(meshes.triangles[int(meshes.kinds[panels[0]])])
+    ids = meshes.starts[panels][:, None, None] + np.arange(count)
+    return {"points": meshes.points[ids], "normals": meshes.normals[ids]}
+
+
+def mesh_object(triangles: IntArray) -> Chunk:
+    """
+    An `ON_Mesh` whose vertices and normals are still to be filled in.
+
+    Parameters
+    ----------
+    triangles : (T, 3) int array
+        Vertices of each triangle, all used.
+
+    Returns
+    -------
+    Chunk
+        The object, with slots ``points`` and ``normals``.
+    """
+    count = _n_points(triangles)
+    size = 1 if count < 1 << 8 else 2 if count < 1 << 16 else 4
+    faces = triangles[:, [0, 1, 2, 2]].astype(f"<u{size}").tobytes()
+    floats = (Buffer(Slot(name, 0, 3 * count, "<f4")) for name in ("points", "normals"))
+    precise = (ints(1, 0, count), Buffer(Slot("points", 0, 3 * count)))
+    return class_object(
+        MESH, MESH_VERSION, ints(count, len(triangles)), UNSET_DOMAINS, _EMPTY_BOXES, ints(-1),
+        bytes(5), ints(size), faces, *floats,
+        ints(0, 0, 0) + bytes(4 + 16) + ints(0),  # no textures, curvatures, colours, parameters
+        Chunk(ANONYMOUS, (ints(1, 1) + bytes(16 + 4) + _IDENTITY + ints(0),)),
+        bytes(3) + b"\0\1",  # manifold, oriented, solid: not known; no ngons; float64 vertices
+        Chunk(ANONYMOUS, precise), UNSET_DOMAINS[:48],
+    )  # fmt: skip
+
+
+def _n_points(triangles: IntArray) -> int:
+    return int(triangles.max()) + 1
+
+
+def mesh_streams(meshes: RenderMeshes) -> list[bytes]:
+    """
+    Each mesh as the stream of an `ON_Mesh`.
+
+    Parameters
+    ----------
+    meshes : RenderMeshes
+        The triangles of P panels.
+
+    Returns
+    -------
+    list of bytes
+        P objects, in model coordinates.
+    """
+    result = [b""] * len(meshes.kinds)
+    for kind, triangles in enumerate(meshes.triangles):
+        members = np.flatnonzero(meshes.kinds == kind)
+        filled = fill(assemble(mesh_object(triangles)), mesh_numbers(meshes, members))
+        for panel, stream in zip(members, filled, strict=True):
+            result[panel] = stream
+    return result

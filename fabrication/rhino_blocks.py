@@ -1,0 +1,113 @@
+"""
+Block definitions of Rhino: one piece of geometry, set into the model many times.
+
+rhino3dm gives definitions random ids; their streams are written here (`ON_InstanceDefinition`,
+`opennurbs_instance.cpp`), so that a file of the same panels has the same ids.
+"""
+
+from typing import Final
+from uuid import UUID
+
+import numpy as np
+
+from ..kernel.arrays import FloatArray
+from .chunks import ANONYMOUS, Chunk, assemble, class_object, doubles, fill, ints
+from .rhino_model import RhinoModel, Untyped
+
+INSTANCE_DEFINITION: Final = UUID("26f8bff6-2618-417f-a158-153d64a94989").bytes_le
+
+_COMPONENT = 0x40008002
+"""Type of the chunk that says what a component of a model is called."""
+
+_UNSET_INDEX = -0x7FFFFFFF
+_STATIC = 1
+
+
+def add_definition(
+    model: RhinoModel, name: str, definition: UUID, geometry: Untyped, attributes: Untyped
+) -> None:
+    """
+    Add a block of one object.
+
+    Parameters
+    ----------
+    model : RhinoModel
+        The model.
+    name : str
+        Name of the block.
+    definition : UUID
+        Its id.
+    geometry : CommonObject
+        The object, in the coordinates of the block.
+    attributes : ObjectAttributes
+        Its attributes, with an id.
+    """
+    attributes.Mode = model.library.ObjectMode.InstanceDefinitionObject
+    model.file.Objects.Add(geometry, attributes)
+    stream = definition_stream(name, definition, attributes.Id)
+    model.file.InstanceDefinitions.AddInstanceDefinition(model.decode(stream))
+
+
+def definition_stream(name: str, definition: UUID, member: UUID) -> bytes:
+    """
+    A block of one object as an `ON_InstanceDefinition`.
+
+    Parameters
+    ----------
+    name : str
+        Name of the block.
+    definition, member : UUID
+        Ids of the block and of the object.
+
+    Returns
+    -------
+    bytes
+        The stream.
+    """
+    text = (name + "\0").encode("utf-16-le")
+    component = Chunk(_COMPONENT, (
+        ints(1, 0) + b"\0\1" + definition.bytes_le + b"\0\1" + ints(_UNSET_INDEX) + b"\1",
+        ints(len(text) // 2) + text,
+    ))  # fmt: skip
+    no_units = Chunk(ANONYMOUS, (ints(1, 0), ints(0), doubles(1), ints(0)))
+    box = doubles(1, 0, 0, -1, 0, 0)
+    members = b"\1" + ints(1) + member.bytes_le + b"\0"
+    # Three texts are empty: description, link, and label of the link.
+    body = Chunk(
+        ANONYMOUS, (ints(1, 0), component, ints(_STATIC), no_units, bytes(12), box, members)
+    )
+    template = assemble(class_object(INSTANCE_DEFINITION, body))
+    (stream,) = fill(template, {"": np.zeros((1, 0))})
+    return stream
+
+
+def add_instance(
+    model: RhinoModel,
+    definition: UUID,
+    rotation: FloatArray,
+    translation: FloatArray,
+    attributes: Untyped,
+) -> None:
+    """
+    Set a block into the model.
+
+    Parameters
+    ----------
+    model : RhinoModel
+        The model.
+    definition : UUID
+        Id of the block.
+    rotation : (3, 3) float array
+        How the block is turned.
+    translation : (3,) float array
+        Where its origin goes.
+    attributes : ObjectAttributes
+        Attributes of the instance.
+    """
+    transform = model.library.Transform(1.0)
+    for i in range(3):
+        for j in range(3):
+            setattr(transform, f"M{i}{j}", float(rotation[i, j]))
+        setattr(transform, f"M{i}3", float(translation[i]))
+    reference = model.library.InstanceReference(definition, transform)
+    model.file.Objects.Add(reference, attributes)
