@@ -26,6 +26,7 @@ from OCP.TopoDS import TopoDS_Shape
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication.beam_brep import beam_shapes
+from spheremesh.kernel.annuli import corner_mismatch
 from spheremesh.kernel.beams import beam_volumes
 from spheremesh.kernel.mesh import mean_edge_length
 from spheremesh.nodes import (
@@ -75,9 +76,12 @@ def report(name: str, sphere_mesh: SphereMesh) -> None:
     annuli, ms = timed(lambda: annulus_support(sphere_mesh, depth=0.3 * size))
     rejected = Counter(each["reason"].split(" ")[1] for each in annuli.report["rejected"])
     limit = annuli.report["kappa_max"]
+    inside = ~sphere_mesh.mesh.topology.is_boundary_vertex[annuli.annuli.edge_vertices]
+    apart = corner_mismatch(annuli.annuli)[inside].max(initial=0.0) / size
     print(
         f"  annuli: {annuli.report['made']} made, rejected {dict(rejected)}, ends apart "
-        f"{annuli.report['corner_mismatch']['relative_to_edge']:.1e} edges, kappa up to "
+        f"{annuli.report['corner_mismatch']['relative_to_edge']:.1e} edges (inside "
+        f"{apart:.1e}), kappa up to "
         f"{'any' if limit is None else f'{limit / size**2:.3g} edges²'}, {ms:.0f} ms"
     )
     if annuli.report["made"] == 0:

@@ -121,9 +121,12 @@ def beam_shapes(
     InputError
         If a beam has numbers that are not finite, at which OpenCASCADE would crash.
     """
+    if beams.n_beams == 0:
+        return []
     beams = scale_beams(beams, scale)
     places = rounded_origins(beams.annuli.origins)
-    solids = _solids(beams, beams.annuli.origins - places)
+    shifts = beams.annuli.origins - places
+    solids = _solids(beams, shifts, _LEVELS if pcurves else ())
     shapes: list[TopoDS_Shape] = []
     for beam, place in enumerate(places.tolist()):
         block = _block(solids, beam)
@@ -133,7 +136,10 @@ def beam_shapes(
     return shapes
 
 
-def _solids(beams: Beams, shifts: FloatArray) -> _Solids:
+def _solids(
+    beams: Beams, shifts: FloatArray, with_curves: tuple[tuple[int, int], ...]
+) -> _Solids:
+    """Parts of solids, with curves in parameters for the edges between some levels."""
     annuli = beams.annuli
     corners = beams.corners + shifts[:, None, None, None]
     rows = np.stack([annuli.outer, annuli.inner], 1)
@@ -147,7 +153,8 @@ def _solids(beams: Beams, shifts: FloatArray) -> _Solids:
     cuts = {levels: cut_edges(beams, corners, centers, radii, levels) for levels in _LEVELS}
     with np.errstate(invalid="ignore"):
         parameters = {
-            levels: _cut_parameters(cut, centers, radii, frames) for levels, cut in cuts.items()
+            levels: _cut_parameters(cuts[levels], centers, radii, frames)
+            for levels in with_curves
         }
     misses = 8 * EPSILON * np.where(np.isfinite(radii), radii, 0.0).max(axis=1)
     misses = np.maximum(misses, 8 * EPSILON * norm(annuli.origins))

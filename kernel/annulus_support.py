@@ -73,7 +73,7 @@ def annulus_support(
     Raises
     ------
     InputError
-        If not exactly one of depth and kappa is given, it is out of range, or no beam stands.
+        If not exactly one of depth and kappa is given, or it is out of range.
 
     Notes
     -----
@@ -100,10 +100,6 @@ def annulus_support(
     stands = np.ones(annuli.n_annuli, bool)
     stands[list(reasons)] = False
     kappa_max = _largest_kappa(annuli, stands)
-    if not stands.any():
-        raise InputError(
-            f"no beam stands: {next(iter(reasons.values()))}; optimise the spheres for support"
-        )
     if depth is not None:
         annuli = _with_depth(annuli, float(depth))
     else:

@@ -26,7 +26,7 @@ def cut_beams(
     Parameters
     ----------
     annuli : Annuli
-        The annuli; at least one.
+        The annuli.
     thickness : float
         Thickness of the beams, half of it to either side, in model units.
     node_gap : float
@@ -44,7 +44,7 @@ def cut_beams(
     Raises
     ------
     InputError
-        If there are no annuli, or a length is negative or not finite, or the thickness zero.
+        If a length is negative or not finite, or the thickness zero.
 
     Notes
     -----
@@ -57,7 +57,7 @@ def cut_beams(
     ----------
     Meshes with Spherical Faces, Fig. 7.
     """
-    _check_options(annuli, thickness, node_gap, node_radius)
+    _check_options(thickness, node_gap, node_radius)
     annuli = _outer_side_up(annuli)
     if node_radius > 0:
         half_angles = np.full((annuli.n_annuli, 2, 2), np.pi / 2)
@@ -83,11 +83,7 @@ def cut_beams(
     return select_beams(beams, keep), rejected
 
 
-def _check_options(
-    annuli: Annuli, thickness: float, node_gap: float, node_radius: float
-) -> None:
-    if annuli.n_annuli == 0:
-        raise InputError("there are no annuli to make beams of")
+def _check_options(thickness: float, node_gap: float, node_radius: float) -> None:
     if not (np.isfinite(thickness) and thickness > 0):
         raise InputError(f"thickness must be a length above 0, not {thickness}")
     for name, value in (("node gap", node_gap), ("node radius", node_radius)):
@@ -134,7 +130,7 @@ def mitre_angles(annuli: Annuli) -> FloatArray:
     turns = np.arctan2(dot(away, np.cross(axes, zero)), dot(away, zero))
     order = np.lexsort((turns, groups))
     starts = np.flatnonzero(np.diff(groups[order], prepend=-1))
-    ends = np.append(starts[1:], len(order)) - 1
+    ends = np.flatnonzero(np.diff(groups[order], append=-1))
     following = np.arange(1, len(order) + 1)
     following[ends] = starts
     gaps = turns[order][following] - turns[order]

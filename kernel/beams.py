@@ -135,7 +135,7 @@ def cut_corners(annuli: Annuli, insets: FloatArray) -> tuple[FloatArray, BoolArr
     rows = np.broadcast_to(rows, (*points.shape[:-1], 5))
     steps, exists = meet_lines(rows.reshape(-1, 5), points.reshape(-1, 3), along.reshape(-1, 3))
     steps, exists = steps.reshape(points.shape[:-1]), exists.reshape(points.shape[:-1])
-    reaches = np.asarray(exists.reshape(len(points), -1).all(axis=1))
+    reaches = np.asarray(exists.all(axis=(1, 2, 3)))
     return points + steps[..., None] * along, reaches
 
 
@@ -325,5 +325,5 @@ def beam_lengths(beams: Beams) -> FloatArray:
     (B,) float array
         Longest chord between the corners of the two ends, in model units.
     """
-    ends = beams.corners.reshape(beams.n_beams, 2, -1, 3)
+    ends = beams.corners.reshape(beams.n_beams, 2, 6, 3)
     return norm(ends[:, 0, :, None] - ends[:, 1, None]).max(axis=(1, 2))

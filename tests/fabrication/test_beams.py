@@ -148,6 +148,15 @@ def test_panels_and_beams_in_one_file(tmp_path: Path) -> None:
     assert names == {"Model", "Panels", "Beams", *panels.ids, *beams.annuli.ids}
 
 
+def test_panels_without_any_beam(tmp_path: Path) -> None:
+    panels, _ = cut_panels(TORUS, "intersection", thickness=0.02)
+    none = select_beams(CASES["mitred"], np.zeros(CASES["mitred"].n_beams, bool))
+    path = write_step(panels, tmp_path / "m.step", beams=none)
+    assert len(read_solids(path)) == panels.n_panels
+    model = rhino3dm.File3dm.Read(str(write_3dm(panels, tmp_path / "m.3dm", beams=none)))
+    assert on_layer(model, "Beams") == on_layer(model, "Axes") == []
+
+
 def test_far_from_the_origin_no_digit_is_lost(tmp_path: Path) -> None:
     mesh = TORUS.mesh
     moved = Mesh(mesh.vertices + np.array([5e5, -3e5, 2e5]), mesh.faces)

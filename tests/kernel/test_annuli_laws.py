@@ -258,6 +258,20 @@ def test_annuli_that_cannot_stand_are_listed(nets: dict[str, Mesh]) -> None:
     assert len(strict.rejected) > len(found.rejected)
 
 
+def test_where_no_annulus_stands_all_are_listed() -> None:
+    arch = [[x, y, -0.02 * (x - 2) ** 2] for x in range(5) for y in range(5)]
+    corners = [5 * i + j for i in range(4) for j in range(4)]
+    faces = [[c, c + 5, c + 6, c + 1] for c in corners]
+    sphere_mesh = minimize_angles(face_planes(Mesh(arch, faces)), 0.0, None)[0]
+    for options in ({"depth": 0.1}, {"kappa": 0.1}):
+        found = annulus_support(sphere_mesh, max_tilt=1e-3, **options)
+        assert found.annuli.n_annuli < 20
+        assert found.annuli.n_annuli + len(found.rejected) == 40
+        report = annulus_report(found, 1.0)
+        assert report["made"] == found.annuli.n_annuli
+        assert json.loads(json.dumps(report, allow_nan=False)) == report
+
+
 def test_annuli_deeper_than_their_radius_are_listed(ball: Mesh) -> None:
     found = annulus_support(fit_spheres(ball), depth=1.99)
     assert found.annuli.n_annuli > 0

@@ -218,10 +218,12 @@ def test_bad_options_are_refused(annuli: Annuli, options: dict[str, float], matc
         cut_beams(annuli, **options)
 
 
-def test_no_annuli_are_refused(nets: dict[str, Mesh]) -> None:
+def test_no_annuli_make_no_beams(nets: dict[str, Mesh]) -> None:
     none = annulus_support(face_planes(nets["egg"]), kappa=0.1).annuli
-    with pytest.raises(InputError, match="no annuli"):
-        cut_beams(none, 0.1)
+    beams, rejected = cut_beams(none, 0.1)
+    assert beams.n_beams == len(rejected) == 0
+    assert len(beam_volumes(beams)) == len(beam_lengths(beams)) == 0
+    assert node_axis_segments(beams)[0] == ()
 
 
 # contours
