@@ -96,6 +96,13 @@ def test_every_defect_is_found(
     assert all(finding.severity == "error" and finding.message for finding in findings)
 
 
+def test_every_edge_of_a_missing_face_is_named(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "open.step"
+    path.write_text(re.sub(r"CLOSED_SHELL\('',\(#\d+,", "CLOSED_SHELL('',(", text, count=1))
+    findings = check_part21(path)
+    assert sorted(finding.code for finding in findings) == ["S203"] + 4 * ["S302"]
+
+
 def test_a_file_without_geometry_is_no_model(text: str, tmp_path: Path) -> None:
     path = tmp_path / "empty.step"
     header, _, _ = text.partition("DATA;")
