@@ -80,12 +80,15 @@ _PART = re.compile(rb"([A-Z][A-Z0-9_]*)\(([v,]*)\)")
 
 @dataclass(frozen=True)
 class _Text:
-    """Data section without blanks and with empty strings: instances, numbers and types."""
+    """Data section without blanks and with empty strings; numbers and types of entities."""
 
-    instances: list[bytes]
+    data: bytes
     ids: IntArray
     types: list[bytes]
-    data: bytes
+
+    def places(self, words: list[bytes]) -> IntArray:
+        """Places of entities among all, by their numbers as written."""
+        return np.searchsorted(np.sort(self.ids), _numbers(words))
 
 
 def check_part21(path: str | os.PathLike[str]) -> tuple[Finding, ...]:
@@ -128,7 +131,8 @@ def check_part21(path: str | os.PathLike[str]) -> tuple[Finding, ...]:
     findings += _header(frame[1], content)
     text, syntax = _read(frame[2])
     findings += [*syntax, *_references(text)]
-    if not findings:
+    # What nothing refers to does no harm; anything else would lead nowhere.
+    if all(finding.code == "S203" for finding in findings):
         findings += _topology(text)
     return tuple(findings)
 
@@ -191,7 +195,7 @@ def _read(data: bytes) -> tuple[_Text, list[Finding]]:
         if wrong:
             found = (i for i, form in zip(ids.tolist(), forms, strict=True) if form in wrong)
             findings += _some(code, found, message)
-    return _Text(instances, ids, kinds, data), findings
+    return _Text(data, ids, kinds), findings
 
 
 def _judge(form: bytes) -> tuple[bytes, str]:
@@ -252,9 +256,9 @@ def _lists(text: _Text, kinds: bytes, before: bytes = b"") -> _Lists:
     pattern = rb"#([0-9]+)=(?:" + kinds + rb")\(''," + before + rb"\(?((?:#[0-9]+,?)+)\)?"
     found = re.findall(pattern, text.data)
     counts = [words.count(b"#") for _, words in found]
-    members = _numbers(re.findall(rb"[0-9]+", b"".join(words for _, words in found)))
+    members = text.places(re.findall(rb"[0-9]+", b"".join(words for _, words in found)))
     bounds = np.concatenate([[0], np.cumsum(np.array(counts, np.int64))])
-    return _Lists(_numbers([number for number, _ in found]), bounds, members)
+    return _Lists(text.places([number for number, _ in found]), bounds, members)
 
 
 def _uses(
@@ -265,17 +269,17 @@ def _uses(
     found = re.findall(pattern, text.data)
     numbers, referred, senses = zip(*found, strict=True) if found else ((), (), ())
     return (
-        _numbers(list(numbers)),
-        _numbers(list(referred)),
+        text.places(list(numbers)),
+        text.places(list(referred)),
         np.array([sense == b"T" for sense in senses], bool),
     )
 
 
 def _topology(text: _Text) -> list[Finding]:
     """Loops close; in closed shells every edge is used once each way."""
-    size = int(text.ids.max(initial=0)) + 1
+    size, numbers = len(text.ids), np.sort(text.ids)
     edge_pattern = rb"#([0-9]+)=EDGE_CURVE\('',#([0-9]+),#([0-9]+),"
-    edges = _numbers([x for row in re.findall(edge_pattern, text.data) for x in row])
+    edges = text.places([x for row in re.findall(edge_pattern, text.data) for x in row])
     edges = edges.reshape(-1, 3)
     if len(edges) == 0:
         return [Finding("S303", "file", "there is no edge in the file")]
@@ -292,7 +296,8 @@ def _topology(text: _Text) -> list[Finding]:
     following[loops.bounds[1:] - 1] = loops.bounds[:-1]
     start, end = first[loops.members].T
     is_open = np.logical_or.reduceat(end != start[following], loops.bounds[:-1])
-    findings = _some("S301", loops.ids[is_open].tolist(), "the edges do not close the loop")
+    opened = numbers[loops.ids[is_open]].tolist()
+    findings = _some("S301", opened, "the edges do not close the loop")
 
     faces, shells = _lists(text, b"ADVANCED_FACE"), _lists(text, b"CLOSED_SHELL")
     bounds, loop, same = _uses(text, b"FACE_BOUND|FACE_OUTER_BOUND")
@@ -312,10 +317,12 @@ def _topology(text: _Text) -> list[Finding]:
         axis=1,
     )
     uses = uses[uses[:, 0] >= 0]
-    return findings + (_unmatched(uses) if len(uses) else [])
+    unmatched = numbers[_unmatched(uses)] if len(uses) else numbers[:0]
+    message = "is not used once each way in its solid"
+    return findings + _some("S302", unmatched.tolist(), message)
 
 
-def _unmatched(uses: IntArray) -> list[Finding]:
+def _unmatched(uses: IntArray) -> IntArray:
     """Edges of closed shells (shell, edge, sense) that are not used once each way."""
     order = np.lexsort((uses[:, 2], uses[:, 1], uses[:, 0]))
     shell, edge, sense = uses[order].T
@@ -324,4 +331,4 @@ def _unmatched(uses: IntArray) -> list[Finding]:
     )
     counts = np.diff(starts, append=len(order))
     wrong = (counts != 2) | (np.add.reduceat(sense, starts) != 1)
-    return _some("S302", edge[starts[wrong]].tolist(), "is not used once each way in its solid")
+    return edge[starts[wrong]]

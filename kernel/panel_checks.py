@@ -80,9 +80,10 @@ def finite_panels(panels: Panels) -> BoolArray:
     """
     rows = np.column_stack([panels.origins, panels.spheres, panels.inner_spheres])
     numbers = np.column_stack([panels.corners, panels.inner_corners, panels.plane_normals])
+    finite = np.all(np.isfinite(rows), axis=1)
     broken = panels.corner_panels[~np.isfinite(numbers).all(axis=1)]
-    is_broken = np.bincount(broken, minlength=panels.n_panels) > 0
-    return np.isfinite(rows).all(axis=1) & ~is_broken
+    finite[broken] = False
+    return finite
 
 
 @dataclass(frozen=True)

@@ -104,6 +104,11 @@ def test_tilted_walls_and_large_blanks_are_notes() -> None:
     (found,) = audit_panels(panels, limits=AuditLimits(wall_tilt_deg=5))
     assert found.code == "P105"
     assert found.size == pytest.approx(np.degrees(np.arcsin(0.2 / radius)), rel=1e-9)
+    # Where spheres of different radii meet, one wall leans and the others stand upright.
+    panels, _ = cut_panels(squares(-0.2, -0.6), "intersection")
+    leaning = audit_panels(panels, limits=AuditLimits(wall_tilt_deg=5))
+    assert codes(leaning) == {("P105", "P0000"), ("P105", "P0001")}
+    assert leaning[0].size == pytest.approx(leaning[1].size, rel=1e-9)
     panels, _ = cut_panels(squares(0.9))
     assert audit_panels(panels, limits=AuditLimits(blank_mm=1415)) == ()
     (found,) = audit_panels(panels, limits=AuditLimits(blank_mm=1414))

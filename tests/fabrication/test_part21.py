@@ -73,7 +73,10 @@ DEFECTS = {
     "S202": [swap(r"PLANE\('',#\d+\)", "PLANE('',#99999999)")],
     "S203": [swap(r"#(\d+)=(PLANE\('',#\d+\);)", r"#\1=\2\n#99999999=\2")],
     "S301": [swap(r"EDGE_LOOP\('',\((#\d+),(#\d+),", r"EDGE_LOOP('',(\2,\1,")],
-    "S302": [swap(r"FACE_BOUND\('',(#\d+),\.T\.", r"FACE_BOUND('',\1,.F.")],
+    "S302": [
+        swap(r"FACE_BOUND\('',(#\d+),\.T\.", r"FACE_BOUND('',\1,.F."),
+        swap(r"CLOSED_SHELL\('',\(#\d+,", "CLOSED_SHELL('',("),
+    ],
 }  # fmt: skip
 
 
@@ -91,6 +94,13 @@ def test_every_defect_is_found(
     findings = check_part21(path)
     assert code in {finding.code for finding in findings}
     assert all(finding.severity == "error" and finding.message for finding in findings)
+
+
+def test_every_edge_of_a_missing_face_is_named(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "open.step"
+    path.write_text(re.sub(r"CLOSED_SHELL\('',\(#\d+,", "CLOSED_SHELL('',(", text, count=1))
+    findings = check_part21(path)
+    assert sorted(finding.code for finding in findings) == ["S203"] + 4 * ["S302"]
 
 
 def test_a_file_without_geometry_is_no_model(text: str, tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import pytest
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arcs import arc_points
 from spheremesh.kernel.arrays import FloatArray, norm
-from spheremesh.kernel.cutting import cut_panels
+from spheremesh.kernel.cutting import cut_panels, thickness_report
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.fit import face_planes
 from spheremesh.kernel.layers import Layer, Side, panel_layers
@@ -193,3 +193,20 @@ def test_unknown_sides_and_layers_are_named(octahedron: Mesh) -> None:
         cut_panels(found, layer="thick")  # pyright: ignore[reportArgumentType]
     with pytest.raises(InputError, match="edges must be bisector or intersection"):
         cut_panels(found, "sharp")  # pyright: ignore[reportArgumentType]
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_law_panels_of_constant_power_are_those_of_their_own_thickness(
+    optimum: dict[str, SphereMesh], side: Side
+) -> None:
+    found = optimum["egg"]
+    edge = mean_edge_length(found.mesh)
+    panels, _ = cut_panels(found, thickness=0.1 * edge, side="inward", layer="power")
+    volumes, areas = panel_volumes(panels), panel_areas(panels)
+    for i in np.argsort(panels.thicknesses)[[0, len(areas) // 2, -1]].tolist():
+        own, _ = cut_panels(found, thickness=panels.thicknesses[i])
+        assert volumes[i] == pytest.approx(panel_volumes(own)[i], rel=1e-9)
+    centred, _ = cut_panels(found, thickness=0.1 * edge, side=side, layer="power")
+    summary = thickness_report(centred)
+    assert summary["mean"] == pytest.approx(0.1 * edge, rel=1e-9)
+    assert summary["min"] < summary["mean"] < summary["max"]
