@@ -197,7 +197,7 @@ def point(value: Any) -> FloatArray:  # noqa: ANN401
 @pytest.mark.parametrize("case", ["mitred", "square", "straight", "1 mm", "1 km"])
 def test_extrusions_in_rhino(tmp_path: Path, case: str) -> None:
     beams = CASES[case]
-    model = rhino3dm.File3dm.Read(str(write_3dm(None, tmp_path / "b.3dm", beams=beams)))
+    model = rhino3dm.File3dm.Read(str(write_3dm(None, tmp_path / "b.3dm", beams=beams).path))
     objects = on_layer(model, "Beams")
     assert [item.Attributes.Name for item in objects] == list(beams.annuli.ids)
     size = norm(beams.sections[:, 0, 0] - beams.sections[:, 1, 0]).max()
@@ -230,7 +230,7 @@ def test_extrusions_in_rhino(tmp_path: Path, case: str) -> None:
 def test_axes_layers_and_text_in_rhino(tmp_path: Path) -> None:
     beams = CASES["mitred"]
     panels, _ = cut_panels(TORUS, "intersection")
-    path = write_3dm(panels, tmp_path / "m.3dm", beams=beams)
+    path = write_3dm(panels, tmp_path / "m.3dm", beams=beams).path
     model = rhino3dm.File3dm.Read(str(path))
     assert {"Panels", "Edges", "Beams", "Axes"} <= {layer.Name for layer in model.Layers}
     axes = on_layer(model, "Axes")
@@ -245,6 +245,8 @@ def test_axes_layers_and_text_in_rhino(tmp_path: Path) -> None:
     assert text["id"] == beams.annuli.ids[4] == item.Attributes.Name
     assert text["nodes"] == " ".join(map(str, beams.annuli.edge_vertices[4].tolist()))
     assert float(text["thickness"]) == pytest.approx(beams.thickness, rel=1e-11)
-    again = rhino3dm.File3dm.Read(str(write_3dm(None, tmp_path / "again.3dm", beams=beams)))
+    again = rhino3dm.File3dm.Read(
+        str(write_3dm(None, tmp_path / "again.3dm", beams=beams).path)
+    )
     ids = {str(item.Attributes.Id) for item in again.Objects}
     assert ids <= {str(item.Attributes.Id) for item in model.Objects}
