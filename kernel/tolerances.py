@@ -68,3 +68,9 @@ TRANSFORM_DIGITS: Final = 1e-6
 
 AT_INFINITY: Final = 1e-6
 """Vertices this close, in mean edges, to the point sent to infinity have no usable image."""
+
+STRAIGHT_CORNER: Final = 1e-9
+"""A corner that turns the wrong way by less (radians) is straight."""
+
+DUAL_EDGE: Final = 1e-9
+"""A dual edge shorter than this share of the edge that it crosses has no direction."""

@@ -1,0 +1,442 @@
+"""
+Sphere meshes dual to triangulations: a face for every vertex, three spheres meet in a corner.
+
+A triangle mesh with a sphere at every vertex gives a sphere mesh with the dual connectivity:
+the spheres of a triangle meet in two points, mirror images in the plane of the three centres,
+and the one nearest the triangle is a vertex. Regular triangulations give hexagons.
+
+The formulas are those of Section 7 of the paper "Meshes with Spherical Faces".
+"""
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
+from .errors import InputError, name_ids
+from .mesh import Mesh, face_centroids, mean_edge_length
+from .sphere_mesh import SphereMesh
+from .spheres import Kind, from_plane, kind, minkowski, recenter
+from .tolerances import DEGENERATE, EPSILON, SAME_PLANE
+
+BoundaryRule: TypeAlias = Literal["drop", "clip"]
+
+IMAGINARY = "three spheres meet in no real point at corners {}"
+UNCLIPPED = "a sphere does not reach the boundary at corners {}"
+
+
+@dataclass(frozen=True)
+class DualSpheres:
+    """
+    A sphere mesh dual to a triangulation, and what could not be made.
+
+    Attributes
+    ----------
+    sphere_mesh : SphereMesh
+        One face for every vertex of the triangulation whose corners are all real.
+    vertex_ids : (F,) int array
+        Vertex of the triangulation of each face.
+    left_out : tuple of (int, str)
+        Vertices without a face, and the reason of each; boundary vertices that are dropped
+        by rule are not among them.
+    n_imaginary : int
+        Triangles whose spheres have no real point in common.
+    """
+
+    sphere_mesh: SphereMesh
+    vertex_ids: IntArray
+    left_out: tuple[tuple[int, str], ...]
+    n_imaginary: int
+
+
+@dataclass(frozen=True)
+class VertexFans:
+    """
+    Triangles around vertices, counter-clockwise.
+
+    Attributes
+    ----------
+    vertices : (n,) int array
+        The vertices.
+    corners : (m,) int array
+        Corners at each vertex, one vertex after the other; an open fan starts at the boundary
+        half-edge that leaves the vertex.
+    offsets : (n + 1,) int array
+        First corner of each vertex, and m.
+    """
+
+    vertices: IntArray
+    corners: IntArray
+    offsets: IntArray
+
+
+def check_triangles(mesh: Mesh) -> None:
+    """
+    Refuse a mesh that is no triangulation.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Raises
+    ------
+    InputError
+        If faces are no triangles; the message names them.
+    """
+    bad = np.flatnonzero(mesh.degrees != 3)
+    if len(bad):
+        raise InputError(
+            f"faces {name_ids(bad.tolist())} are no triangles: triangulate the mesh first"
+        )
+
+
+def meet_three(rows: FloatArray) -> tuple[FloatArray, BoolArray]:
+    """
+    The common point of three spheres or planes that lies nearest the origin.
+
+    Parameters
+    ----------
+    rows : (n, 3, 5) float array
+        Unit rows in coordinates whose origin and unit suit the place where they meet.
+
+    Returns
+    -------
+    points : (n, 3) float array
+        Of the two common points the one nearer the origin. Where they are not real, the point
+        half way between them: of the radical axis, in the plane of the centres.
+    is_real : (n,) bool array
+        False where the three have no real point in common, or more than two.
+
+    Notes
+    -----
+    With ``q = |x|²`` the equations ``B·x - A q = C`` are linear: their solutions form a line
+    in the space of (x, q), which meets the paraboloid in the two points. The one of smaller
+    parameter, counted from the solution of least length, is nearer the origin. Nothing is
+    divided by A, and for planes the second point goes to infinity.
+    """
+    # Neighbours differ little: differences are exact, and keep the small system balanced.
+    system = np.stack([rows[:, 0], rows[:, 1] - rows[:, 0], rows[:, 2] - rows[:, 0]], 1)
+    size = norm(system)[..., None]
+    system = np.divide(system, size, out=np.zeros_like(system), where=size > 0)
+    a, b = system[..., 0], system[..., 1:4]
+    axis = np.einsum("ni,nij->nj", a, np.cross(np.roll(b, -1, 1), np.roll(b, -2, 1)))
+    line = np.concatenate([axis, dot(b[:, 0], np.cross(b[:, 1], b[:, 2]))[:, None]], 1)
+    length = norm(line)
+    is_line = length > DEGENERATE * norm(system[:, 1, :4]) * norm(system[:, 2, :4])
+    is_line &= length > 0
+    line = np.where(is_line[:, None], line / np.where(is_line, length, 1.0)[:, None], 0.0)
+    matrix = np.concatenate([np.concatenate([b, -a[..., None]], -1), line[:, None]], 1)
+    matrix[~is_line] = np.eye(4)
+    right = np.concatenate([system[..., 4], np.zeros((len(rows), 1))], 1)
+    right[~is_line] = 0
+    start = np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0], np.float64)
+    return _meet_line(start, line, is_line)
+
+
+def _meet_line(
+    start: FloatArray, line: FloatArray, is_line: BoolArray
+) -> tuple[FloatArray, BoolArray]:
+    """Where lines of the space (x, q) meet the paraboloid q = |x|², the root of least size."""
+    square = dot(line[:, :3], line[:, :3])
+    slope = 2 * dot(start[:, :3], line[:, :3]) - line[:, 3]
+    value = dot(start[:, :3], start[:, :3]) - start[:, 3]
+    discriminant = slope**2 - 4 * square * value
+    is_real = is_line & (discriminant >= 0)
+    divisor = slope + np.copysign(np.sqrt(np.maximum(discriminant, 0)), slope)
+    zeros = np.zeros_like(value)
+    near = np.divide(-2 * value, divisor, out=zeros.copy(), where=divisor != 0)
+    half_way = np.divide(-slope, 2 * square, out=zeros, where=square > 0)
+    is_real &= (divisor != 0) | (value == 0)
+    step = np.where(is_real, near, half_way)
+    return start[:, :3] + step[:, None] * line[:, :3], is_real
+
+
+def vertex_rows(mesh: Mesh, spheres: ArrayLike) -> FloatArray:
+    """
+    Spheres at the vertices of a mesh, seen from their vertex.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    spheres : (V, 5) array_like of float
+        Real rows of any positive scale, in model coordinates.
+
+    Returns
+    -------
+    (V, 5) float array
+        Unit rows whose origin is the vertex, in model units.
+
+    Raises
+    ------
+    InputError
+        If the rows do not match the vertices, are not finite, or are no real spheres or planes;
+        the message names the vertices.
+
+    Notes
+    -----
+    Far from the origin a row rounds its last coefficient: where the vertex lies on its sphere
+    up to this rounding, it lies on it exactly.
+    """
+    rows = np.asarray(spheres, float)
+    if rows.shape != (mesh.n_vertices, 5):
+        raise InputError(
+            f"spheres must be one per vertex, of shape ({mesh.n_vertices}, 5), not {rows.shape}"
+        )
+    bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
+    if len(bad):
+        raise InputError(f"the spheres of vertices {name_ids(bad.tolist())} are not finite")
+    points = mesh.vertices
+    local = recenter(rows, points)
+    scale = np.abs(rows[:, 4]) + np.abs(dot(rows[:, 1:4], points))
+    scale = scale + np.abs(rows[:, 0]) * dot(points, points)
+    local[np.abs(local[:, 4]) <= 8 * EPSILON * scale, 4] = 0
+    kinds = kind(local)
+    bad = np.flatnonzero((kinds == Kind.IMAGINARY) | (kinds == Kind.POINT))
+    if len(bad):
+        raise InputError(
+            f"the spheres of vertices {name_ids(bad.tolist())} are imaginary or points"
+        )
+    return local / np.sqrt(minkowski(local, local))[:, None]
+
+
+def triangle_points(
+    mesh: Mesh, rows: FloatArray, faces: IntArray | None = None
+) -> tuple[FloatArray, BoolArray]:
+    """
+    Common point of the spheres of each triangle, the one nearest the triangle.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        A triangulation.
+    rows : (V, 5) float array
+        Unit rows at the vertices, seen from them (`vertex_rows`).
+    faces : (n,) int array, optional
+        Triangles asked for; all by default.
+
+    Returns
+    -------
+    points : (n, 3) float array
+        Points relative to the centroids of the triangles; where they are not real, of the
+        radical axis.
+    is_real : (n,) bool array
+        False where the spheres have no real point in common.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Sec. 7.
+    """
+    corners = (
+        mesh.corners.reshape(-1, 3) if faces is None else mesh.corners.reshape(-1, 3)[faces]
+    )
+    positions = mesh.vertices[corners]
+    relative = positions - positions[:, :1]
+    origins = relative.mean(axis=1, keepdims=True)
+    return _meet_at(rows[corners], origins - relative, mean_edge_length(mesh))
+
+
+def _meet_at(
+    rows: FloatArray, origins: FloatArray, size: float
+) -> tuple[FloatArray, BoolArray]:
+    """Meet rows (n, 3, 5), each seen from the origins (n, 3, 3) of a common place."""
+    units = np.array([size, 1.0, 1.0, 1.0, 1 / size])
+    points, is_real = meet_three(recenter(rows, origins) * units)
+    return points * size, is_real
+
+
+def vertex_fans(mesh: Mesh, vertices: IntArray) -> VertexFans:
+    """
+    Faces around vertices in counter-clockwise order.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh, of any face degrees.
+    vertices : (n,) int array
+        Vertices that belong to faces.
+
+    Returns
+    -------
+    VertexFans
+        The fans, closed ones of inner vertices and open ones on the boundary.
+    """
+    topology = mesh.topology
+    count = len(mesh.corners)
+    previous = np.empty(count, np.int64)
+    previous[topology.next_corners] = np.arange(count)
+    around = topology.twins[previous]
+    start = np.full(mesh.n_vertices, -1)
+    start[mesh.corners] = np.arange(count)
+    opening = np.flatnonzero(topology.twins < 0)
+    start[mesh.corners[opening]] = opening
+    owners, found = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
+    active, current = np.arange(len(vertices)), start[vertices]
+    while len(active):
+        owners.append(active)
+        found.append(current)
+        current = around[current]
+        going = (current >= 0) & (current != start[vertices[active]])
+        active, current = active[going], current[going]
+    order = np.argsort(np.concatenate(owners), kind="stable")
+    sizes = np.bincount(np.concatenate(owners), minlength=len(vertices))
+    offsets = np.concatenate([np.zeros(1, np.int64), np.cumsum(sizes)])
+    return VertexFans(vertices, np.concatenate(found)[order], offsets)
+
+
+def dual_sphere_mesh(
+    mesh: Mesh, spheres: ArrayLike, boundary: BoundaryRule = "drop"
+) -> DualSpheres:
+    """
+    Sphere mesh with a face for every vertex of a triangulation.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        A triangulation.
+    spheres : (V, 5) array_like of float
+        Real rows of any positive scale, planes included, in model coordinates; N to the side of
+        the normals of the mesh.
+    boundary : {"drop", "clip"}
+        Faces only for inner vertices; or also for those of the boundary, cut off by the planes
+        that stand on the boundary edges.
+
+    Returns
+    -------
+    DualSpheres
+        The sphere mesh and the vertices that have no face, with reasons.
+
+    Raises
+    ------
+    InputError
+        If faces are no triangles, a row is unusable, the rule is unknown, or no face remains.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Sec. 7.
+    """
+    check_triangles(mesh)
+    if boundary not in ("drop", "clip"):
+        raise InputError(f"boundary must be 'drop' or 'clip', not {boundary!r}")
+    rows = vertex_rows(mesh, spheres)
+    is_inner = ~mesh.topology.is_boundary_vertex
+    is_used = np.zeros(mesh.n_vertices, bool)
+    is_used[mesh.corners] = True
+    fans = vertex_fans(mesh, np.flatnonzero(is_used if boundary == "clip" else is_inner))
+    points, is_real = triangle_points(mesh, rows)
+    points = points + face_centroids(mesh)
+    owners = np.repeat(np.arange(len(fans.vertices)), np.diff(fans.offsets))
+    corners = mesh.topology.corner_faces[fans.corners]
+    n_imaginary = int((~is_real).sum())
+    if boundary == "clip":
+        rim, rim_real, turns = _rim_points(mesh, rows)
+        points, is_real = np.concatenate([points, rim]), np.concatenate([is_real, rim_real])
+        owners, corners = _close_fans(mesh, fans, owners, corners, turns)
+    good = np.ones(len(fans.vertices), bool)
+    good[owners[~is_real[corners]]] = False
+    left_out = _reasons(fans.vertices, owners, corners, is_real, mesh.n_faces)
+    good &= np.bincount(owners, minlength=len(good)) >= 3
+    if not good.any():
+        raise InputError(
+            "no vertex of the triangulation gets a face: there is no vertex with a closed ring "
+            "of triangles whose spheres meet; use larger spheres or a finer mesh"
+        )
+    keep = good[owners]
+    return DualSpheres(
+        _assemble(mesh, rows, fans.vertices[good], owners[keep], corners[keep], points),
+        fans.vertices[good],
+        left_out,
+        n_imaginary,
+    )
+
+
+def _rim_points(mesh: Mesh, rows: FloatArray) -> tuple[FloatArray, BoolArray, BoolArray]:
+    """
+    Points of the boundary: on its edges where two spheres meet the upright plane, then corners.
+
+    Of b boundary half-edges: points (2 b, 3), whether they are real, and whether the boundary
+    turns at their tails (b,). Where it does not, there is no corner.
+    """
+    topology, size = mesh.topology, mean_edge_length(mesh)
+    leaving = np.flatnonzero(topology.twins < 0)
+    tails, heads = mesh.corners[leaving], mesh.corners[topology.next_corners[leaving]]
+    sides = mesh.vertices[heads] - mesh.vertices[tails]
+    upright = unit(rows[tails, 1:4] + rows[heads, 1:4])
+    walls = from_plane(unit(np.cross(upright, sides)), np.zeros(len(leaving)))
+    # Seen from its middle, an edge plane passes through the origin; seen from its ends as well.
+    middle = np.stack([sides / 2, -sides / 2, np.zeros_like(sides)], 1)
+    edges = np.stack([rows[tails], rows[heads], walls], 1)
+    edge_points, edge_real = _meet_at(edges, middle, size)
+    entering = np.empty(mesh.n_vertices, np.int64)
+    entering[heads] = np.arange(len(leaving))
+    before = walls[entering[tails]]
+    turns = norm(np.cross(walls[:, 1:4], before[:, 1:4])) > SAME_PLANE
+    corners = np.stack([rows[tails], walls, before], 1)
+    corner_points, corner_real = _meet_at(corners, np.zeros((len(leaving), 3, 3)), size)
+    points = [
+        mesh.vertices[tails] + sides / 2 + edge_points,
+        mesh.vertices[tails] + corner_points,
+    ]
+    return np.concatenate(points), np.concatenate([edge_real, corner_real]), turns
+
+
+def _close_fans(
+    mesh: Mesh, fans: VertexFans, owners: IntArray, corners: IntArray, turns: BoolArray
+) -> tuple[IntArray, IntArray]:
+    """Faces of open fans closed by points of the boundary, numbered after the triangles."""
+    topology = mesh.topology
+    leaving = np.flatnonzero(topology.twins < 0)
+    rank = np.full(len(mesh.corners), -1)
+    rank[leaving] = np.arange(len(leaving))
+    previous = np.empty(len(mesh.corners), np.int64)
+    previous[topology.next_corners] = np.arange(len(previous))
+    first = rank[fans.corners[fans.offsets[:-1]]]
+    last = rank[previous[fans.corners[fans.offsets[1:] - 1]]]
+    is_open = np.flatnonzero(first >= 0)
+    first, last = first[is_open], last[is_open]
+    bent = turns[first]
+    groups = [
+        (is_open, mesh.n_faces + first, 0),
+        (owners, corners, 1),
+        (is_open, mesh.n_faces + last, 2),
+        (is_open[bent], mesh.n_faces + len(leaving) + first[bent], 3),
+    ]
+    all_owners = np.concatenate([group[0] for group in groups])
+    places = np.concatenate([np.full(len(group[0]), group[2]) for group in groups])
+    order = np.lexsort((places, all_owners))
+    return all_owners[order], np.concatenate([group[1] for group in groups])[order]
+
+
+def _assemble(
+    mesh: Mesh,
+    rows: FloatArray,
+    vertex_ids: IntArray,
+    owners: IntArray,
+    corners: IntArray,
+    points: FloatArray,
+) -> SphereMesh:
+    used, numbers = np.unique(corners, return_inverse=True)
+    sizes = np.unique(owners, return_counts=True)[1]
+    dual = Mesh(points[used], np.split(numbers, np.cumsum(sizes)[:-1]))
+    shifts = face_centroids(dual) - mesh.vertices[vertex_ids]
+    return SphereMesh.from_local(dual, recenter(rows[vertex_ids], shifts))
+
+
+def _reasons(
+    vertices: IntArray,
+    owners: IntArray,
+    corners: IntArray,
+    is_real: BoolArray,
+    n_triangles: int,
+) -> tuple[tuple[int, str], ...]:
+    missing = np.flatnonzero(~is_real[corners])
+    result: dict[int, list[int]] = {}
+    for place in missing.tolist():
+        result.setdefault(int(vertices[owners[place]]), []).append(int(corners[place]))
+    return tuple(
+        (vertex, (IMAGINARY if ids[0] < n_triangles else UNCLIPPED).format(name_ids(ids)))
+        for vertex, ids in sorted(result.items())
+    )
