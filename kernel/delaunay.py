@@ -13,8 +13,8 @@ import numpy as np
 
 from .arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from .mesh import Mesh, face_centroids
-from .shex import triangle_points
 from .tolerances import DUAL_EDGE
+from .triples import triangle_points
 
 MAX_SWEEPS = 60
 UPRIGHT_TILT = 0.5
@@ -50,7 +50,7 @@ def dual_edge_lengths(mesh: Mesh, rows: FloatArray) -> FloatArray:
     mesh : Mesh
         A triangulation.
     rows : (V, 5) float array
-        Unit rows at the vertices, seen from them (`shex.vertex_rows`).
+        Unit rows at the vertices, seen from them (`triples.vertex_rows`).
 
     Returns
     -------
@@ -85,7 +85,7 @@ def flip_to_convex(mesh: Mesh, rows: FloatArray, max_sweeps: int = MAX_SWEEPS) -
     mesh : Mesh
         A triangulation.
     rows : (V, 5) float array
-        Unit rows at the vertices, seen from them (`shex.vertex_rows`).
+        Unit rows at the vertices, seen from them (`triples.vertex_rows`).
     max_sweeps : int
         Largest number of rounds.
 

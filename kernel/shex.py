@@ -14,17 +14,18 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
+from .arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from .errors import InputError, name_ids
-from .mesh import Mesh, face_centroids, mean_edge_length
+from .mesh import Mesh, face_centroids, face_vector_areas, mean_edge_length
 from .sphere_mesh import SphereMesh
-from .spheres import Kind, from_plane, kind, minkowski, recenter
-from .tolerances import DEGENERATE, EPSILON, SAME_PLANE
+from .spheres import from_plane, recenter
+from .tolerances import SAME_PLANE
+from .triples import check_triangles, meet_near, triangle_points, vertex_rows
 
 BoundaryRule: TypeAlias = Literal["drop", "clip"]
 
-IMAGINARY = "three spheres meet in no real point at corners {}"
-UNCLIPPED = "a sphere does not reach the boundary at corners {}"
+IMAGINARY = "the spheres of triangles {} have no real point in common"
+UNCLIPPED = "neighbouring spheres do not meet on the boundary"
 
 
 @dataclass(frozen=True)
@@ -70,182 +71,6 @@ class VertexFans:
     vertices: IntArray
     corners: IntArray
     offsets: IntArray
-
-
-def check_triangles(mesh: Mesh) -> None:
-    """
-    Refuse a mesh that is no triangulation.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        The mesh.
-
-    Raises
-    ------
-    InputError
-        If faces are no triangles; the message names them.
-    """
-    bad = np.flatnonzero(mesh.degrees != 3)
-    if len(bad):
-        raise InputError(
-            f"faces {name_ids(bad.tolist())} are no triangles: triangulate the mesh first"
-        )
-
-
-def meet_three(rows: FloatArray) -> tuple[FloatArray, BoolArray]:
-    """
-    The common point of three spheres or planes that lies nearest the origin.
-
-    Parameters
-    ----------
-    rows : (n, 3, 5) float array
-        Unit rows in coordinates whose origin and unit suit the place where they meet.
-
-    Returns
-    -------
-    points : (n, 3) float array
-        Of the two common points the one nearer the origin. Where they are not real, the point
-        half way between them: of the radical axis, in the plane of the centres.
-    is_real : (n,) bool array
-        False where the three have no real point in common, or more than two.
-
-    Notes
-    -----
-    With ``q = |x|²`` the equations ``B·x - A q = C`` are linear: their solutions form a line
-    in the space of (x, q), which meets the paraboloid in the two points. The one of smaller
-    parameter, counted from the solution of least length, is nearer the origin. Nothing is
-    divided by A, and for planes the second point goes to infinity.
-    """
-    # Neighbours differ little: differences are exact, and keep the small system balanced.
-    system = np.stack([rows[:, 0], rows[:, 1] - rows[:, 0], rows[:, 2] - rows[:, 0]], 1)
-    size = norm(system)[..., None]
-    system = np.divide(system, size, out=np.zeros_like(system), where=size > 0)
-    a, b = system[..., 0], system[..., 1:4]
-    axis = np.einsum("ni,nij->nj", a, np.cross(np.roll(b, -1, 1), np.roll(b, -2, 1)))
-    line = np.concatenate([axis, dot(b[:, 0], np.cross(b[:, 1], b[:, 2]))[:, None]], 1)
-    length = norm(line)
-    is_line = length > DEGENERATE * norm(system[:, 1, :4]) * norm(system[:, 2, :4])
-    is_line &= length > 0
-    line = np.where(is_line[:, None], line / np.where(is_line, length, 1.0)[:, None], 0.0)
-    matrix = np.concatenate([np.concatenate([b, -a[..., None]], -1), line[:, None]], 1)
-    matrix[~is_line] = np.eye(4)
-    right = np.concatenate([system[..., 4], np.zeros((len(rows), 1))], 1)
-    right[~is_line] = 0
-    start = np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0], np.float64)
-    return _meet_line(start, line, is_line)
-
-
-def _meet_line(
-    start: FloatArray, line: FloatArray, is_line: BoolArray
-) -> tuple[FloatArray, BoolArray]:
-    """Where lines of the space (x, q) meet the paraboloid q = |x|², the root of least size."""
-    square = dot(line[:, :3], line[:, :3])
-    slope = 2 * dot(start[:, :3], line[:, :3]) - line[:, 3]
-    value = dot(start[:, :3], start[:, :3]) - start[:, 3]
-    discriminant = slope**2 - 4 * square * value
-    is_real = is_line & (discriminant >= 0)
-    divisor = slope + np.copysign(np.sqrt(np.maximum(discriminant, 0)), slope)
-    zeros = np.zeros_like(value)
-    near = np.divide(-2 * value, divisor, out=zeros.copy(), where=divisor != 0)
-    half_way = np.divide(-slope, 2 * square, out=zeros, where=square > 0)
-    is_real &= (divisor != 0) | (value == 0)
-    step = np.where(is_real, near, half_way)
-    return start[:, :3] + step[:, None] * line[:, :3], is_real
-
-
-def vertex_rows(mesh: Mesh, spheres: ArrayLike) -> FloatArray:
-    """
-    Spheres at the vertices of a mesh, seen from their vertex.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        The mesh.
-    spheres : (V, 5) array_like of float
-        Real rows of any positive scale, in model coordinates.
-
-    Returns
-    -------
-    (V, 5) float array
-        Unit rows whose origin is the vertex, in model units.
-
-    Raises
-    ------
-    InputError
-        If the rows do not match the vertices, are not finite, or are no real spheres or planes;
-        the message names the vertices.
-
-    Notes
-    -----
-    Far from the origin a row rounds its last coefficient: where the vertex lies on its sphere
-    up to this rounding, it lies on it exactly.
-    """
-    rows = np.asarray(spheres, float)
-    if rows.shape != (mesh.n_vertices, 5):
-        raise InputError(
-            f"spheres must be one per vertex, of shape ({mesh.n_vertices}, 5), not {rows.shape}"
-        )
-    bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
-    if len(bad):
-        raise InputError(f"the spheres of vertices {name_ids(bad.tolist())} are not finite")
-    points = mesh.vertices
-    local = recenter(rows, points)
-    scale = np.abs(rows[:, 4]) + np.abs(dot(rows[:, 1:4], points))
-    scale = scale + np.abs(rows[:, 0]) * dot(points, points)
-    local[np.abs(local[:, 4]) <= 8 * EPSILON * scale, 4] = 0
-    kinds = kind(local)
-    bad = np.flatnonzero((kinds == Kind.IMAGINARY) | (kinds == Kind.POINT))
-    if len(bad):
-        raise InputError(
-            f"the spheres of vertices {name_ids(bad.tolist())} are imaginary or points"
-        )
-    return local / np.sqrt(minkowski(local, local))[:, None]
-
-
-def triangle_points(
-    mesh: Mesh, rows: FloatArray, faces: IntArray | None = None
-) -> tuple[FloatArray, BoolArray]:
-    """
-    Common point of the spheres of each triangle, the one nearest the triangle.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        A triangulation.
-    rows : (V, 5) float array
-        Unit rows at the vertices, seen from them (`vertex_rows`).
-    faces : (n,) int array, optional
-        Triangles asked for; all by default.
-
-    Returns
-    -------
-    points : (n, 3) float array
-        Points relative to the centroids of the triangles; where they are not real, of the
-        radical axis.
-    is_real : (n,) bool array
-        False where the spheres have no real point in common.
-
-    References
-    ----------
-    Meshes with Spherical Faces, Sec. 7.
-    """
-    corners = (
-        mesh.corners.reshape(-1, 3) if faces is None else mesh.corners.reshape(-1, 3)[faces]
-    )
-    positions = mesh.vertices[corners]
-    relative = positions - positions[:, :1]
-    origins = relative.mean(axis=1, keepdims=True)
-    return _meet_at(rows[corners], origins - relative, mean_edge_length(mesh))
-
-
-def _meet_at(
-    rows: FloatArray, origins: FloatArray, size: float
-) -> tuple[FloatArray, BoolArray]:
-    """Meet rows (n, 3, 5), each seen from the origins (n, 3, 3) of a common place."""
-    units = np.array([size, 1.0, 1.0, 1.0, 1 / size])
-    points, is_real = meet_three(recenter(rows, origins) * units)
-    return points * size, is_real
 
 
 def vertex_fans(mesh: Mesh, vertices: IntArray) -> VertexFans:
@@ -298,8 +123,7 @@ def dual_sphere_mesh(
     mesh : Mesh
         A triangulation.
     spheres : (V, 5) array_like of float
-        Real rows of any positive scale, planes included, in model coordinates; N to the side of
-        the normals of the mesh.
+        Real rows of any scale and orientation, planes included, in model coordinates.
     boundary : {"drop", "clip"}
         Faces only for inner vertices; or also for those of the boundary, cut off by the planes
         that stand on the boundary edges.
@@ -321,7 +145,7 @@ def dual_sphere_mesh(
     check_triangles(mesh)
     if boundary not in ("drop", "clip"):
         raise InputError(f"boundary must be 'drop' or 'clip', not {boundary!r}")
-    rows = vertex_rows(mesh, spheres)
+    rows = _orient(mesh, vertex_rows(mesh, spheres))
     is_inner = ~mesh.topology.is_boundary_vertex
     is_used = np.zeros(mesh.n_vertices, bool)
     is_used[mesh.corners] = True
@@ -369,13 +193,13 @@ def _rim_points(mesh: Mesh, rows: FloatArray) -> tuple[FloatArray, BoolArray, Bo
     # Seen from its middle, an edge plane passes through the origin; seen from its ends as well.
     middle = np.stack([sides / 2, -sides / 2, np.zeros_like(sides)], 1)
     edges = np.stack([rows[tails], rows[heads], walls], 1)
-    edge_points, edge_real = _meet_at(edges, middle, size)
+    edge_points, edge_real = meet_near(edges, middle, size)
     entering = np.empty(mesh.n_vertices, np.int64)
     entering[heads] = np.arange(len(leaving))
     before = walls[entering[tails]]
     turns = norm(np.cross(walls[:, 1:4], before[:, 1:4])) > SAME_PLANE
     corners = np.stack([rows[tails], walls, before], 1)
-    corner_points, corner_real = _meet_at(corners, np.zeros((len(leaving), 3, 3)), size)
+    corner_points, corner_real = meet_near(corners, np.zeros((len(leaving), 3, 3)), size)
     points = [
         mesh.vertices[tails] + sides / 2 + edge_points,
         mesh.vertices[tails] + corner_points,
@@ -410,6 +234,13 @@ def _close_fans(
     return all_owners[order], np.concatenate([group[1] for group in groups])[order]
 
 
+def _orient(mesh: Mesh, rows: FloatArray) -> FloatArray:
+    """Rows seen from the vertices, turned so that N agrees with the normals of the mesh."""
+    areas = face_vector_areas(mesh)[mesh.topology.corner_faces]
+    upwards = sum_by(mesh.corners, areas, mesh.n_vertices)
+    return np.where(dot(rows[:, 1:4], upwards)[:, None] < 0, -rows, rows)
+
+
 def _assemble(
     mesh: Mesh,
     rows: FloatArray,
@@ -436,7 +267,9 @@ def _reasons(
     result: dict[int, list[int]] = {}
     for place in missing.tolist():
         result.setdefault(int(vertices[owners[place]]), []).append(int(corners[place]))
-    return tuple(
-        (vertex, (IMAGINARY if ids[0] < n_triangles else UNCLIPPED).format(name_ids(ids)))
-        for vertex, ids in sorted(result.items())
-    )
+    reasons: list[tuple[int, str]] = []
+    for vertex, ids in sorted(result.items()):
+        triangles = [point for point in ids if point < n_triangles]
+        reason = IMAGINARY.format(name_ids(triangles)) if triangles else UNCLIPPED
+        reasons.append((vertex, reason))
+    return tuple(reasons)

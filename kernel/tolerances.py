@@ -74,3 +74,9 @@ STRAIGHT_CORNER: Final = 1e-9
 
 DUAL_EDGE: Final = 1e-9
 """A dual edge shorter than this share of the edge that it crosses has no direction."""
+
+AXIS_SLACK: Final = 0.004363323129985824
+"""By how much (0.25 degrees) a node axis may pass the bound on its angle."""
+
+OFFSET_STEP: Final = 1e-6
+"""Growing offsets are at rest when none moves by more, relative to the least."""
