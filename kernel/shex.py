@@ -19,8 +19,8 @@ from .errors import InputError, name_ids
 from .mesh import Mesh, face_centroids, face_vector_areas, mean_edge_length
 from .sphere_mesh import SphereMesh
 from .spheres import from_plane, recenter
-from .tolerances import SAME_PLANE
-from .triples import check_triangles, meet_near, triangle_points, vertex_rows
+from .tolerances import FAR_CORNER, SAME_PLANE
+from .triples import check_triangles, corner_reach, meet_near, triangle_points, vertex_rows
 
 BoundaryRule: TypeAlias = Literal["drop", "clip"]
 
@@ -42,6 +42,9 @@ class DualSpheres:
     left_out : tuple of (int, str)
         Vertices without a face, and the reason of each; boundary vertices that are dropped
         by rule are not among them.
+    has_far_corner : (F,) bool array
+        Faces with a corner far from its triangle: beyond the boundary, where triangles on it
+        are obtuse.
     n_imaginary : int
         Triangles whose spheres have no real point in common.
     """
@@ -49,6 +52,7 @@ class DualSpheres:
     sphere_mesh: SphereMesh
     vertex_ids: IntArray
     left_out: tuple[tuple[int, str], ...]
+    has_far_corner: BoolArray
     n_imaginary: int
 
 
@@ -151,6 +155,7 @@ def dual_sphere_mesh(
     is_used[mesh.corners] = True
     fans = vertex_fans(mesh, np.flatnonzero(is_used if boundary == "clip" else is_inner))
     points, is_real = triangle_points(mesh, rows)
+    is_far = corner_reach(mesh, points) > FAR_CORNER
     points = points + face_centroids(mesh)
     owners = np.repeat(np.arange(len(fans.vertices)), np.diff(fans.offsets))
     corners = mesh.topology.corner_faces[fans.corners]
@@ -169,10 +174,14 @@ def dual_sphere_mesh(
             "of triangles whose spheres meet; use larger spheres or a finer mesh"
         )
     keep = good[owners]
+    far = keep & (corners < mesh.n_faces)
+    has_far_corner = np.zeros(len(good), bool)
+    has_far_corner[owners[far][is_far[corners[far]]]] = True
     return DualSpheres(
         _assemble(mesh, rows, fans.vertices[good], owners[keep], corners[keep], points),
         fans.vertices[good],
         left_out,
+        has_far_corner[good],
         n_imaginary,
     )
 

@@ -80,3 +80,6 @@ AXIS_SLACK: Final = 0.004363323129985824
 
 OFFSET_STEP: Final = 1e-6
 """Growing offsets are at rest when none moves by more, relative to the least."""
+
+FAR_CORNER: Final = 0.6
+"""A corner farther from its triangle than this share of the longest side is worth a warning."""

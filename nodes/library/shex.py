@@ -195,26 +195,27 @@ def tangent_sphere_shex(
     report : mapping
         Numbers of ``faces``, of those that are ``convex``, ``bow_tie`` and ``crossing``
         themselves, and of ``imaginary`` vertices; ``degrees``; ``left_out`` (vertex and reason
-        of each face that cannot be made) and ``crossing_faces`` (face and vertex);
+        of each face that cannot be made), ``crossing_faces`` and ``far_corners`` (face and
+        vertex; far from their triangle, beyond an obtuse one on the boundary);
         ``vertex_error`` (max, relative_to_edge); ``vertex_ids``, the vertex of each face.
     """
     dual = shex.dual_sphere_mesh(mesh, spheres, boundary)
     result = dual.sphere_mesh
     shapes = face_shapes.face_shapes(result)
     crossing = np.flatnonzero(shapes == face_shapes.CROSSING_FACE).tolist()
+    far = np.flatnonzero(dual.has_far_corner).tolist()
     miss = float(vertex_errors(result).max())
     degrees, counts = np.unique(result.mesh.degrees, return_counts=True)
-    shapes_of = {"convex": face_shapes.CONVEX, "bow_tie": face_shapes.BOW_TIE}
     report = {
         "faces": result.mesh.n_faces,
-        **{name: int((shapes == shape).sum()) for name, shape in shapes_of.items()},
+        "convex": int((shapes == face_shapes.CONVEX).sum()),
+        "bow_tie": int((shapes == face_shapes.BOW_TIE).sum()),
         "crossing": len(crossing),
         "imaginary": dual.n_imaginary,
         "degrees": {str(d): n for d, n in zip(degrees.tolist(), counts.tolist(), strict=True)},
         "left_out": [{"vertex": vertex, "reason": reason} for vertex, reason in dual.left_out],
-        "crossing_faces": [
-            {"face": face, "vertex": int(dual.vertex_ids[face])} for face in crossing
-        ],
+        "crossing_faces": _name_faces(dual, crossing),
+        "far_corners": _name_faces(dual, far),
         "vertex_error": {
             "max": miss,
             "relative_to_edge": miss / mean_edge_length(result.mesh),
@@ -231,7 +232,16 @@ def tangent_sphere_shex(
             f"{len(crossing)} faces cross themselves: {name_ids(crossing)}; use smaller "
             "spheres or let evolve_spheres flip edges"
         )
+    if far:
+        warn(
+            f"{len(far)} faces reach far beyond the boundary: {name_ids(far)}; triangles on it "
+            "are too obtuse"
+        )
     return Hexagons(result, report)
+
+
+def _name_faces(dual: shex.DualSpheres, faces: list[int]) -> list[dict[str, int]]:
+    return [{"face": face, "vertex": int(dual.vertex_ids[face])} for face in faces]
 
 
 @node

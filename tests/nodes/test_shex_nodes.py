@@ -95,6 +95,18 @@ def test_bad_faces_are_listed_and_warned_of(catenoid: Mesh) -> None:
     json.dumps(report, allow_nan=False)
 
 
+def test_corners_far_beyond_the_boundary_are_listed() -> None:
+    """Rows along the meridians: the triangles on the rim are flat."""
+    mesh = shifted_rows(catenoid_net(40, 40, 1.0, 1.2), along="second")
+    grown = evolve_spheres(mesh)
+    with pytest.warns(NodeWarning, match="reach far beyond the boundary"):
+        made = tangent_sphere_shex(grown.mesh, grown.spheres)
+    listed = made.report["far_corners"]
+    assert len(listed) == 40
+    heights = np.abs(mesh.vertices[[entry["vertex"] for entry in listed], 2])
+    assert (heights > 1.1).all()
+
+
 def test_what_evolution_cannot_reach_is_told(catenoid: Mesh) -> None:
     with pytest.warns(NodeWarning, match="node axes tilt by more than 0.2 degrees"):
         grown = evolve_spheres(catenoid, max_axis_angle=0.2)
