@@ -32,8 +32,8 @@ from .offsets import (
     tangent_surface,
 )
 from .solvers.levenberg_marquardt import DampedStep, levenberg_marquardt
-from .tolerances import AXIS_SLACK, DUAL_EDGE, FAR_CORNER
-from .triples import check_triangles, circumcenter_reach, corner_reach, triangle_points
+from .tolerances import AXIS_SLACK, DUAL_EDGE
+from .triples import check_triangles
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
@@ -238,17 +238,10 @@ def _turned(triangles: IntArray, side: int) -> IntArray:
 
 
 def _bad_vertices(surface: TangentSurface, offsets: FloatArray, bound: float) -> IntArray:
-    """
-    Vertices where smaller spheres help.
-
-    Dual edges run backwards, axes tilt too far, or corners lie far from triangles that are not
-    so obtuse as to send them there whatever the spheres.
-    """
-    mesh, rows = surface.mesh, _rows(surface, offsets)
-    backwards = dual_edge_lengths(mesh, rows) < -DUAL_EDGE
-    is_bad = corner_reach(mesh, triangle_points(mesh, rows)[0]) > FAR_CORNER
-    is_bad &= circumcenter_reach(mesh) < FAR_CORNER / 2
-    is_bad |= _axis_angles(surface, offsets) > bound + TOO_FAR
+    """Vertices where smaller spheres help: dual edges run backwards, or axes tilt too far."""
+    mesh = surface.mesh
+    backwards = dual_edge_lengths(mesh, _rows(surface, offsets)) < -DUAL_EDGE
+    is_bad = _axis_angles(surface, offsets) > bound + TOO_FAR
     is_bad[mesh.topology.edge_faces[backwards]] = True
     return np.unique(mesh.corners.reshape(-1, 3)[is_bad])
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from .arrays import BoolArray, FloatArray, IntArray, dot, norm
 from .errors import InputError, name_ids
-from .mesh import Mesh, face_vector_areas, mean_edge_length
+from .mesh import Mesh, mean_edge_length
 from .spheres import Kind, kind, minkowski, recenter
 from .tolerances import DEGENERATE, EPSILON
 
@@ -197,35 +197,10 @@ def corner_reach(mesh: Mesh, points: FloatArray) -> FloatArray:
     (T,) float array
         Distances from the centroids, relative to the longest side of the triangle.
     """
-    square = _squared_sides(mesh).max(axis=1)
+    corners = mesh.vertices[mesh.corners.reshape(-1, 3)]
+    sides = np.roll(corners, -1, axis=1) - corners
+    square = dot(sides, sides).max(axis=1)
     return np.sqrt(dot(points, points) / np.where(square > 0, square, 1.0))
-
-
-def circumcenter_reach(mesh: Mesh) -> FloatArray:
-    """
-    As `corner_reach`, of the circumcentres: where small spheres of equal size meet.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        A triangulation.
-
-    Returns
-    -------
-    (T,) float array
-        Distances of the circumcentres from the centroids, relative to the longest side; more
-        than 1/6 for obtuse triangles.
-    """
-    sides, areas = _squared_sides(mesh), face_vector_areas(mesh)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        radius = sides.prod(axis=1) / (16 * dot(areas, areas))
-        return np.sqrt(np.maximum(radius - sides.mean(axis=1) / 3, 0) / sides.max(axis=1))
-
-
-def _squared_sides(mesh: Mesh) -> FloatArray:
-    points = mesh.vertices[mesh.corners.reshape(-1, 3)]
-    sides = np.roll(points, -1, axis=1) - points
-    return dot(sides, sides)
 
 
 def meet_near(
