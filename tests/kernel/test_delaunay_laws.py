@@ -9,7 +9,7 @@ import pytest
 from spheremesh import Mesh
 from spheremesh.kernel.arrays import FloatArray, IntArray, unit
 from spheremesh.kernel.congruence import touching_spheres
-from spheremesh.kernel.delaunay import dual_edge_lengths, flip_to_convex
+from spheremesh.kernel.delaunay import _is_new_edge, dual_edge_lengths, flip_to_convex
 from spheremesh.kernel.face_shapes import face_shapes
 from spheremesh.kernel.shex import dual_sphere_mesh
 from spheremesh.kernel.triples import vertex_rows
@@ -155,3 +155,18 @@ def test_a_flip_that_would_fold_or_double_an_edge_is_not_made() -> None:
     rows = touching_spheres(mesh.vertices, np.tile([0.0, 0, 1], (4, 1)), np.full(4, 0.1))
     flips = flip_to_convex(mesh, vertex_rows(mesh, rows))
     assert flips.n_flips == 0
+
+
+def test_flips_come_to_an_end_where_none_helps(curved_grids: Grids) -> None:
+    """Spheres that vary wildly: some dual edges run backwards whatever is flipped."""
+    mesh, upwards, _, _ = curved_grids["torus"]
+    offsets = 0.35 * (1 + 0.9 * np.random.default_rng(2).uniform(-1, 1, mesh.n_vertices))
+    rows = vertex_rows(mesh, touching_spheres(mesh.vertices, upwards, 1 / offsets))
+    flips = flip_to_convex(mesh, rows)
+    assert (dual_edge_lengths(flips.mesh, rows) < 0).any()
+    assert 0 < flips.sweeps < 15
+
+
+def test_an_edge_is_new_if_no_face_has_it_and_asked_for_once(octahedron: Mesh) -> None:
+    first, second = np.array([0, 0, 1, 3]), np.array([2, 1, 3, 1])
+    assert _is_new_edge(octahedron, first, second).tolist() == [True, False, False, False]

@@ -146,6 +146,14 @@ def test_law_grown_offsets_are_the_largest_of_bounded_slope(curved_grids: Grids)
     assert (pulled < 0.9 * offsets).sum() > 1
 
 
+def test_law_offsets_stop_short_of_where_centers_fall_together(curved_grids: Grids) -> None:
+    """Whatever the estimated radii: centres around the tube of the torus meet at 0.8."""
+    mesh = curved_grids["torus"].mesh
+    surface, _ = tangent_surface(mesh)
+    offsets = grow_offsets(surface, 3 * surface.radii, BOUND) * mean_edge_length(mesh)
+    assert 0.7 < offsets.max() < 0.8
+
+
 @pytest.mark.parametrize(("scale", "shift"), [(1e-3, 0.0), (1e3, 0.0), (1.0, 1e4)])
 def test_law_evolution_does_not_depend_on_units_and_place(
     scale: float, shift: float, evolutions: dict[str, Evolution], curved_grids: Grids
