@@ -43,6 +43,8 @@ FIRST_WEIGHT, LARGEST_WEIGHT = 100.0, 1e4
 """Weights of the bound on the axes: doubled until it holds."""
 RETREAT = 0.9
 """Factor of the aim where faces are not convex and no flip helps."""
+SHORTEST = 0.1
+"""Shortest dual edges without flips, relative to the edges that they cross."""
 TOO_FAR = 0.2
 """Axes that pass their bound by more (radians) do not come back by themselves."""
 ROUNDS, RETREATS = 8, 20
@@ -139,7 +141,9 @@ def evolve_spheres(
             f"{np.degrees(max_axis_angle):g}"
         )
     surface, is_outer = tangent_surface(mesh, side)
-    surface, offsets, run = _evolve(surface, max_axis_angle, flips=flips)
+    # Flips change dual edges at their shortest; without them none needs to be so short.
+    rules = (MAX_SWEEPS, -DUAL_EDGE) if flips else (0, SHORTEST)
+    surface, offsets, run = _evolve(surface, _Rules(max_axis_angle, *rules))
     size = mean_edge_length(mesh)
     angles = _axis_angles(surface, offsets)
     flipped = Mesh(mesh.vertices, surface.mesh.corners.reshape(-1, 3))
@@ -157,6 +161,14 @@ def evolve_spheres(
     )
 
 
+class _Rules(NamedTuple):
+    """Largest tilt of the axes, rounds of flips, and the shortest dual edges put up with."""
+
+    bound: float
+    sweeps: int
+    shortest: float
+
+
 class _Run(NamedTuple):
     """Flips, linear systems solved, and whether all came to rest."""
 
@@ -165,27 +177,28 @@ class _Run(NamedTuple):
     converged: bool
 
 
-def _evolve(
-    surface: TangentSurface, bound: float, *, flips: bool
-) -> tuple[TangentSurface, FloatArray, _Run]:
+def _evolve(surface: TangentSurface, rules: _Rules) -> tuple[TangentSurface, FloatArray, _Run]:
+    bound = rules.bound
     aims = CLOSEST * surface.radii
     offsets = grow_offsets(surface, aims, bound)
-    sweeps = MAX_SWEEPS if flips else 0
-    surface, n_flips = _flip(surface, offsets, sweeps)
+    surface, n_flips = _flip(surface, offsets, rules.sweeps)
     iterations, weight = 0, FIRST_WEIGHT
     for _ in range(ROUNDS):
         offsets, steps, at_rest = descend(surface, offsets, aims, bound, weight)
         iterations += steps
-        surface, count = _flip(surface, offsets, sweeps)
+        surface, count = _flip(surface, offsets, rules.sweeps)
         n_flips += count
         holds = float(_axis_angles(surface, offsets).max()) <= bound + AXIS_SLACK
-        bad = _bad_vertices(surface, offsets, bound)
-        if at_rest and holds and count == 0 and len(bad) == 0:
-            return surface, offsets, _Run(n_flips, iterations, converged=True)
+        bad = _bad_vertices(surface, offsets, rules)
+        can_retreat = bool((aims[bad] > least_offsets(surface.mesh)[bad]).any())
+        if at_rest and holds and count == 0 and not can_retreat:
+            lengths = dual_edge_lengths(surface.mesh, _rows(surface, offsets))
+            is_convex = bool((lengths >= -DUAL_EDGE).all())
+            return surface, offsets, _Run(n_flips, iterations, is_convex)
         if not holds:
             weight = min(2 * weight, LARGEST_WEIGHT)
-        if len(bad):
-            surface, offsets, aims, count = _retreat(surface, offsets, aims, bound, sweeps)
+        if can_retreat:
+            surface, offsets, aims, count = _retreat(surface, offsets, aims, rules)
             n_flips += count
     return surface, offsets, _Run(n_flips, iterations, converged=False)
 
@@ -194,19 +207,18 @@ def _retreat(
     surface: TangentSurface,
     offsets: FloatArray,
     aims: FloatArray,
-    bound: float,
-    sweeps: int,
+    rules: _Rules,
 ) -> tuple[TangentSurface, FloatArray, FloatArray, int]:
     """Lower the aims where faces are not convex: around small enough spheres they are."""
     n_flips, least, aims = 0, least_offsets(surface.mesh), aims.copy()
     for _ in range(RETREATS):
-        bad = _bad_vertices(surface, offsets, bound)
+        bad = _bad_vertices(surface, offsets, rules)
         bad = bad[aims[bad] > least[bad]]
         if len(bad) == 0:
             break
         aims[bad] = np.maximum(np.minimum(aims[bad], offsets[bad]) * RETREAT, least[bad])
-        offsets = grow_offsets(surface, aims, bound)
-        surface, count = _flip(surface, offsets, sweeps)
+        offsets = grow_offsets(surface, aims, rules.bound)
+        surface, count = _flip(surface, offsets, rules.sweeps)
         n_flips += count
     return surface, offsets, aims, n_flips
 
@@ -237,11 +249,11 @@ def _turned(triangles: IntArray, side: int) -> IntArray:
     return triangles if side == 1 else triangles[:, ::-1]
 
 
-def _bad_vertices(surface: TangentSurface, offsets: FloatArray, bound: float) -> IntArray:
+def _bad_vertices(surface: TangentSurface, offsets: FloatArray, rules: _Rules) -> IntArray:
     """Vertices where smaller spheres help: dual edges run backwards, or axes tilt too far."""
     mesh = surface.mesh
-    backwards = dual_edge_lengths(mesh, _rows(surface, offsets)) < -DUAL_EDGE
-    is_bad = _axis_angles(surface, offsets) > bound + TOO_FAR
+    backwards = dual_edge_lengths(mesh, _rows(surface, offsets)) < rules.shortest
+    is_bad = _axis_angles(surface, offsets) > rules.bound + TOO_FAR
     is_bad[mesh.topology.edge_faces[backwards]] = True
     return np.unique(mesh.corners.reshape(-1, 3)[is_bad])
 

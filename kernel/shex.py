@@ -9,13 +9,14 @@ The formulas are those of Section 7 of the paper "Meshes with Spherical Faces".
 """
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from .errors import InputError, name_ids
+from .face_shapes import CONVEX, face_shapes
 from .mesh import Mesh, face_centroids, face_vector_areas, mean_edge_length
 from .sphere_mesh import SphereMesh
 from .spheres import from_plane, recenter
@@ -150,10 +151,61 @@ def dual_sphere_mesh(
     if boundary not in ("drop", "clip"):
         raise InputError(f"boundary must be 'drop' or 'clip', not {boundary!r}")
     rows = _orient(mesh, vertex_rows(mesh, spheres))
-    is_inner = ~mesh.topology.is_boundary_vertex
+    plan = _plan_faces(mesh, rows, boundary)
+    if not plan.is_sound.any():
+        raise InputError(
+            "no vertex of the triangulation gets a face: there is no vertex with a closed ring "
+            "of triangles whose spheres meet; use larger spheres or a finer mesh"
+        )
+    return _build_faces(mesh, rows, plan)
+
+
+def bad_faces(mesh: Mesh, spheres: ArrayLike) -> tuple[tuple[int, str], ...]:
+    """
+    Inner vertices whose face cannot be made or is not convex, and why.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        A triangulation.
+    spheres : (V, 5) array_like of float
+        Rows as for `dual_sphere_mesh`.
+
+    Returns
+    -------
+    tuple of (int, str)
+        Vertices in ascending order; the reason, or the shape of the face.
+    """
+    check_triangles(mesh)
+    rows = _orient(mesh, vertex_rows(mesh, spheres))
+    plan = _plan_faces(mesh, rows, "drop")
+    if not plan.is_sound.any():
+        return plan.left_out
+    dual = _build_faces(mesh, rows, plan)
+    shapes = face_shapes(dual.sphere_mesh)
+    bad = np.flatnonzero(shapes != CONVEX)
+    found = zip(dual.vertex_ids[bad].tolist(), shapes[bad].tolist(), strict=True)
+    return tuple(sorted([*plan.left_out, *found]))
+
+
+class _Plan(NamedTuple):
+    """Which points make which face: owners and corners, one row per corner of a face."""
+
+    vertices: IntArray
+    owners: IntArray
+    corners: IntArray
+    points: FloatArray
+    is_far: BoolArray
+    is_sound: BoolArray
+    left_out: tuple[tuple[int, str], ...]
+    n_imaginary: int
+
+
+def _plan_faces(mesh: Mesh, rows: FloatArray, boundary: BoundaryRule) -> _Plan:
     is_used = np.zeros(mesh.n_vertices, bool)
     is_used[mesh.corners] = True
-    fans = vertex_fans(mesh, np.flatnonzero(is_used if boundary == "clip" else is_inner))
+    is_wanted = is_used if boundary == "clip" else ~mesh.topology.is_boundary_vertex
+    fans = vertex_fans(mesh, np.flatnonzero(is_wanted))
     points, is_real = triangle_points(mesh, rows)
     is_far = corner_reach(mesh, points) > FAR_CORNER
     points = points + face_centroids(mesh)
@@ -163,26 +215,29 @@ def dual_sphere_mesh(
     if boundary == "clip":
         rim, rim_real, turns = _rim_points(mesh, rows)
         points, is_real = np.concatenate([points, rim]), np.concatenate([is_real, rim_real])
+        is_far = np.concatenate([is_far, np.zeros(len(rim), bool)])
         owners, corners = _close_fans(mesh, fans, owners, corners, turns)
-    good = np.ones(len(fans.vertices), bool)
-    good[owners[~is_real[corners]]] = False
+    is_sound = np.ones(len(fans.vertices), bool)
+    is_sound[owners[~is_real[corners]]] = False
     left_out = _reasons(fans.vertices, owners, corners, is_real, mesh.n_faces)
-    good &= np.bincount(owners, minlength=len(good)) >= 3
-    if not good.any():
-        raise InputError(
-            "no vertex of the triangulation gets a face: there is no vertex with a closed ring "
-            "of triangles whose spheres meet; use larger spheres or a finer mesh"
-        )
-    keep = good[owners]
-    far = keep & (corners < mesh.n_faces)
-    has_far_corner = np.zeros(len(good), bool)
-    has_far_corner[owners[far][is_far[corners[far]]]] = True
+    return _Plan(
+        fans.vertices, owners, corners, points, is_far, is_sound, left_out, n_imaginary
+    )
+
+
+def _build_faces(mesh: Mesh, rows: FloatArray, plan: _Plan) -> DualSpheres:
+    keep = plan.is_sound[plan.owners]
+    owners, corners = plan.owners[keep], plan.corners[keep]
+    vertex_ids = plan.vertices[plan.is_sound]
+    used, numbers = np.unique(corners, return_inverse=True)
+    sizes = np.unique(owners, return_counts=True)[1]
+    dual = Mesh(plan.points[used], np.split(numbers, np.cumsum(sizes)[:-1]))
+    shifts = face_centroids(dual) - mesh.vertices[vertex_ids]
+    sphere_mesh = SphereMesh.from_local(dual, recenter(rows[vertex_ids], shifts))
+    has_far_corner = np.zeros(len(plan.vertices), bool)
+    has_far_corner[owners[plan.is_far[corners]]] = True
     return DualSpheres(
-        _assemble(mesh, rows, fans.vertices[good], owners[keep], corners[keep], points),
-        fans.vertices[good],
-        left_out,
-        has_far_corner[good],
-        n_imaginary,
+        sphere_mesh, vertex_ids, plan.left_out, has_far_corner[plan.is_sound], plan.n_imaginary
     )
 
 
@@ -248,21 +303,6 @@ def _orient(mesh: Mesh, rows: FloatArray) -> FloatArray:
     areas = face_vector_areas(mesh)[mesh.topology.corner_faces]
     upwards = sum_by(mesh.corners, areas, mesh.n_vertices)
     return np.where(dot(rows[:, 1:4], upwards)[:, None] < 0, -rows, rows)
-
-
-def _assemble(
-    mesh: Mesh,
-    rows: FloatArray,
-    vertex_ids: IntArray,
-    owners: IntArray,
-    corners: IntArray,
-    points: FloatArray,
-) -> SphereMesh:
-    used, numbers = np.unique(corners, return_inverse=True)
-    sizes = np.unique(owners, return_counts=True)[1]
-    dual = Mesh(points[used], np.split(numbers, np.cumsum(sizes)[:-1]))
-    shifts = face_centroids(dual) - mesh.vertices[vertex_ids]
-    return SphereMesh.from_local(dual, recenter(rows[vertex_ids], shifts))
 
 
 def _reasons(

@@ -29,7 +29,8 @@ def shifted_rows(mesh: Mesh, along: RowDirection = "first") -> Mesh:
     Mesh
         Triangles. Of each row every second vertex is kept, in alternation from row to row, so
         the vertices lie where they lay. They are equilateral where the steps across rows are
-        √3 times those along them.
+        √3 times those along them. Where rows end, the boundary is a zigzag: to fill it would
+        take obtuse triangles.
 
     Raises
     ------
@@ -48,10 +49,9 @@ def shifted_rows(mesh: Mesh, along: RowDirection = "first") -> Mesh:
     first = fans.offsets[:-1]
     is_inner = ~topology.is_boundary_vertex[dropped]
     ring = heads[fans.corners[first[is_inner][:, None] + np.arange(4)]]
-    side = fans.corners[first[is_inner]] % 2
-    turned = (side == 1) != (along == "second")
-    ring = np.where(turned[:, None], np.roll(ring, -1, axis=1), ring)
-    start = first[~is_inner & (np.diff(fans.offsets) == 2)]
+    starts_across = (fans.corners[first] % 2 == 1) != (along == "second")
+    ring = np.where(starts_across[is_inner, None], np.roll(ring, -1, axis=1), ring)
+    start = first[~is_inner & ~starts_across & (np.diff(fans.offsets) == 2)]
     last = fans.corners[start + 1]
     rim = np.stack([heads[fans.corners[start]], heads[last], tails_before[last]], 1)
     triangles = np.concatenate([ring[:, [0, 1, 2]], ring[:, [0, 2, 3]], rim])

@@ -131,7 +131,10 @@ def evolve_spheres(
         "lambda_over_rho": {"mean": float(shares.mean()), "min": float(shares.min())},
         "valences": {valence: len(ids) for valence, ids in valences.items()},
         "irregular": {valence: ids for valence, ids in valences.items() if valence != "6"},
-        "bad_faces": _bad_faces(found.mesh, found.spheres),
+        "bad_faces": [
+            {"vertex": vertex, "reason": reason}
+            for vertex, reason in shex.bad_faces(found.mesh, found.spheres)
+        ],
         "tilted_triangles": tilted,
         "outer_vertices": outer,
     }
@@ -158,17 +161,6 @@ def _by_valence(mesh: Mesh) -> dict[str, list[int]]:
         str(valence): np.flatnonzero(valences == valence).tolist()
         for valence in np.unique(valences[valences > 0]).tolist()
     }
-
-
-def _bad_faces(mesh: Mesh, spheres: FloatArray) -> list[dict[str, Any]]:
-    if mesh.topology.is_boundary_vertex.all():
-        return []
-    dual = shex.dual_sphere_mesh(mesh, spheres)
-    shapes = face_shapes.face_shapes(dual.sphere_mesh)
-    bad = np.flatnonzero(shapes != face_shapes.CONVEX)
-    shown = zip(dual.vertex_ids[bad].tolist(), shapes[bad].tolist(), strict=True)
-    reasons = sorted([*dual.left_out, *shown])
-    return [{"vertex": vertex, "reason": reason} for vertex, reason in reasons]
 
 
 @node

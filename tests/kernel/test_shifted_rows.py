@@ -42,13 +42,11 @@ def test_rows_reach_the_boundary_of_a_catenoid() -> None:
 
 
 @pytest.mark.parametrize("along", get_args(RowDirection))
-def test_nearly_nothing_of_a_sheet_is_lost(along: RowDirection) -> None:
+def test_a_sheet_loses_half_a_step_where_rows_end(along: RowDirection) -> None:
     net = roof_net(12, 20, 40.0)
     mesh = shifted_rows(net, along)
     size = np.linalg.norm(face_vector_areas(net), axis=1).sum()
-    assert np.linalg.norm(face_vector_areas(mesh), axis=1).sum() == pytest.approx(
-        size, rel=0.04
-    )
+    assert np.linalg.norm(face_vector_areas(mesh), axis=1).sum() == pytest.approx(size, rel=0.1)
     assert (face_normals(mesh)[:, 2] > -0.5).all()
 
 

@@ -97,15 +97,21 @@ def test_bad_faces_are_listed_and_warned_of(catenoid: Mesh) -> None:
 
 
 def test_corners_far_beyond_the_boundary_are_listed() -> None:
-    """Rows along the meridians: the triangles on the rim are flat."""
-    mesh = shifted_rows(catenoid_net(40, 40, 1.0, 1.2), along="second")
-    grown = evolve_spheres(mesh)
-    with pytest.warns(NodeWarning, match="reach far beyond the boundary"):
-        made = tangent_sphere_shex(grown.mesh, grown.spheres)
-    listed = made.report["far_corners"]
-    assert len(listed) == 40
-    heights = np.abs(mesh.vertices[[entry["vertex"] for entry in listed], 2])
-    assert (heights > 1.1).all()
+    """A triangle on the rim of a flat sheet with an angle of 160 degrees."""
+    turns = np.radians([0.0, 160.0, 260.0])
+    rim = np.stack([np.cos(turns), np.sin(turns), 0 * turns], 1)
+    mesh = Mesh(np.vstack([rim, np.zeros(3)]), [[0, 1, 3], [1, 2, 3], [2, 0, 3]])
+    with pytest.warns(NodeWarning, match="1 faces reach far beyond the boundary"):
+        made = tangent_sphere_shex(mesh, tangent_spheres(mesh, 20.0))
+    assert made.report["far_corners"] == [{"face": 0, "vertex": 3}]
+
+
+def test_a_hopeless_mesh_is_told_not_refused() -> None:
+    mesh = shifted_rows(catenoid_net(16, 40, 1.0, 1.0))
+    with pytest.warns(NodeWarning):
+        grown = evolve_spheres(mesh)
+    assert len(grown.report["bad_faces"]) > 0
+    assert grown.report["converged"] is False
 
 
 def test_what_evolution_cannot_reach_is_told(catenoid: Mesh) -> None:
