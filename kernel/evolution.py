@@ -12,7 +12,7 @@ The formulas are those of Section 7 of the paper "Meshes with Spherical Faces".
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -34,9 +34,6 @@ from .offsets import (
 from .solvers.levenberg_marquardt import DampedStep, levenberg_marquardt
 from .tolerances import AXIS_SLACK, DUAL_EDGE
 from .triples import check_triangles
-
-if TYPE_CHECKING:
-    from scipy.sparse import csc_array
 
 FAIRNESS = 1.0
 FIRST_WEIGHT, LARGEST_WEIGHT = 100.0, 1e4
@@ -324,16 +321,15 @@ def descend(
     return result.state, result.iterations, result.status == "converged"
 
 
-def _solve(
-    matrix: "csc_array[np.float64]", damping: FloatArray, right: FloatArray
-) -> FloatArray:
+def _solve(matrix: object, damping: FloatArray, right: FloatArray) -> FloatArray:
     """Solve a sparse symmetric system whose diagonal is raised."""
     from scipy.sparse import diags_array
     from scipy.sparse.linalg import splu
 
     factorize: Any = splu
+    sparse: Any = matrix
     factors = factorize(
-        matrix + diags_array(damping, format="csc"),
+        sparse + diags_array(damping, format="csc"),
         permc_spec="MMD_AT_PLUS_A",
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
