@@ -52,7 +52,7 @@ for name, net in nets.items():
         print(f"  at vertex {entry['vertex']}: {entry['reason']}")
     print(f"  {graph.run(cut.report)['written']} panels")
     picture = graph.add(
-        render, panels=cut.panels, path=f"{name}.png", color_by="radius", width=800, height=560
+        render, panels=cut.panels, path=f"{name}.png", color_by="radius", width=640, height=448
     )
     print(f"  wrote {graph.run(picture)}")
     if name == "saddle":
