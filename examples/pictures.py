@@ -14,7 +14,9 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.nodes import (
     apply_mobius,
+    catenoid_mesh,
     cluster_radii,
+    evolve_spheres,
     face_planes,
     fit_spheres,
     inversion,
@@ -23,7 +25,10 @@ from spheremesh.nodes import (
     panels,
     remesh_triangles,
     roof_mesh,
+    shifted_rows,
     sphere_bundle,
+    tangent_sphere_shex,
+    tangent_spheres,
     torus_mesh,
     vase_mesh,
 )
@@ -101,12 +106,32 @@ def models() -> Image.Image:
     return sheet
 
 
+def hexagons() -> Image.Image:
+    """A torus and a catenoid in convex hexagons, and a catenoid in plane bow-ties."""
+    torus = evolve_spheres(shifted_rows(torus_mesh(72, 20, minor_radius=0.8)))
+    saddle = evolve_spheres(shifted_rows(catenoid_mesh(64, 24, height=1.2)), side="minus")
+    plain = shifted_rows(catenoid_mesh(80, 24, height=1.2))
+    designs = [
+        (torus.mesh, torus.spheres, 0.008),
+        (saddle.mesh, saddle.spheres, 0.008),
+        (plain, tangent_spheres(plain, np.inf), 0.0),
+    ]
+    sheet = Image.new("RGB", (1350, 420))
+    for place, (mesh, spheres, gap) in enumerate(designs):
+        made = tangent_sphere_shex(mesh, spheres)
+        cut = panels(made.sphere_mesh, edges="intersection", joint_gap=gap).panels
+        picture = render_image(cut, color_by="radius", width=450, height=420)
+        sheet.paste(picture, (450 * place, 0))
+    return sheet
+
+
 PICTURES = {
     "roof": roof,
     "roof-zebra": roof_zebra,
     "pencil": pencil,
     "mobius": mobius,
     "models": models,
+    "hexagons": hexagons,
 }
 
 

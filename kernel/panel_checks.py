@@ -6,11 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arcs import Arcs, arc_points
-from .arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
+from .arrays import BoolArray, FloatArray, dot, norm, unit
+from .crossings import crossing_boundaries
 from .errors import InputError, name_ids
 from .panels import Panels, inner_panel_arcs, panel_arcs, panel_areas, select_panels
-from .spheres import evaluate, normals
-from .tolerances import CAP_ANGLE, CROSSING, PARALLEL_PLANES, THIN
+from .spheres import normals
+from .tolerances import CAP_ANGLE, THIN
 
 
 @dataclass(frozen=True)
@@ -189,7 +190,9 @@ def _faults(panels: Panels, found: Found) -> list[Fault]:
             (f"an edge of the {name} face vanishes or runs backwards", backwards),
             (
                 f"the boundary of the {name} face crosses itself",
-                _crossing(panels, rows, arcs),
+                crossing_boundaries(
+                    rows, panels.offsets, panels.plane_normals, panels.plane_offsets, arcs
+                ),
             ),
             (f"a cutting plane leans over the {name} face: cut it by bisectors", leaning),
             (
@@ -211,54 +214,3 @@ def _steep(rows: FloatArray, arcs: Arcs) -> BoolArray:
     axis = unit(rows[:, 1:4])[:, None]
     points = arc_points(arcs, np.array([-1.0, 0.0]))
     return (dot(normals(rows[:, None], points), axis) < np.cos(CAP_ANGLE)).any(axis=1)
-
-
-def _crossing(panels: Panels, rows: FloatArray, arcs: Arcs) -> BoolArray:
-    """Whether two arcs of a panel meet elsewhere than in their common corner."""
-    result = np.zeros(panels.n_panels, bool)
-    for degree in np.unique(panels.degrees):
-        members = np.flatnonzero(panels.degrees == degree)
-        first = panels.offsets[members]
-        for i in range(degree):
-            for j in range(i + 1, degree):
-                result[members] |= _arcs_meet(rows[members], panels, arcs, first + i, first + j)
-    return result
-
-
-def _arcs_meet(
-    rows: FloatArray, panels: Panels, arcs: Arcs, first: IntArray, second: IntArray
-) -> BoolArray:
-    n, m = panels.plane_normals[first], panels.plane_normals[second]
-    direction = np.cross(n, m)
-    square = dot(direction, direction)
-    is_parallel = square < PARALLEL_PLANES**2
-    weight = np.where(is_parallel, 1.0, square)[:, None]
-    foot = (
-        panels.plane_offsets[first][:, None] * np.cross(m, direction)
-        + panels.plane_offsets[second][:, None] * np.cross(direction, n)
-    ) / weight
-    direction = unit(direction)
-    slope = dot(normals(rows, foot), direction)
-    value = evaluate(rows, foot)
-    discriminant = slope**2 - 4 * rows[:, 0] * value
-    is_real = (discriminant >= 0) & ~is_parallel
-    half = (slope + np.copysign(np.sqrt(np.maximum(discriminant, 0)), slope)) / 2
-    with np.errstate(divide="ignore", invalid="ignore"):
-        near, far = value / half, half / rows[:, 0]
-    meets = np.zeros(len(first), bool)
-    for root in (near, far):
-        is_finite = is_real & np.isfinite(root)
-        point = foot + np.where(is_finite, root, 0.0)[:, None] * direction
-        meets |= is_finite & _inside(arcs, first, point) & _inside(arcs, second, point)
-    return meets
-
-
-def _inside(arcs: Arcs, ids: IntArray, points: FloatArray) -> BoolArray:
-    """Whether points of the circles of arcs lie strictly between the ends of the arcs."""
-    half = (arcs.ends[ids] - arcs.starts[ids]) / 2
-    relative = points - (arcs.starts[ids] + arcs.ends[ids]) / 2
-    along = dot(relative, half) / dot(half, half)
-    across = dot(relative, arcs.rises[ids])
-    sagitta = arcs.sagittas[ids]
-    on_this_side = np.abs(across - sagitta) <= np.abs(sagitta) + CROSSING * norm(half)
-    return (np.abs(along) < 1 - CROSSING) & on_this_side

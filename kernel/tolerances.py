@@ -167,3 +167,18 @@ EDGE_MISS: Final = 0.01
 
 CLOSED: Final = 1e-6
 """A surface whose ends lie this close, relative to its size, is closed there."""
+
+STRAIGHT_CORNER: Final = 1e-9
+"""A corner that turns the wrong way by less (radians) is straight."""
+
+DUAL_EDGE: Final = 1e-9
+"""A dual edge shorter than this share of the edge that it crosses has no direction."""
+
+AXIS_SLACK: Final = 0.004363323129985824
+"""By how much (0.25 degrees) a node axis may pass the bound on its angle."""
+
+OFFSET_STEP: Final = 1e-6
+"""Growing offsets are at rest when none moves by more, relative to the least."""
+
+FAR_CORNER: Final = 0.6
+"""A corner farther from its triangle than this share of the longest side is worth a warning."""

@@ -5,7 +5,6 @@ from typing import Annotated, Literal
 import numpy as np
 
 from ...kernel import remeshing, subdivision, triangulation
-from ...kernel import shifted_rows as rows_of_nets
 from ...kernel.mesh import Mesh
 from ...kernel.tolerances import MOSTLY_EVEN
 from ..node import node, warn
@@ -104,23 +103,3 @@ def remesh_triangles(
             "shorter edges or a larger crease angle"
         )
     return result
-
-
-@node
-def shifted_rows(mesh: Mesh, rows: Literal["sharper", "flatter"] = "sharper") -> Mesh:
-    """
-    Turn a net of quadrilaterals into rows of triangles with six neighbours at every vertex.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        Quadrilaterals with four edges at every inner vertex.
-    rows : {"sharper", "flatter"}
-        Rows along those lines of the net that bend more, which suits hexagonal panels, or less.
-
-    Returns
-    -------
-    Mesh
-        Triangles; every other row is shifted by half an edge.
-    """
-    return rows_of_nets.shifted_rows(mesh, rows)

@@ -1,6 +1,7 @@
 """What the kernel's tests share: one helper per idea, and a few nets to run them on."""
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -96,3 +97,63 @@ def octahedron() -> Mesh:
     upper = [[i, (i + 1) % 4, 4] for i in range(4)]
     lower = [[(i + 1) % 4, i, 5] for i in range(4)]
     return Mesh(vertices, upper + lower)
+
+
+class CurvedGrid(NamedTuple):
+    """A triangulation with shifted rows, its exact normals and curvatures along two ways."""
+
+    mesh: Mesh
+    normals: FloatArray
+    around: FloatArray
+    across: FloatArray
+
+
+def shifted_triangles(n: int, m: int, *, closed: bool) -> IntArray:
+    """Triangles (T, 3) of n columns and m rows, every second row shifted to the right."""
+    i, j = np.meshgrid(np.arange(n - (not closed)), np.arange(m - (not closed)), indexing="ij")
+    a, b = i * m + j, (i + 1) % n * m + j
+    c, d = (i + 1) % n * m + (j + 1) % m, i * m + (j + 1) % m
+    even = np.stack([a, b, d, b, c, d], -1)
+    odd = np.stack([a, b, c, a, c, d], -1)
+    return np.where((j % 2 == 0)[..., None], even, odd).reshape(-1, 3)
+
+
+@pytest.fixture(scope="session")
+def curved_grids() -> dict[str, CurvedGrid]:
+    """Torus and ellipsoid with normals inwards, catenoid with normals outwards."""
+    i, j = np.meshgrid(np.arange(24), np.arange(17), indexing="ij")
+    turn, height = ((i + 0.5 * (j % 2)) / 23.5).ravel(), 1.2 * (j.ravel() / 8 - 1)
+    shape = shifted_triangles(24, 17, closed=False)
+
+    def _revolve(radius: FloatArray, turns: FloatArray, z: FloatArray) -> FloatArray:
+        return np.stack([radius * np.cos(turns), radius * np.sin(turns), z], -1)
+
+    cosh, u = np.cosh(height), 1.2 * np.pi * turn
+    catenoid = CurvedGrid(
+        Mesh(_revolve(cosh, u, height), shape),
+        _revolve(1 / cosh, u, -np.tanh(height)),
+        -1 / cosh**2,
+        1 / cosh**2,
+    )
+    u, radius = 1.4 * np.pi * turn, np.sqrt(1 - (height / 1.6) ** 2)
+    gradient = _revolve(radius, u, height / 1.6**2)
+    size = np.sqrt((gradient**2).sum(1))
+    ellipsoid = CurvedGrid(
+        Mesh(_revolve(radius, u, height), shape[:, ::-1]),
+        -gradient / size[:, None],
+        1 / size,
+        1 / (1.6**2 * size**3),
+    )
+    i, j = np.meshgrid(np.arange(36), np.arange(16), indexing="ij")
+    u, v = 2 * np.pi * ((i + 0.5 * (j % 2)) / 36).ravel(), 2 * np.pi * j.ravel() / 16
+    radius = 2 + 0.8 * np.cos(v)
+    torus = CurvedGrid(
+        Mesh(
+            _revolve(radius, u, 0.8 * np.sin(v)),
+            shifted_triangles(36, 16, closed=True)[:, ::-1],
+        ),
+        -_revolve(np.cos(v), u, np.sin(v)),
+        np.cos(v) / radius,
+        np.full(len(v), 1 / 0.8),
+    )
+    return {"catenoid": catenoid, "ellipsoid": ellipsoid, "torus": torus}

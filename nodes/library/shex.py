@@ -1,0 +1,255 @@
+"""Hexagonal sphere meshes: spheres that touch a triangulation, met by their neighbours."""
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...kernel import congruence, evolution, face_shapes, shex
+from ...kernel import shifted_rows as grids
+from ...kernel.arrays import FloatArray
+from ...kernel.errors import name_ids
+from ...kernel.mesh import Mesh, mean_edge_length
+from ...kernel.sphere_mesh import SphereMesh
+from ...kernel.sphere_mesh import vertex_error as vertex_errors
+from ...kernel.tolerances import AXIS_SLACK
+from ..node import node, warn
+from ..ports import Port
+
+
+class EvolvedSpheres(NamedTuple):
+    """A triangulation with flipped edges, spheres at its vertices, and how they grew."""
+
+    mesh: Mesh
+    spheres: FloatArray
+    report: Mapping[str, Any]
+
+
+class Hexagons(NamedTuple):
+    """A sphere mesh dual to a triangulation, and what was found while making it."""
+
+    sphere_mesh: SphereMesh
+    report: Mapping[str, Any]
+
+
+@node
+def shifted_rows(mesh: Mesh, along: Literal["first", "second"] = "first") -> Mesh:
+    """
+    Nearly regular triangles from every second vertex of a quadrilateral grid.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Quadrilaterals, four around every inner vertex, as the nets of this library.
+    along : {"first", "second"}
+        Rows run along the first sides of the faces or across. Rows along the larger curvature
+        give the best hexagons.
+
+    Returns
+    -------
+    Mesh
+        Triangles, equilateral where the steps across rows are √3 times those along them.
+    """
+    return grids.shifted_rows(mesh, along)
+
+
+@node
+def tangent_spheres(mesh: Mesh, offset: float | FloatArray) -> FloatArray:
+    """
+    Spheres that touch a surface at the vertices of its mesh.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    offset : float or (V,) float array
+        Signed distance of the centres along the vertex normals, not zero; infinite for
+        tangent planes.
+
+    Returns
+    -------
+    (V, 5) float array
+        Rows (A, Bx, By, Bz, C); N agrees with the normals of the mesh.
+    """
+    return congruence.sphere_congruence(mesh, "tangent", offset)[0]
+
+
+@node
+def evolve_spheres(
+    mesh: Mesh,
+    max_axis_angle: Annotated[float, Port(unit="deg", min=0, max=90)] = 15.0,
+    side: Literal["auto", "plus", "minus"] = "auto",
+    *,
+    flips: bool = True,
+) -> EvolvedSpheres:
+    """
+    Grow tangent spheres towards the curvature spheres, with upright node axes.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Triangles.
+    max_axis_angle : float
+        Largest angle of a node axis with the surface normal, between 0 and 90.
+    side : {"auto", "plus", "minus"}
+        Centres on the side of the normals, beyond, or where the surface bends to on average.
+    flips : bool
+        Whether edges may be flipped so that faces stay convex.
+
+    Returns
+    -------
+    mesh : Mesh
+        The triangles, with flipped edges.
+    spheres : (V, 5) float array
+        Spheres at the vertices.
+    report : mapping
+        ``converged``, ``iterations``, ``flips``, ``side``; ``axis_angle_deg`` (median, p95,
+        max); ``lambda_over_rho`` (mean and min share of the smallest curvature radius that the
+        spheres reach); ``valences`` of the inner vertices, and ``irregular`` ones by valence;
+        ``bad_faces`` (vertex and reason of each face that is missing or not convex),
+        ``tilted_triangles`` (beyond the bound) and ``outer_vertices`` (where the surface bends
+        away from the centres).
+    """
+    angle = float(np.radians(max_axis_angle))
+    found = evolution.evolve_spheres(mesh, angle, side, flips=flips)
+    angles = np.degrees(found.axis_angles)
+    shares = found.offsets / found.radii
+    tilted = np.flatnonzero(found.axis_angles > angle + AXIS_SLACK).tolist()
+    outer = np.flatnonzero(found.is_outer).tolist()
+    valences = _by_valence(found.mesh)
+    report = {
+        "converged": found.converged,
+        "iterations": found.iterations,
+        "flips": found.n_flips,
+        "side": "plus" if found.side == 1 else "minus",
+        "axis_angle_deg": {
+            "median": float(np.median(angles)),
+            "p95": float(np.percentile(angles, 95)),
+            "max": float(angles.max()),
+        },
+        "lambda_over_rho": {"mean": float(shares.mean()), "min": float(shares.min())},
+        "valences": {valence: len(ids) for valence, ids in valences.items()},
+        "irregular": {valence: ids for valence, ids in valences.items() if valence != "6"},
+        "bad_faces": [
+            {"vertex": vertex, "reason": reason}
+            for vertex, reason in shex.bad_faces(found.mesh, found.spheres)
+        ],
+        "tilted_triangles": tilted,
+        "outer_vertices": outer,
+    }
+    if tilted:
+        warn(
+            f"{len(tilted)} node axes tilt by more than {max_axis_angle:g} degrees, up to "
+            f"{float(angles.max()):.3g}: allow a larger angle or use a finer mesh"
+        )
+    elif not found.converged:
+        warn("the spheres did not come to rest: they may be smaller than they could be")
+    if outer:
+        warn(
+            f"the surface bends away from the centres at {len(outer)} vertices "
+            f"{name_ids(outer)}: faces bulge against it there"
+        )
+    return EvolvedSpheres(found.mesh, found.spheres, report)
+
+
+def _by_valence(mesh: Mesh) -> dict[str, list[int]]:
+    """Inner vertices by the number of their triangles: the degrees of the dual faces."""
+    valences = np.bincount(mesh.corners, minlength=mesh.n_vertices)
+    valences[mesh.topology.is_boundary_vertex] = 0
+    return {
+        str(valence): np.flatnonzero(valences == valence).tolist()
+        for valence in np.unique(valences[valences > 0]).tolist()
+    }
+
+
+@node
+def tangent_sphere_shex(
+    mesh: Mesh, spheres: FloatArray, boundary: Literal["drop", "clip"] = "drop"
+) -> Hexagons:
+    """
+    Sphere mesh with a face for every vertex of a triangulation: hexagons, where it is regular.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Triangles.
+    spheres : (V, 5) float array
+        Spheres at the vertices, planes included.
+    boundary : {"drop", "clip"}
+        Faces of inner vertices only; or those of the boundary as well, cut off by planes that
+        stand on its edges.
+
+    Returns
+    -------
+    sphere_mesh : SphereMesh
+        Three spheres meet in each vertex. Faces with a vertex that is not real are left out.
+    report : mapping
+        Numbers of ``faces``, of those that are ``convex``, ``bow_tie`` and ``crossing``
+        themselves, and of ``imaginary`` vertices; ``degrees``; ``left_out`` (vertex and reason
+        of each face that cannot be made), ``crossing_faces`` and ``far_corners`` (face and
+        vertex; far from their triangle, beyond an obtuse one on the boundary);
+        ``vertex_error`` (max, relative_to_edge); ``vertex_ids``, the vertex of each face.
+    """
+    dual = shex.dual_sphere_mesh(mesh, spheres, boundary)
+    result = dual.sphere_mesh
+    shapes = face_shapes.face_shapes(result)
+    crossing = np.flatnonzero(shapes == face_shapes.CROSSING_FACE).tolist()
+    far = np.flatnonzero(dual.has_far_corner).tolist()
+    miss = float(vertex_errors(result).max())
+    degrees, counts = np.unique(result.mesh.degrees, return_counts=True)
+    report = {
+        "faces": result.mesh.n_faces,
+        "convex": int((shapes == face_shapes.CONVEX).sum()),
+        "bow_tie": int((shapes == face_shapes.BOW_TIE).sum()),
+        "crossing": len(crossing),
+        "imaginary": dual.n_imaginary,
+        "degrees": {str(d): n for d, n in zip(degrees.tolist(), counts.tolist(), strict=True)},
+        "left_out": [{"vertex": vertex, "reason": reason} for vertex, reason in dual.left_out],
+        "crossing_faces": _name_faces(dual, crossing),
+        "far_corners": _name_faces(dual, far),
+        "vertex_error": {
+            "max": miss,
+            "relative_to_edge": miss / mean_edge_length(result.mesh),
+        },
+        "vertex_ids": dual.vertex_ids.tolist(),
+    }
+    if dual.left_out:
+        warn(
+            f"{len(dual.left_out)} faces are left out, at vertices "
+            f"{name_ids([vertex for vertex, _ in dual.left_out])} ({dual.left_out[0][1]})"
+        )
+    if crossing:
+        warn(
+            f"{len(crossing)} faces cross themselves: {name_ids(crossing)}; use smaller "
+            "spheres or let evolve_spheres flip edges"
+        )
+    if far:
+        warn(
+            f"{len(far)} faces reach far beyond the boundary: {name_ids(far)}; triangles on it "
+            "are too obtuse"
+        )
+    return Hexagons(result, report)
+
+
+def _name_faces(dual: shex.DualSpheres, faces: list[int]) -> list[dict[str, int]]:
+    return [{"face": face, "vertex": int(dual.vertex_ids[face])} for face in faces]
+
+
+@node
+def classify_hexagons(sphere_mesh: SphereMesh) -> NDArray[np.str_]:
+    """
+    Tell convex faces from bow-ties and from those that cross themselves.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh, of any face degrees.
+
+    Returns
+    -------
+    (F,) str array
+        ``"convex"`` seen along the direction of its largest shadow, ``"bow-tie"`` with reflex
+        corners, or ``"crossing"``: two of its arcs meet, or it is folded over.
+    """
+    return face_shapes.face_shapes(sphere_mesh)
