@@ -68,3 +68,6 @@ TRANSFORM_DIGITS: Final = 1e-6
 
 AT_INFINITY: Final = 1e-6
 """Vertices this close, in mean edges, to the point sent to infinity have no usable image."""
+
+JET_RANK: Final = 1e-11
+"""Squared singular values of a polynomial fit below this, relative to the largest, are noise."""
