@@ -71,3 +71,6 @@ AT_INFINITY: Final = 1e-6
 
 JET_RANK: Final = 1e-11
 """Squared singular values of a polynomial fit below this, relative to the largest, are noise."""
+
+LEAST_STIFFNESS: Final = 1e-3
+"""Least weight of an edge or a vertex in the smoothing of a field, relative to the ordinary."""

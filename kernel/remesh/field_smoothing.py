@@ -1,0 +1,99 @@
+"""Smoothing of a field of quadratic forms over a triangle mesh."""
+
+import numpy as np
+
+from ..arrays import FloatArray, dot, norm
+from ..tolerances import LEAST_STIFFNESS
+from .congruence_mesh import CongruenceMesh
+
+
+def transport(source: FloatArray, target: FloatArray) -> FloatArray:
+    """
+    Parallel transport between tangent planes, as factors of complex coordinates.
+
+    Parameters
+    ----------
+    source, target : (..., 3, 3) float array
+        Right-handed frames: two tangents and the normal.
+
+    Returns
+    -------
+    (...) complex array
+        Unit factors r: the vector with coordinate w in the source has ``r w`` in the target,
+        after the smallest rotation that takes normal to normal.
+    """
+    first, second = source[..., 0, :], source[..., 1, :]
+    along, across = target[..., 0, :], target[..., 1, :]
+    cosine = dot(first, along) + dot(second, across)
+    result = cosine + 1j * (dot(first, across) - dot(second, along))
+    return result / np.abs(result)
+
+
+def smooth_forms(
+    surface: CongruenceMesh, trace: FloatArray, deviator: FloatArray, length: float
+) -> tuple[FloatArray, FloatArray]:
+    """
+    Smooth a field of forms where it says little, and keep it where it is sure.
+
+    Parameters
+    ----------
+    surface : CongruenceMesh
+        The mesh.
+    trace : (V,) float array
+        Means of the forms.
+    deviator : (V,) complex array
+        Deviators, in the coordinates of `vertex_frames`.
+    length : float
+        Distance over which the field is smoothed, in mean edges; 0 gives the normalised field.
+
+    Returns
+    -------
+    trace : (V,) float array
+        Means of the smooth field.
+    deviator : (V,) complex array
+        Its deviators.
+
+    Notes
+    -----
+    Screened Poisson: the minimum of ``Σ c |q - q'|² + length² |grad q|²`` for the forms q' of
+    unit size. The confidence c grows with the size of the given form, which vanishes where every
+    direction is conjugate: there the neighbours decide, and pairs of singularities that noise
+    has made disappear.
+    """
+    from scipy.sparse.linalg import splu
+
+    size = np.sqrt(trace**2 + np.abs(deviator) ** 2)
+    unit_size = np.where(size > 0, size, 1.0)
+    trace, deviator = trace / unit_size, deviator / unit_size
+    if length == 0:
+        return trace, deviator
+    middle = np.median(size)
+    confidence = size / (size + middle) if middle > 0 else np.zeros_like(size)
+    weights = surface.vertex_areas * np.maximum(confidence, LEAST_STIFFNESS)
+    results = []
+    for values, power in ((trace.astype(complex), 0), (deviator, 2)):
+        matrix = length**2 * _stiffness(surface, power)
+        matrix.setdiag(matrix.diagonal() + weights)
+        solver = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0)
+        results.append(solver.solve(weights * values))
+    return results[0].real, results[1]
+
+
+def _stiffness(surface: CongruenceMesh, power: int):  # noqa: ANN202
+    """Hermitian connection Laplacian (V, V) of fields that turn by a power of the frames."""
+    from scipy.sparse import csr_array
+
+    tails = surface.triangles.ravel()
+    heads = np.roll(surface.triangles, -1, axis=1).ravel()
+    apexes = np.roll(surface.triangles, -2, axis=1).ravel()
+    first = surface.points[tails] - surface.points[apexes]
+    second = surface.points[heads] - surface.points[apexes]
+    cotangents = dot(first, second) / norm(np.cross(first, second))
+    weights = np.maximum(cotangents / 2, LEAST_STIFFNESS)
+    frames = surface.vertex_frames
+    turns = transport(frames[tails], frames[heads]) ** power
+    values = np.concatenate([weights, weights, -weights * turns, -weights * turns.conj()])
+    rows = np.concatenate([tails, heads, heads, tails])
+    columns = np.concatenate([tails, heads, tails, heads])
+    shape = (len(surface.points), len(surface.points))
+    return csr_array((values, (rows, columns)), shape=shape)
