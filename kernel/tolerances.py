@@ -74,3 +74,15 @@ JET_RANK: Final = 1e-11
 
 LEAST_STIFFNESS: Final = 1e-3
 """Least weight of an edge or a vertex in the smoothing of a field, relative to the ordinary."""
+
+GAUGE_RANK: Final = 1e-9
+"""A singular value below this, relative to the largest, belongs to a freedom of the problem."""
+
+FOLD_SMOOTHING: Final = 1e-6
+"""How sharp the barrier against folded triangles is in the end, relative to their area."""
+
+FOLD_STEP: Final = 1e-3
+"""Unfolding ends when a round lowers the distortion by less than this share."""
+
+LATTICE_TIE: Final = 1e-7
+"""A vertex this close to a line of a map, in steps of the map, is moved off it."""

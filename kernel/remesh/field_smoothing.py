@@ -74,7 +74,10 @@ def smooth_forms(
     for values, power in ((trace.astype(complex), 0), (deviator, 2)):
         matrix = length**2 * _stiffness(surface, power)
         matrix.setdiag(matrix.diagonal() + weights)
-        solver = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0)
+        solver = splu(
+            matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )  # fmt: skip
         results.append(solver.solve(weights * values))
     return results[0].real, results[1]
 

@@ -1,0 +1,134 @@
+"""Whole-number minima of small quadratic functions under whole-number relations."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..tolerances import GAUGE_RANK
+
+
+class IntegerSolutions(NamedTuple):
+    """
+    All solutions ``offset + basis @ y`` of linear equations in whole numbers.
+
+    Attributes
+    ----------
+    offset : (m,) float array
+        One solution.
+    basis : (m, k) float array
+        Unimodular basis of the solutions of the homogeneous equations.
+    """
+
+    offset: FloatArray
+    basis: FloatArray
+
+
+def integer_solutions(relations: FloatArray, constants: FloatArray) -> IntegerSolutions | None:
+    """
+    Solve linear equations in whole numbers.
+
+    Parameters
+    ----------
+    relations : (r, m) float array
+        Whole numbers.
+    constants : (r,) float array
+        Right sides.
+
+    Returns
+    -------
+    IntegerSolutions or None
+        None where whole numbers cannot satisfy the equations.
+
+    Notes
+    -----
+    Euclid's algorithm on the columns, row after row (Hermite normal form).
+    """
+    count = relations.shape[1]
+    columns, change = relations.astype(float).copy(), np.eye(count)
+    is_open = np.ones(count, bool)
+    values = np.zeros(count)
+    for row, constant in enumerate(constants):
+        while True:
+            entries = np.where(is_open, np.abs(columns[row]), 0)
+            active = np.flatnonzero(entries)
+            if len(active) < 2:
+                break
+            pivot = active[np.argmin(entries[active])]
+            others = active[active != pivot]
+            factors = np.rint(columns[row, others] / columns[row, pivot])
+            columns[:, others] -= columns[:, [pivot]] * factors
+            change[:, others] -= change[:, [pivot]] * factors
+        rest = constant - columns[row, ~is_open] @ values[~is_open]
+        if len(active) == 0:
+            if rest != 0:
+                return None
+            continue
+        value = rest / columns[row, active[0]]
+        if value != np.rint(value):
+            return None
+        values[active[0]], is_open[active[0]] = value, False
+    return IntegerSolutions(change[:, ~is_open] @ values[~is_open], change[:, is_open])
+
+
+def round_minimum(
+    hessian: FloatArray, gradient: FloatArray, solutions: IntegerSolutions, n_first: int
+) -> FloatArray:
+    """
+    Whole numbers near the minimum of ``n H n / 2 - g n``.
+
+    Parameters
+    ----------
+    hessian : (m, m) float array
+        Positive semidefinite.
+    gradient : (m,) float array
+        The vector g.
+    solutions : IntegerSolutions
+        Which n are allowed.
+    n_first : int
+        The first so many entries of n are rounded before the others.
+
+    Returns
+    -------
+    (m,) float array
+        Whole numbers that satisfy the equations.
+
+    Notes
+    -----
+    Greedy: the value nearest to a whole number is fixed, the others follow; then single steps
+    as long as one of them lowers the function.
+    """
+    offset, basis = solutions
+    reduced = basis.T @ hessian @ basis
+    right = basis.T @ (gradient - hessian @ offset)
+    is_first = (basis[:n_first] != 0).any(axis=0)
+    values = _solve(reduced, right)
+    is_open = np.ones(len(values), bool)
+    for group in (is_first, ~is_first):
+        while (is_open & group).any():
+            candidates = np.flatnonzero(is_open & group)
+            misses = np.abs(values[candidates] - np.rint(values[candidates]))
+            chosen = candidates[np.argmin(misses)]
+            values[chosen], is_open[chosen] = np.rint(values[chosen]), False
+            rest = right[is_open] - reduced[np.ix_(is_open, ~is_open)] @ values[~is_open]
+            values[is_open] = _solve(reduced[np.ix_(is_open, is_open)], rest)
+    _descend(reduced, right, values)
+    return np.rint(offset + basis @ values)
+
+
+def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    return np.linalg.lstsq(matrix, right, rcond=GAUGE_RANK)[0]
+
+
+def _descend(matrix: FloatArray, right: FloatArray, values: FloatArray) -> None:
+    """Single steps of one, in place, while the function falls by more than rounding."""
+    diagonal = np.diag(matrix)
+    limit = 100 * len(values)
+    for _ in range(limit):
+        slope = matrix @ values - right
+        gains = np.abs(slope) - diagonal / 2
+        if len(gains) == 0 or gains.max() <= GAUGE_RANK * np.abs(diagonal).max():
+            return
+        best = int(np.argmax(gains))
+        values[best] -= np.sign(slope[best])
+
