@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..errors import InputError
 from .boundary_alignment import Alignment, align_boundary, no_alignment
 from .congruence_mesh import CongruenceMesh
 from .frames import CombedFrames, Fans
@@ -21,6 +22,9 @@ from .seams import Seams
 
 ACROSS = 30.0
 """Weight of the direction in which a coordinate shall not change."""
+
+FOLDED = 0.3
+"""A map with more of its faces folded has no room for the steps asked for."""
 
 
 @dataclass(frozen=True)
@@ -36,17 +40,17 @@ class Parametrization:
         Coordinates u and v of every vertex in the chart of its first corner.
     is_flipped : (F,) bool array
         Faces whose image is turned over or has no area.
-    aligned : int
+    n_aligned : int
         Sides of the boundary that are lines of the map.
-    n_untangled : int
-        Faces that were flipped before the injectivity guard.
+    n_folded : int
+        Faces that were flipped before they were unfolded.
     """
 
     charts: ChartGradients
     values: FloatArray
     is_flipped: BoolArray
-    aligned: int
-    n_untangled: int
+    n_aligned: int
+    n_folded: int
 
 
 @dataclass(frozen=True)
@@ -89,6 +93,11 @@ def parametrize(
     Parametrization
         Singular vertices lie at whole numbers, aligned boundaries half-way between.
 
+    Raises
+    ------
+    InputError
+        If the steps are too long for the surface.
+
     Notes
     -----
     Least squares of ``|grad u · t1 h - 1|² + 30 |grad u · t2 h|²``, the same for v. The real
@@ -118,6 +127,11 @@ def parametrize(
     ]
     charts = replace(gradients, signs=seams.signs, shifts=np.stack(shifts, 1))
     folded = charts.determinants(start) <= 0
+    if folded.mean() > FOLDED:
+        raise InputError(
+            f"an edge length of {edge_length * surface.size:g} is too large for the surface: "
+            "the net has no room for its steps; choose a smaller one"
+        )
     values = untangle(surface, charts, start, is_fixed)
     return Parametrization(
         charts, values, charts.determinants(values) <= 0,
