@@ -1,10 +1,15 @@
 """Smoothing of a field of quadratic forms over a triangle mesh."""
 
+from typing import Any, TypeAlias
+
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import FloatArray, dot, norm
 from ..tolerances import LEAST_STIFFNESS
 from .congruence_mesh import CongruenceMesh
+
+ComplexArray: TypeAlias = NDArray[np.complex128]
 
 
 def transport(source: FloatArray, target: FloatArray) -> FloatArray:
@@ -60,7 +65,7 @@ def smooth_forms(
     direction is conjugate: there the neighbours decide, and pairs of singularities that noise
     has made disappear.
     """
-    from scipy.sparse.linalg import splu
+    from scipy.sparse import block_array
 
     size = np.sqrt(trace**2 + np.abs(deviator) ** 2)
     unit_size = np.where(size > 0, size, 1.0)
@@ -70,19 +75,28 @@ def smooth_forms(
     middle = np.median(size)
     confidence = size / (size + middle) if middle > 0 else np.zeros_like(size)
     weights = surface.vertex_areas * np.maximum(confidence, LEAST_STIFFNESS)
-    results = []
-    for values, power in ((trace.astype(complex), 0), (deviator, 2)):
-        matrix = length**2 * _stiffness(surface, power)
-        matrix.setdiag(matrix.diagonal() + weights)
-        solver = splu(
-            matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )  # fmt: skip
-        results.append(solver.solve(weights * values))
-    return results[0].real, results[1]
+    flat = _solve(length**2 * _stiffness(surface, 0).real, weights, trace)
+    # In real coordinates: the factorisation of complex matrices is ten times slower.
+    stiffness = length**2 * _stiffness(surface, 2)
+    parts = block_array([[stiffness.real, -stiffness.imag], [stiffness.imag, stiffness.real]])
+    values = np.concatenate([deviator.real, deviator.imag])
+    real, imaginary = np.split(_solve(parts, np.tile(weights, 2), values), 2)
+    return flat, real + 1j * imaginary
 
 
-def _stiffness(surface: CongruenceMesh, power: int):  # noqa: ANN202
+def _solve(stiffness: Any, weights: FloatArray, values: FloatArray) -> FloatArray:
+    """Solve ``(stiffness + weights) x = weights values``."""
+    from scipy.sparse import diags_array
+    from scipy.sparse.linalg import splu
+
+    solver = splu(
+        (stiffness + diags_array(weights)).tocsc(), permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0, options={"SymmetricMode": True},
+    )  # fmt: skip
+    return solver.solve(weights * values)
+
+
+def _stiffness(surface: CongruenceMesh, power: int) -> Any:  # noqa: ANN401
     """Hermitian connection Laplacian (V, V) of fields that turn by a power of the frames."""
     from scipy.sparse import csr_array
 

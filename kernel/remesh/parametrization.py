@@ -132,7 +132,7 @@ def parametrize(
             f"an edge length of {edge_length * surface.size:g} is too large for the surface: "
             "the net has no room for its steps; choose a smaller one"
         )
-    values = untangle(surface, charts, start, is_fixed)
+    values = untangle(surface, charts, start, is_fixed, edge_length)
     return Parametrization(
         charts, values, charts.determinants(values) <= 0,
         sum(problem.alignment.n_sides for problem in problems), int(folded.sum()),
