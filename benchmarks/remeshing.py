@@ -61,7 +61,11 @@ def pebble(d: FloatArray) -> tuple[FloatArray, FloatArray]:
     """A lopsided stone."""
     x, y, z = d.T
     radii = 1 + 0.18 * x * x - 0.2 * z * z + 0.12 * x * y + 0.1 * y * z * x + 0.08 * x
-    gradients = [0.36 * x + 0.12 * y + 0.1 * y * z + 0.08, 0.12 * x + 0.1 * z * x, -0.4 * z + 0.1 * y * x]
+    gradients = [
+        0.36 * x + 0.12 * y + 0.1 * y * z + 0.08,
+        0.12 * x + 0.1 * z * x,
+        -0.4 * z + 0.1 * y * x,
+    ]
     return radii, np.stack(gradients, 1)
 
 

@@ -114,7 +114,9 @@ def _parameter_grid(
     return u, v, halves.reshape(-1, 3)
 
 
-def _graph(u: FloatArray, v: FloatArray, z: FloatArray, z_u: FloatArray, z_v: FloatArray) -> Patch:
+def _graph(
+    u: FloatArray, v: FloatArray, z: FloatArray, z_u: FloatArray, z_v: FloatArray
+) -> Patch:
     one, zero = np.ones_like(u), np.zeros_like(u)
     stacked = [np.stack(parts, -1) for parts in ((u, v, z), (one, zero, z_u), (zero, one, z_v))]
     return Patch(*stacked)

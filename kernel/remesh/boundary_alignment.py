@@ -130,7 +130,7 @@ def align_boundary(
     long = [side for side in sides if norm(vectors[side]).sum() > LEAST_SIDE * edge_length]
     frame = surface.face_frames[surface.topology.corner_faces]
     angles = np.arctan2(dot(vectors, frame[:, 1]), dot(vectors, frame[:, 0]))
-    result = []
+    result: list[Alignment] = []
     for directions in (frames.second, frames.first):
         misses = np.abs(np.sin(angles - directions[surface.topology.corner_faces]))
         chosen = [side for side in long if misses[side].max() < np.sin(ALIGNED)]
@@ -164,7 +164,8 @@ def _sides(surface: CongruenceMesh, following: IntArray) -> list[IntArray]:
     sides: list[IntArray] = []
     # Stretches that begin at corners come first; what is left are loops without corners.
     for start in np.concatenate([rim[is_corner[rim]], rim[~is_corner[rim]]]).tolist():
-        side, current = [], start
+        side: list[int] = []
+        current = start
         while is_left[current] and not (side and is_corner[current]):
             side.append(current)
             is_left[current] = False

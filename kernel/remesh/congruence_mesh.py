@@ -140,7 +140,9 @@ def _checked_areas(mesh: Mesh) -> FloatArray:
             "use triangulate first"
         )
     areas = face_vector_areas(mesh)
-    sides = mesh.vertices[mesh.corners[mesh.topology.next_corners]] - mesh.vertices[mesh.corners]
+    sides = (
+        mesh.vertices[mesh.corners[mesh.topology.next_corners]] - mesh.vertices[mesh.corners]
+    )
     squares = sum_by(mesh.topology.corner_faces, dot(sides, sides), mesh.n_faces)
     flat = np.flatnonzero(~(norm(areas) > DEGENERATE * squares))
     if len(flat):

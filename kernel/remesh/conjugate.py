@@ -7,7 +7,7 @@ four-space has at most one conjugate net. Its directions are the roots of one qu
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray
+from ..arrays import BoolArray, ComplexArray, FloatArray
 from ..tolerances import EPSILON
 from .jets import CongruenceJets
 
@@ -32,8 +32,8 @@ def conjugate_form(jets: CongruenceJets) -> FloatArray:
     A direction (a, b) is conjugate to (c, d) if ``a c S_uu + (a d + b c) S_uv + b d S_vv`` lies
     in ``span(S, S_u, S_v)``. In the two-dimensional quotient these are two equations in the
     symmetric products; their common solution is the pair of roots. A linear map of the five
-    coordinates, such as a Möbius map, multiplies the form by its determinant, a rescaling of the
-    rows by the fifth power of the factor: the form is a field over the surface, sign included,
+    coordinates, such as a Möbius map, multiplies the form by its determinant, a rescaling of
+    the rows by the fifth power of the factor: the form is a field over the surface, sign included,
     and needs no combing.
 
     References
@@ -48,7 +48,7 @@ def conjugate_form(jets: CongruenceJets) -> FloatArray:
     return np.stack([np.linalg.det(np.stack([*base, *pair], -2)) for pair in pairs], -1)
 
 
-def split_form(form: FloatArray) -> tuple[FloatArray, FloatArray]:
+def split_form(form: FloatArray) -> tuple[FloatArray, ComplexArray]:
     """
     Trace and deviator of quadratic forms in orthonormal coordinates.
 
@@ -69,7 +69,7 @@ def split_form(form: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def form_roots(
-    trace: FloatArray, deviator: FloatArray, least_angle: float = 0.0
+    trace: FloatArray, deviator: ComplexArray, least_angle: float = 0.0
 ) -> tuple[FloatArray, FloatArray, BoolArray]:
     """
     The two directions in which quadratic forms vanish.

@@ -86,18 +86,14 @@ class Meetings(NamedTuple):
     weights: FloatArray
 
 
-def corner_coordinates(
-    surface: CongruenceMesh, fans: Fans, charts: ChartGradients, values: FloatArray
-) -> FloatArray:
+def corner_coordinates(fans: Fans, charts: ChartGradients, values: FloatArray) -> FloatArray:
     """
     Coordinates of the corners with no vertex on a line.
 
     Parameters
     ----------
-    surface : CongruenceMesh
-        The mesh.
     fans : Fans
-        Corners around its vertices.
+        Corners around the vertices.
     charts : ChartGradients
         The map.
     values : (V, 2) float array
@@ -188,9 +184,7 @@ def face_segments(
     inner = np.flatnonzero(other >= 0)
     here, there = one[inner], other[inner]
     family = crossings.families[inner]
-    shift = (
-        corners[topology.next_corners[there], family] - signs[here] * corners[here, family]
-    )
+    shift = corners[topology.next_corners[there], family] - signs[here] * corners[here, family]
     beyond = np.rint(signs[here] * (crossings.levels[inner] + 0.5) + shift - 0.5)
     last = crossings.counts[here] - 1
     sides = np.concatenate([one, there])
@@ -200,17 +194,25 @@ def face_segments(
     ranks = np.concatenate([crossings.ranks, last - crossings.ranks[inner]])
     shares = np.concatenate([crossings.shares, 1 - crossings.shares[inner]])
     places = sides * (int(crossings.counts.max(initial=0)) + 1) + ranks
-    start, end = corners[sides, 1 - families], corners[topology.next_corners[sides], 1 - families]
+    start, end = (
+        corners[sides, 1 - families],
+        corners[topology.next_corners[sides], 1 - families],
+    )
     heights = start + shares * (end - start)
     order = np.lexsort((heights, levels, families, sides // 3))
     key = np.stack([sides // 3, families, levels], 1)[order]
-    if len(order) % 2 or (key[::2] != key[1::2]).any() or (key[1:-1:2] == key[2::2]).all(1).any():
+    if (
+        len(order) % 2
+        or (key[::2] != key[1::2]).any()
+        or (key[1:-1:2] == key[2::2]).all(1).any()
+    ):
         raise ConvergenceError(
             "the lines of the map do not match across the edges of the mesh: refine the mesh "
             "or choose another edge length"
         )
     pairs = order.reshape(-1, 2)
-    return Segments(*key[::2].T, ids[pairs], places[pairs])
+    faces, families, levels = key[::2].T
+    return Segments(faces, families, levels, ids[pairs], places[pairs])
 
 
 def face_meetings(

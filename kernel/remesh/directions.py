@@ -91,7 +91,8 @@ def conjugate_directions(
     singular = np.flatnonzero(frames.indices)
     return ConjugateDirections(
         directions, is_real, float(areas[~is_real].sum() / areas.sum()), singular,
-        frames.indices[singular], axis_angles(surface, jets), 2 * surface.rows[:, 0] / surface.size,
+        frames.indices[singular], axis_angles(surface, jets),
+        2 * surface.rows[:, 0] / surface.size,
     )  # fmt: skip
 
 

@@ -86,7 +86,7 @@ def extract_net(
     ConvergenceError
         If lines do not match across edges or end within the surface.
     """
-    corners = corner_coordinates(surface, fans, mapped.charts, mapped.values)
+    corners = corner_coordinates(fans, mapped.charts, mapped.values)
     crossings = edge_crossings(surface, corners)
     segments = face_segments(surface, corners, frames.signs, crossings)
     meetings, is_mirrored = face_meetings(corners, segments, mapped.is_flipped)
@@ -179,7 +179,7 @@ def _boundary_points(surface: CongruenceMesh, fans: Fans, crossings: EdgeCrossin
     first[sides[::-1]] = np.arange(len(sides))[::-1]
     # Skip half-edges without points by pointer doubling.
     ahead = following.copy()
-    for _ in range(int(len(tails)).bit_length()):
+    for _ in range(len(tails).bit_length()):
         skips = (ahead >= 0) & (first[np.maximum(ahead, 0)] < 0)
         ahead[skips] = ahead[ahead[skips]]
     is_last = np.ones(len(sides), bool)
@@ -212,7 +212,9 @@ def _darts(
     following[inner[is_crossing]] = _turn(inward)
     target = rim.following
     following[along] = np.where(is_crossing[target], inner[target], along[target])
-    origins = np.concatenate([np.repeat(np.arange(n_nodes), 4), *[n_nodes + np.arange(n_rim)] * 2])
+    origins = np.concatenate(
+        [np.repeat(np.arange(n_nodes), 4), *[n_nodes + np.arange(n_rim)] * 2]
+    )
     return following, origins
 
 

@@ -1,18 +1,14 @@
 """Smoothing of a field of quadratic forms over a triangle mesh."""
 
-from typing import Any, TypeAlias
-
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import FloatArray, dot, norm
+from ..arrays import ComplexArray, FloatArray, dot, norm
+from ..solvers.factorization import SparseArray, factorize_symmetric
 from ..tolerances import LEAST_STIFFNESS
 from .congruence_mesh import CongruenceMesh
 
-ComplexArray: TypeAlias = NDArray[np.complex128]
 
-
-def transport(source: FloatArray, target: FloatArray) -> FloatArray:
+def transport(source: FloatArray, target: FloatArray) -> ComplexArray:
     """
     Parallel transport between tangent planes, as factors of complex coordinates.
 
@@ -35,8 +31,8 @@ def transport(source: FloatArray, target: FloatArray) -> FloatArray:
 
 
 def smooth_forms(
-    surface: CongruenceMesh, trace: FloatArray, deviator: FloatArray, length: float
-) -> tuple[FloatArray, FloatArray]:
+    surface: CongruenceMesh, trace: FloatArray, deviator: ComplexArray, length: float
+) -> tuple[FloatArray, ComplexArray]:
     """
     Smooth a field of forms where it says little, and keep it where it is sure.
 
@@ -84,19 +80,14 @@ def smooth_forms(
     return flat, real + 1j * imaginary
 
 
-def _solve(stiffness: Any, weights: FloatArray, values: FloatArray) -> FloatArray:
+def _solve(stiffness: SparseArray, weights: FloatArray, values: FloatArray) -> FloatArray:
     """Solve ``(stiffness + weights) x = weights values``."""
     from scipy.sparse import diags_array
-    from scipy.sparse.linalg import splu
 
-    solver = splu(
-        (stiffness + diags_array(weights)).tocsc(), permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0, options={"SymmetricMode": True},
-    )  # fmt: skip
-    return solver.solve(weights * values)
+    return factorize_symmetric(stiffness + diags_array(weights))(weights * values)
 
 
-def _stiffness(surface: CongruenceMesh, power: int) -> Any:  # noqa: ANN401
+def _stiffness(surface: CongruenceMesh, power: int) -> SparseArray:
     """Hermitian connection Laplacian (V, V) of fields that turn by a power of the frames."""
     from scipy.sparse import csr_array
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by
+from ..arrays import BoolArray, ComplexArray, FloatArray, IntArray, dot, norm, sum_by
 from ..topology import Topology
 from .congruence_mesh import CongruenceMesh
 from .conjugate import form_roots
@@ -114,32 +114,31 @@ def vertex_fans(surface: CongruenceMesh) -> Fans:
     return Fans(corners, offsets, is_closed)
 
 
-def fan_sums(fans: Fans, steps: IntArray | FloatArray) -> IntArray | FloatArray:
+def fan_signs(fans: Fans, signs: FloatArray) -> FloatArray:
     """
-    Sums of values at the corners before each corner in its fan.
+    Products of signs at the corners before each corner in its fan.
 
     Parameters
     ----------
     fans : Fans
         The order of the corners.
-    steps : (H, ...) array
-        A value for every corner.
+    signs : (H,) float array
+        1 or -1 for every corner.
 
     Returns
     -------
-    (H, ...) array
-        For each corner the sum over the corners of its fan before it.
+    (H,) float array
+        1 for the first corner of each fan.
     """
-    ordered = steps[fans.corners]
-    before = np.cumsum(ordered, axis=0) - ordered
+    turns = np.cumsum(signs[fans.corners] < 0) - (signs[fans.corners] < 0)
     vertices = np.repeat(np.arange(len(fans.is_closed)), np.diff(fans.offsets))
-    result = np.empty_like(before)
-    result[fans.corners] = before - before[fans.offsets[:-1]][vertices]
+    result = np.empty(len(signs))
+    result[fans.corners] = 1.0 - 2.0 * ((turns - turns[fans.offsets[:-1]][vertices]) % 2)
     return result
 
 
 def comb_frames(
-    surface: CongruenceMesh, fans: Fans, trace: FloatArray, deviator: FloatArray, least: float
+    surface: CongruenceMesh, fans: Fans, trace: FloatArray, deviator: ComplexArray, least: float
 ) -> CombedFrames:
     """
     Directions in the faces from forms at the vertices.

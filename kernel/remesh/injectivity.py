@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot
+from ..solvers.factorization import factorize_symmetric
 from ..solvers.levenberg_marquardt import DampedStep, levenberg_marquardt
 from ..tolerances import FOLD_SMOOTHING, FOLD_STEP
 from .congruence_mesh import CongruenceMesh
@@ -208,7 +209,6 @@ def _newton(
 ) -> tuple[FloatArray, float]:
     """A few damped steps, and the distortion reached."""
     from scipy.sparse import csc_array, diags_array
-    from scipy.sparse.linalg import splu
 
     n_free = int(free.sum())
     numbers = np.full(free.shape, n_free)
@@ -231,12 +231,8 @@ def _newton(
         diagonal = matrix.diagonal()
 
         def _solve(damping: float) -> DampedStep:
-            damped = (matrix + diags_array(damping * diagonal)).tocsc()
-            solver = splu(
-                damped, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
-                options={"SymmetricMode": True},
-            )  # fmt: skip
-            step = solver.solve(-gradient)
+            damped = matrix + diags_array(damping * diagonal)
+            step = factorize_symmetric(damped)(-gradient)
             model = float(value @ part.areas + gradient @ step + step @ (matrix @ step) / 2)
             return DampedStep(step, model)
 

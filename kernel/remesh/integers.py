@@ -71,6 +71,31 @@ def integer_solutions(relations: FloatArray, constants: FloatArray) -> IntegerSo
     return IntegerSolutions(change[:, ~is_open] @ values[~is_open], change[:, is_open])
 
 
+def relaxed_minimum(
+    hessian: FloatArray, gradient: FloatArray, solutions: IntegerSolutions
+) -> FloatArray:
+    """
+    The minimum of ``n H n / 2 - g n`` if numbers need not be whole.
+
+    Parameters
+    ----------
+    hessian : (m, m) float array
+        Positive semidefinite.
+    gradient : (m,) float array
+        The vector g.
+    solutions : IntegerSolutions
+        The equations that n satisfies.
+
+    Returns
+    -------
+    (m,) float array
+        Of several minima the one nearest to the offset of the solutions.
+    """
+    offset, basis = solutions
+    right = basis.T @ (gradient - hessian @ offset)
+    return offset + basis @ _solve(basis.T @ hessian @ basis, right)
+
+
 def round_minimum(
     hessian: FloatArray, gradient: FloatArray, solutions: IntegerSolutions, n_first: int
 ) -> FloatArray:
@@ -117,7 +142,7 @@ def round_minimum(
 
 
 def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    return np.linalg.lstsq(matrix, right, rcond=GAUGE_RANK)[0]
+    return np.asarray(np.linalg.lstsq(matrix, right, rcond=GAUGE_RANK)[0], np.float64)
 
 
 def _descend(matrix: FloatArray, right: FloatArray, values: FloatArray) -> None:
@@ -131,4 +156,3 @@ def _descend(matrix: FloatArray, right: FloatArray, values: FloatArray) -> None:
             return
         best = int(np.argmax(gains))
         values[best] -= np.sign(slope[best])
-

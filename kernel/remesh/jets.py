@@ -1,12 +1,12 @@
 """Second derivatives of a sphere congruence at the vertices of a mesh, by local polynomials."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import InputError
+from ..solvers.factorization import SparseArray
 from ..spheres import recenter
 from ..tolerances import JET_RANK
 from .congruence_mesh import CongruenceMesh
@@ -85,13 +85,12 @@ def fit_jets(surface: CongruenceMesh, degree: int = 4, rings: int = 3) -> Congru
             f"a jet of degree {degree} needs {len(powers)} vertices, the mesh has "
             f"{len(surface.points)}: subdivide it"
         )
-    neighbors = _neighborhoods(surface, rings, int(SPARE * len(powers)))
-    counts = np.diff(neighbors.indptr)
+    neighbors, counts = _neighborhoods(surface, rings, int(SPARE * len(powers)))
     result = np.zeros((len(counts), 6, 5))
     order = np.argsort(counts, kind="stable")
     for start in range(0, len(order), CHUNK):
         vertices = order[start : start + CHUNK]
-        slots = np.arange(counts[vertices].max())
+        slots = np.arange(int(counts[vertices].max()))
         is_used = slots < counts[vertices, None]
         places = neighbors.indptr[vertices, None] + np.where(is_used, slots, 0)
         result[vertices] = _fit(surface, vertices, neighbors.indices[places], is_used, powers)
@@ -99,8 +98,10 @@ def fit_jets(surface: CongruenceMesh, degree: int = 4, rings: int = 3) -> Congru
     return CongruenceJets(*result.transpose(1, 0, 2))
 
 
-def _neighborhoods(surface: CongruenceMesh, rings: int, least: int) -> Any:
-    """Rows of a sparse matrix: the vertices in the rings around each vertex, and itself."""
+def _neighborhoods(
+    surface: CongruenceMesh, rings: int, least: int
+) -> tuple[SparseArray, IntArray]:
+    """A sparse matrix whose rows are the vertices around each and itself, and their numbers."""
     from scipy.sparse import csr_array, eye_array
 
     count = len(surface.points)
@@ -113,10 +114,10 @@ def _neighborhoods(surface: CongruenceMesh, rings: int, least: int) -> Any:
     for _ in range(rings - 1):
         around = (around @ near).tocsr()
     while True:
-        counts = np.diff(around.indptr)
+        counts: IntArray = np.diff(around.indptr)
         is_short = counts < min(least, count)
         if not is_short.any():
-            return around
+            return around, counts
         short = np.flatnonzero(is_short)
         select = csr_array((np.ones(len(short), bool), (short, short)), shape=(count, count))
         around = (around + select @ (around @ near)).tocsr()
@@ -126,7 +127,7 @@ def _fit(
     surface: CongruenceMesh,
     vertices: IntArray,
     neighbors: IntArray,
-    is_used: FloatArray,
+    is_used: BoolArray,
     powers: list[tuple[int, int]],
 ) -> FloatArray:
     """Value minus row at the vertex, and the five derivatives, (n, 6, 5)."""

@@ -9,7 +9,7 @@ from ..errors import ConvergenceError, InputError
 from ..mesh import Mesh
 from .extraction import Net
 
-SHORT = 0.3
+SHORT = 0.4
 """Edges at the boundary below this length, in edge lengths, are contracted."""
 
 
@@ -126,6 +126,6 @@ def _places(net: Net, merged: IntArray) -> FloatArray:
 
 def _following(offsets: IntArray) -> IntArray:
     """The next place in each group, the first after the last."""
-    result = np.arange(1, offsets[-1] + 1)
+    result = np.arange(1, int(offsets[-1]) + 1)
     result[offsets[1:] - 1] = offsets[:-1]
     return result

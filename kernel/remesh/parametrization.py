@@ -7,21 +7,19 @@ tie the faces across the seams, and they are the same for both.
 """
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray
 from ..errors import InputError
 from .boundary_alignment import Alignment, align_boundary, no_alignment
 from .congruence_mesh import CongruenceMesh
+from .coordinate import Coordinate, eliminate, solve_coordinate
 from .frames import CombedFrames, Fans
 from .injectivity import ChartGradients, untangle
-from .integers import IntegerSolutions, integer_solutions, round_minimum
+from .integers import integer_solutions
 from .seams import Seams
-
-ACROSS = 30.0
-"""Weight of the direction in which a coordinate shall not change."""
+from .separation import singular_differences
 
 FOLDED = 0.3
 """A map with more of its faces folded has no room for the steps asked for."""
@@ -51,22 +49,6 @@ class Parametrization:
     is_flipped: BoolArray
     n_aligned: int
     n_folded: int
-
-
-@dataclass(frozen=True)
-class _Coordinate:
-    """
-    One scalar problem: minimise ``|J w - b|²`` over vertices and integers.
-
-    A coordinate of the corners is ``map @ [w, n]``.
-    """
-
-    map: Any
-    jacobian: Any
-    target: FloatArray
-    alignment: Alignment
-    solutions: IntegerSolutions
-    pinned: IntArray
 
 
 def parametrize(
@@ -108,22 +90,25 @@ def parametrize(
     Bommes, Zimmer, Kobbelt, Mixed-integer quadrangulation, 2009, for the greedy rounding.
     """
     gradients = chart_gradients(surface, frames, edge_length)
-    alignments = align_boundary(surface, fans, frames, seams, edge_length)
-    slopes = (
-        (gradients.along_first, gradients.along_second),
-        (gradients.along_second, gradients.along_first),
-    )
-    problems = [
-        _coordinate(surface, seams, alignment, gradients, pair)
-        for alignment, pair in zip(alignments, slopes, strict=True)
+    alignments = [
+        _consistent(seams, alignment)
+        for alignment in align_boundary(surface, fans, frames, seams, edge_length)
     ]
-    solved = [_solve(problem, seams) for problem in problems]
+    first, second = gradients.along_first, gradients.along_second
+    coordinates = [
+        eliminate(surface, seams, alignment, *slopes)
+        for alignment, slopes in zip(
+            alignments, ((first, second), (second, first)), strict=True
+        )
+    ]
+    differences = singular_differences(surface, seams, edge_length)
+    vectors = _solve_apart(coordinates, alignments, seams, differences)
     count = len(surface.points)
-    start = np.stack([vector[:count] for vector, _ in solved], 1)
-    is_fixed = np.stack([fixed for _, fixed in solved], 1)
+    start = np.stack([vector[:count] for vector in vectors], 1)
+    is_fixed = np.stack([coordinate.is_fixed for coordinate in coordinates], 1)
     shifts = [
-        problem.map[:, count:] @ vector[count:]
-        for problem, (vector, _) in zip(problems, solved, strict=True)
+        coordinate.corner_map[:, count:] @ vector[count:]
+        for coordinate, vector in zip(coordinates, vectors, strict=True)
     ]
     charts = replace(gradients, signs=seams.signs, shifts=np.stack(shifts, 1))
     folded = charts.determinants(start) <= 0
@@ -135,7 +120,7 @@ def parametrize(
     values = untangle(surface, charts, start, is_fixed, edge_length)
     return Parametrization(
         charts, values, charts.determinants(values) <= 0,
-        sum(problem.alignment.n_sides for problem in problems), int(folded.sum()),
+        sum(alignment.n_sides for alignment in alignments), int(folded.sum()),
     )  # fmt: skip
 
 
@@ -175,84 +160,66 @@ def chart_gradients(
     )  # fmt: skip
 
 
-def _coordinate(
-    surface: CongruenceMesh,
+def _solve_apart(
+    coordinates: list[Coordinate],
+    alignments: list[Alignment],
     seams: Seams,
+    differences: FloatArray,
+) -> list[FloatArray]:
+    """Solve both coordinates; singular vertices that fall together are moved a step apart."""
+    n_seams = seams.shifts.shape[1]
+    ties: list[list[tuple[FloatArray, float]]] = [[], []]
+    solved: list[tuple[FloatArray, FloatArray]] = []
+    for axis in (0, 1):
+        first = _solve(coordinates[axis], alignments[axis], seams, [])
+        assert first is not None, "alignments are consistent"
+        solved.append(first)
+    count = len(coordinates[0].is_fixed)
+    for _ in range(len(differences)):
+        places = [differences @ vector[count : count + n_seams] for vector, _ in solved]
+        together = np.flatnonzero((places[0] == 0) & (places[1] == 0))
+        if len(together) == 0:
+            break
+        wanted = np.stack([differences @ relaxed[:n_seams] for _, relaxed in solved], 1)
+        pair = together[np.argmax(np.abs(wanted[together]).max(axis=1))]
+        for axis in np.argsort(-np.abs(wanted[pair])).tolist():
+            tie = (differences[pair], float(np.copysign(1.0, wanted[pair, axis])))
+            trial = _solve(coordinates[axis], alignments[axis], seams, [*ties[axis], tie])
+            if trial is not None:
+                ties[axis].append(tie)
+                solved[axis] = trial
+                break
+        else:
+            break
+    return [vector for vector, _ in solved]
+
+
+def _solve(
+    coordinate: Coordinate,
     alignment: Alignment,
-    gradients: ChartGradients,
-    slopes: tuple[FloatArray, FloatArray],
-) -> _Coordinate:
-    from scipy.sparse import csr_array, hstack, vstack
-
-    alignment, solutions = _consistent(seams, alignment)
-    corners = np.arange(len(seams.signs))
-    faces, vertices = corners // 3, surface.triangles.ravel()
-    shape = (len(corners), len(surface.points))
-    spread = csr_array((seams.signs, (corners, vertices)), shape=shape)
-    runs = csr_array((len(corners), alignment.expressions.shape[1] - seams.shifts.shape[1]))
-    corner_map = hstack([spread, seams.shifts, runs]).tocsr()
-    scale = np.sqrt(gradients.areas / gradients.areas.sum())
-    shape = (len(surface.triangles), len(corners))
-    along, across = (
-        csr_array(((slope * scale[:, None]).ravel(), (faces, corners)), shape=shape)
-        for slope in slopes
+    seams: Seams,
+    ties: list[tuple[FloatArray, float]],
+) -> tuple[FloatArray, FloatArray] | None:
+    """Vector and relaxed integers; None where the ties contradict the relations."""
+    n_sides = alignment.expressions.shape[1] - seams.shifts.shape[1]
+    relations = np.array([*seams.relations, *(row for row, _ in ties)])
+    relations = relations.reshape(len(seams.relations) + len(ties), seams.shifts.shape[1])
+    padded = np.hstack([relations, np.zeros((len(relations), n_sides))])
+    zeros = np.zeros(len(seams.relations))
+    constants = [zeros, [value for _, value in ties], alignment.relation_constants]
+    solutions = integer_solutions(
+        np.concatenate([padded, alignment.relations]), np.concatenate(constants)
     )
-    jacobian = vstack([along, np.sqrt(ACROSS) * across]) @ corner_map
-    target = np.concatenate([scale, np.zeros(len(scale))])
-    is_free = seams.is_free and len(alignment.vertices) == 0
-    pinned = np.arange(1 if is_free else 0)
-    return _Coordinate(corner_map, jacobian.tocsc(), target, alignment, solutions, pinned)
+    if solutions is None:
+        return None
+    return solve_coordinate(coordinate, solutions, len(seams.singular))
 
 
-def _consistent(seams: Seams, alignment: Alignment) -> tuple[Alignment, IntegerSolutions]:
-    """The alignment and the integers that it allows; none where it contradicts itself."""
-    for trial in (alignment, no_alignment(seams.shifts.shape[1])):
-        n_sides = trial.expressions.shape[1] - seams.shifts.shape[1]
-        padding = np.zeros((len(seams.relations), n_sides))
-        relations = np.concatenate([np.hstack([seams.relations, padding]), trial.relations])
-        constants = np.concatenate([np.zeros(len(seams.relations)), trial.relation_constants])
-        solutions = integer_solutions(relations, constants)
-        if solutions is not None:
-            return trial, solutions
-    # Without alignment all constants are zero, and zeros are a solution.
-    raise AssertionError
-
-
-def _solve(problem: _Coordinate, seams: Seams) -> tuple[FloatArray, BoolArray]:
-    """Vertices and integers at the minimum, and which vertices the integers fix."""
-    from scipy.sparse.linalg import splu
-
-    jacobian, alignment = problem.jacobian, problem.alignment
-    n_integers = alignment.expressions.shape[1]
-    count = jacobian.shape[1] - n_integers
-    singular = seams.singular
-    fixed = np.concatenate([singular, alignment.vertices, problem.pinned])
-    expressions = np.concatenate(
-        [
-            np.eye(n_integers)[: len(singular)],
-            alignment.expressions,
-            np.zeros((len(problem.pinned), n_integers)),
-        ]
-    )
-    constants = np.zeros(len(fixed))
-    constants[len(singular) : len(singular) + len(alignment.vertices)] = alignment.constants
-    is_fixed = np.zeros(count, bool)
-    is_fixed[fixed] = True
-    real = jacobian[:, np.flatnonzero(~is_fixed)]
-    whole = jacobian[:, fixed] @ expressions + jacobian[:, count:].toarray()
-    right = problem.target - jacobian[:, fixed] @ constants
-    normal = (real.T @ real).tocsc()
-    solver = splu(
-        normal, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )  # fmt: skip
-    mixed = real.T @ whole
-    follow = solver.solve(np.concatenate([mixed, (real.T @ right)[:, None]], axis=1))
-    hessian = whole.T @ whole - mixed.T @ follow[:, :-1]
-    gradient = whole.T @ right - mixed.T @ follow[:, -1]
-    integers = round_minimum(hessian, gradient, problem.solutions, len(singular))
-    vector = np.zeros(jacobian.shape[1])
-    vector[count:] = integers
-    vector[fixed] = expressions @ integers + constants
-    vector[np.flatnonzero(~is_fixed)] = follow[:, -1] - follow[:, :-1] @ integers
-    return vector, is_fixed
+def _consistent(seams: Seams, alignment: Alignment) -> Alignment:
+    """The alignment, or none where it contradicts itself or the seams."""
+    n_sides = alignment.expressions.shape[1] - seams.shifts.shape[1]
+    padding = np.zeros((len(seams.relations), n_sides))
+    relations = np.concatenate([np.hstack([seams.relations, padding]), alignment.relations])
+    constants = np.concatenate([np.zeros(len(padding)), alignment.relation_constants])
+    is_consistent = integer_solutions(relations, constants) is not None
+    return alignment if is_consistent else no_alignment(seams.shifts.shape[1])

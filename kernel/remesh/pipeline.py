@@ -42,12 +42,12 @@ class Remeshing:
     complex_share : float
         Share of the area of the given surface whose directions are complex.
     moved_share : float
-        Share of the area whose directions, after smoothing, were moved apart to the least angle.
+        Share of the area whose directions, once smooth, were moved apart to the least angle.
     singular_points : (s, 3) float array
         Where the directions turn, in model coordinates.
     indices : (s,) int array
-        How often, in half turns: around -1 lies a face of degree 6, around 1 an edge with ends of
-        valence 3.
+        How often, in half turns: around -1 lies a face of degree 6, around 1 an edge with ends
+        of valence 3.
     n_folded, n_flipped : int
         Triangles folded by the map before and after they were unfolded.
     n_aligned : int

@@ -9,13 +9,13 @@ map, and all other shifts are whole-number combinations of them.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
+from ..solvers.factorization import SparseArray
 from .congruence_mesh import CongruenceMesh
-from .frames import CombedFrames, Fans, fan_sums, previous_corners
+from .frames import CombedFrames, Fans, fan_signs, previous_corners
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Seams:
     """
 
     signs: FloatArray
-    shifts: Any
+    shifts: SparseArray
     singular: IntArray
     relations: FloatArray
     is_free: bool
@@ -69,9 +69,7 @@ def find_seams(surface: CongruenceMesh, fans: Fans, frames: CombedFrames) -> Sea
 
     topology = surface.topology
     crossed = previous_corners(topology)
-    turned = (frames.signs < 0).astype(np.int64)
-    before = fan_sums(fans, turned[crossed])
-    signs = 1.0 - 2.0 * (before % 2)
+    signs = fan_signs(fans, frames.signs[crossed])
     after = signs * frames.signs[crossed]
     singular = np.flatnonzero(frames.indices)
     edges, edge_ends, edge_sides = _seam_edges(surface, frames)
@@ -84,7 +82,7 @@ def find_seams(surface: CongruenceMesh, fans: Fans, frames: CombedFrames) -> Sea
     root, parents = _spanning_tree(surface, fans, edge_ends, singular)
     flows, relations = _conserve(surface, fans, after, steps, (root, parents), singular)
     shifts = _corner_shifts(fans, signs, steps, flows)
-    is_free = len(singular) == 0 and not turned.any()
+    is_free = len(singular) == 0 and bool((frames.signs > 0).all())
     return Seams(signs, shifts, singular, relations, is_free)
 
 
@@ -130,10 +128,10 @@ def _conserve(
     surface: CongruenceMesh,
     fans: Fans,
     after: FloatArray,
-    steps: Any,
+    steps: SparseArray,
     tree: tuple[int, IntArray],
     singular: IntArray,
-) -> tuple[Any, FloatArray]:
+) -> tuple[SparseArray, FloatArray]:
     """Shifts of the seam edges (n, m) by the integers, and relations between these (r, m)."""
     from scipy.sparse import csr_array, hstack
     from scipy.sparse.linalg import splu
@@ -155,7 +153,7 @@ def _conserve(
     is_loop = np.ones(steps.shape[1], bool)
     is_loop[tree_edges] = False
     right = hstack([places, -balance[:, np.flatnonzero(is_loop)]]).tocsc()
-    solver = splu(balance[rows][:, tree_edges].tocsc())
+    solver: SparseArray = splu(balance[rows][:, tree_edges].tocsc())
     flows = np.zeros((steps.shape[1], right.shape[1]))
     flows[tree_edges] = np.rint(solver.solve(right[rows].toarray()))
     flows[is_loop, len(singular) :] = np.eye(int(is_loop.sum()))
@@ -167,7 +165,9 @@ def _conserve(
     return csr_array(flows), relations[(relations != 0).any(axis=1)]
 
 
-def _corner_shifts(fans: Fans, signs: FloatArray, steps: Any, flows: Any) -> Any:
+def _corner_shifts(
+    fans: Fans, signs: FloatArray, steps: SparseArray, flows: SparseArray
+) -> SparseArray:
     """Shift of each corner against the first of its fan, (H, m)."""
     from scipy.sparse import csr_array
 
