@@ -70,7 +70,7 @@ AT_INFINITY: Final = 1e-6
 """Vertices this close, in mean edges, to the point sent to infinity have no usable image."""
 
 JET_RANK: Final = 1e-11
-"""Squared singular values of a polynomial fit below this, relative to the largest, are noise."""
+"""Squared singular values of a polynomial fit below this, relative to the largest: noise."""
 
 LEAST_STIFFNESS: Final = 1e-3
 """Least weight of an edge or a vertex in the smoothing of a field, relative to the ordinary."""

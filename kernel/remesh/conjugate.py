@@ -33,8 +33,8 @@ def conjugate_form(jets: CongruenceJets) -> FloatArray:
     in ``span(S, S_u, S_v)``. In the two-dimensional quotient these are two equations in the
     symmetric products; their common solution is the pair of roots. A linear map of the five
     coordinates, such as a Möbius map, multiplies the form by its determinant, a rescaling of
-    the rows by the fifth power of the factor: the form is a field over the surface, sign included,
-    and needs no combing.
+    the rows by the fifth power of the factor: the form is a field over the surface, sign
+    included, and needs no combing.
 
     References
     ----------

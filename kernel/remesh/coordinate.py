@@ -31,6 +31,10 @@ class Coordinate:
     ----------
     corner_map : (H, V + n) sparse array
         Values at the corners from those at the vertices and the integers.
+    is_free : bool
+        Whether a constant may be added to all values.
+    corner_areas : (H,) float array
+        A third of the area of the face of each corner.
     is_fixed : (V,) bool array
         Vertices whose values the integers give.
     expressions, constants : (k, n) and (k,) float array
@@ -46,6 +50,8 @@ class Coordinate:
     """
 
     corner_map: SparseArray
+    is_free: bool
+    corner_areas: FloatArray
     is_fixed: BoolArray
     expressions: FloatArray
     constants: FloatArray
@@ -96,7 +102,18 @@ def eliminate(
     columns = np.column_stack([whole, target, jacobian[:, fixed] @ constants])
     follow = factorize_symmetric(real.T @ real)(real.T @ columns)
     rest: FloatArray = columns - real @ follow
-    return Coordinate(corner_map, is_fixed, expressions, constants, fixed, rest, follow, target)
+    return Coordinate(
+        corner_map=corner_map,
+        is_free=is_free,
+        corner_areas=np.repeat(surface.face_areas / 3, 3),
+        is_fixed=is_fixed,
+        expressions=expressions,
+        constants=constants,
+        fixed=fixed,
+        rest=rest,
+        follow=follow,
+        target=target,
+    )
 
 
 def solve_coordinate(
@@ -136,6 +153,10 @@ def solve_coordinate(
     values[coordinate.fixed] = coordinate.expressions @ integers + coordinate.constants
     known = np.concatenate([integers, [-stretch, 1.0]])
     values[~coordinate.is_fixed] = -coordinate.follow @ known
+    if coordinate.is_free:
+        # The middle of a surface without marks of its own is the middle of a face.
+        corners = coordinate.corner_map @ np.concatenate([values, integers])
+        values -= (coordinate.corner_areas @ corners) / coordinate.corner_areas.sum()
     return np.concatenate([values, integers]), relaxed
 
 

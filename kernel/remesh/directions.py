@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import BoolArray, FloatArray, IntArray, dot, norm
+from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..mesh import Mesh
 from .congruence_mesh import CongruenceMesh, congruence_mesh
 from .conjugate import conjugate_form, form_roots, split_form
@@ -80,18 +80,21 @@ def conjugate_directions(
     Meshes with Spherical Faces, Sec. 6.4, eq. (12).
     """
     surface = congruence_mesh(mesh, spheres)
-    jets = fit_jets(surface, degree, rings)
+    jets, slopes = fit_jets(surface, degree, rings)
     trace, deviator = split_form(conjugate_form(jets))
     first, second, is_real = form_roots(trace, deviator)
     angles = np.stack([first, second], 1)[..., None]
-    tangents = surface.vertex_frames[:, None, :2]
-    directions = np.cos(angles) * tangents[:, :, 0] + np.sin(angles) * tangents[:, :, 1]
+    frames = surface.vertex_frames
+    tangents = frames[:, :2] + slopes[..., None] * frames[:, 2:]
+    directions = unit(
+        np.cos(angles) * tangents[:, None, 0] + np.sin(angles) * tangents[:, None, 1]
+    )
     areas = surface.vertex_areas
-    frames = comb_frames(surface, vertex_fans(surface), trace, deviator, 0.0)
-    singular = np.flatnonzero(frames.indices)
+    indices = comb_frames(surface, vertex_fans(surface), trace, deviator, 0.0).indices
+    singular = np.flatnonzero(indices)
     return ConjugateDirections(
         directions, is_real, float(areas[~is_real].sum() / areas.sum()), singular,
-        frames.indices[singular], axis_angles(surface, jets),
+        indices[singular], axis_angles(surface, jets),
         2 * surface.rows[:, 0] / surface.size,
     )  # fmt: skip
 

@@ -57,9 +57,9 @@ def smooth_forms(
     Notes
     -----
     Screened Poisson: the minimum of ``Σ c |q - q'|² + length² |grad q|²`` for the forms q' of
-    unit size. The confidence c grows with the size of the given form, which vanishes where every
-    direction is conjugate: there the neighbours decide, and pairs of singularities that noise
-    has made disappear.
+    unit size. The confidence c grows with the size of the given form, which vanishes where
+    every direction is conjugate: there the neighbours decide, and pairs of singularities that
+    noise has made disappear.
     """
     from scipy.sparse import block_array
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, IntArray, dot
+from ..arrays import BoolArray, FloatArray, IntArray, dot, sum_by
 from ..solvers.factorization import factorize_symmetric
 from ..solvers.levenberg_marquardt import DampedStep, levenberg_marquardt
 from ..tolerances import FOLD_SMOOTHING, FOLD_STEP
@@ -213,7 +213,7 @@ def _newton(
     n_free = int(free.sum())
     numbers = np.full(free.shape, n_free)
     numbers[free] = np.arange(n_free)
-    unknowns = numbers[part.triangles].reshape(-1, 6)
+    unknowns: IntArray = numbers[part.triangles].reshape(-1, 6)
     rows, columns = np.repeat(unknowns, 6, axis=1), np.tile(unknowns, 6)
     shape = (n_free + 1, n_free + 1)
 
@@ -225,7 +225,7 @@ def _newton(
         spread = part.spread()
         slopes = np.einsum("f,fj,fjk->fk", part.areas, by_jacobian, spread)
         blocks = np.einsum("f,fji,fjl,flk->fik", part.areas, spread, curvature, spread)
-        gradient = np.bincount(unknowns.ravel(), slopes.ravel(), n_free + 1)[:n_free]
+        gradient = sum_by(unknowns.ravel(), slopes.ravel(), n_free + 1)[:n_free]
         entries = (blocks.ravel(), (rows.ravel(), columns.ravel()))
         matrix = csc_array(entries, shape=shape)[:n_free, :n_free]
         diagonal = matrix.diagonal()

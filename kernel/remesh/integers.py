@@ -8,6 +8,10 @@ from ..arrays import FloatArray
 from ..tolerances import GAUGE_RANK
 
 
+class ContradictionError(ArithmeticError):
+    """No whole numbers satisfy the equations; callers drop some of them."""
+
+
 class IntegerSolutions(NamedTuple):
     """
     All solutions ``offset + basis @ y`` of linear equations in whole numbers.
@@ -24,7 +28,7 @@ class IntegerSolutions(NamedTuple):
     basis: FloatArray
 
 
-def integer_solutions(relations: FloatArray, constants: FloatArray) -> IntegerSolutions | None:
+def integer_solutions(relations: FloatArray, constants: FloatArray) -> IntegerSolutions:
     """
     Solve linear equations in whole numbers.
 
@@ -37,8 +41,13 @@ def integer_solutions(relations: FloatArray, constants: FloatArray) -> IntegerSo
 
     Returns
     -------
-    IntegerSolutions or None
-        None where whole numbers cannot satisfy the equations.
+    IntegerSolutions
+        All solutions.
+
+    Raises
+    ------
+    ContradictionError
+        If whole numbers cannot satisfy the equations.
 
     Notes
     -----
@@ -62,11 +71,11 @@ def integer_solutions(relations: FloatArray, constants: FloatArray) -> IntegerSo
         rest = constant - columns[row, ~is_open] @ values[~is_open]
         if len(active) == 0:
             if rest != 0:
-                return None
+                raise ContradictionError
             continue
         value = rest / columns[row, active[0]]
         if value != np.rint(value):
-            return None
+            raise ContradictionError
         values[active[0]], is_open[active[0]] = value, False
     return IntegerSolutions(change[:, ~is_open] @ values[~is_open], change[:, is_open])
 

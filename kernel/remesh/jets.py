@@ -41,7 +41,9 @@ class CongruenceJets:
     rows_vv: FloatArray
 
 
-def fit_jets(surface: CongruenceMesh, degree: int = 4, rings: int = 3) -> CongruenceJets:
+def fit_jets(
+    surface: CongruenceMesh, degree: int = 4, rings: int = 3
+) -> tuple[CongruenceJets, FloatArray]:
     """
     Fit a polynomial to all five coordinates of the spheres around each vertex.
 
@@ -56,9 +58,11 @@ def fit_jets(surface: CongruenceMesh, degree: int = 4, rings: int = 3) -> Congru
 
     Returns
     -------
-    CongruenceJets
+    jets : CongruenceJets
         Derivatives at the vertices with respect to the two tangents of `vertex_frames`; rows
         seen from the vertex, everything in mean edges.
+    slopes : (V, 2) float array
+        Slope of the surface along the two tangents: what the frame misses of its tangent plane.
 
     Raises
     ------
@@ -86,7 +90,7 @@ def fit_jets(surface: CongruenceMesh, degree: int = 4, rings: int = 3) -> Congru
             f"{len(surface.points)}: subdivide it"
         )
     neighbors, counts = _neighborhoods(surface, rings, int(SPARE * len(powers)))
-    result = np.zeros((len(counts), 6, 5))
+    result = np.zeros((len(counts), 6, 6))
     order = np.argsort(counts, kind="stable")
     for start in range(0, len(order), CHUNK):
         vertices = order[start : start + CHUNK]
@@ -94,8 +98,9 @@ def fit_jets(surface: CongruenceMesh, degree: int = 4, rings: int = 3) -> Congru
         is_used = slots < counts[vertices, None]
         places = neighbors.indptr[vertices, None] + np.where(is_used, slots, 0)
         result[vertices] = _fit(surface, vertices, neighbors.indices[places], is_used, powers)
-    result[:, 0] += surface.rows
-    return CongruenceJets(*result.transpose(1, 0, 2))
+    values = result[:, :, :5].transpose(1, 0, 2)
+    values[0] += surface.rows
+    return CongruenceJets(*values), result[:, 1:3, 5]
 
 
 def _neighborhoods(
@@ -130,16 +135,17 @@ def _fit(
     is_used: BoolArray,
     powers: list[tuple[int, int]],
 ) -> FloatArray:
-    """Value minus row at the vertex, and the five derivatives, (n, 6, 5)."""
+    """Row minus that of the vertex and its five derivatives, (n, 6, 6); last column: height."""
     offsets = surface.points[neighbors] - surface.points[vertices, None]
     frames = surface.vertex_frames[vertices]
-    x, y = np.einsum("nki,nji->jnk", offsets, frames[:, :2])
+    x, y, height = np.einsum("nki,nji->jnk", offsets, frames)
     scales = np.sqrt(np.where(is_used, x * x + y * y, 0).max(axis=1))[:, None]
     x, y = x / scales, y / scales
     weights = np.where(is_used, np.exp(-(x * x + y * y)), 0.0)
     monomials = np.stack([x**i * y**j for i, j in powers], 2) * weights[..., None]
     rows = recenter(surface.rows[neighbors], -offsets) - surface.rows[vertices, None]
-    right = monomials.transpose(0, 2, 1) @ (rows * weights[..., None])
+    samples = np.concatenate([rows, height[..., None]], -1) * weights[..., None]
+    right = monomials.transpose(0, 2, 1) @ samples
     values, axes = np.linalg.eigh(monomials.transpose(0, 2, 1) @ monomials)
     is_safe = values > JET_RANK * values[:, -1:]
     inverse = np.where(is_safe, 1 / np.where(is_safe, values, 1.0), 0.0)

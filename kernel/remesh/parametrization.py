@@ -6,6 +6,7 @@ direction and not along the second, v the other way round. Only signs and whole-
 tie the faces across the seams, and they are the same for both.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,7 +18,7 @@ from .congruence_mesh import CongruenceMesh
 from .coordinate import Coordinate, eliminate, solve_coordinate
 from .frames import CombedFrames, Fans
 from .injectivity import ChartGradients, untangle
-from .integers import integer_solutions
+from .integers import ContradictionError, IntegerSolutions, integer_solutions
 from .seams import Seams
 from .separation import singular_differences
 
@@ -148,7 +149,7 @@ def chart_gradients(
     opposite = np.roll(points, -2, axis=1) - np.roll(points, -1, axis=1)
     normals = surface.face_frames[:, None, 2]
     slopes = np.cross(normals, opposite) / (2 * surface.face_areas)[:, None, None]
-    along = []
+    along: list[FloatArray] = []
     for angles in (frames.first, frames.second):
         circle = np.stack([np.cos(angles), np.sin(angles)], 1)
         directions = np.einsum("fi,fij->fj", circle, surface.face_frames[:, :2])
@@ -167,59 +168,51 @@ def _solve_apart(
     differences: FloatArray,
 ) -> list[FloatArray]:
     """Solve both coordinates; singular vertices that fall together are moved a step apart."""
-    n_seams = seams.shifts.shape[1]
-    ties: list[list[tuple[FloatArray, float]]] = [[], []]
-    solved: list[tuple[FloatArray, FloatArray]] = []
-    for axis in (0, 1):
-        first = _solve(coordinates[axis], alignments[axis], seams, [])
-        assert first is not None, "alignments are consistent"
-        solved.append(first)
+    n_seams, n_singular = seams.shifts.shape[1], len(seams.singular)
     count = len(coordinates[0].is_fixed)
+    ties: list[list[tuple[FloatArray, float]]] = [[], []]
+    solved = [
+        solve_coordinate(coordinate, _allowed(seams, alignment), n_singular)
+        for coordinate, alignment in zip(coordinates, alignments, strict=True)
+    ]
     for _ in range(len(differences)):
         places = [differences @ vector[count : count + n_seams] for vector, _ in solved]
         together = np.flatnonzero((places[0] == 0) & (places[1] == 0))
         if len(together) == 0:
             break
         wanted = np.stack([differences @ relaxed[:n_seams] for _, relaxed in solved], 1)
-        pair = together[np.argmax(np.abs(wanted[together]).max(axis=1))]
-        for axis in np.argsort(-np.abs(wanted[pair])).tolist():
-            tie = (differences[pair], float(np.copysign(1.0, wanted[pair, axis])))
-            trial = _solve(coordinates[axis], alignments[axis], seams, [*ties[axis], tie])
-            if trial is not None:
-                ties[axis].append(tie)
-                solved[axis] = trial
-                break
-        else:
+        pair = int(together[np.argmax(np.abs(wanted[together]).max(axis=1))])
+        axis = int(np.argmax(np.abs(wanted[pair])))
+        tie = (differences[pair], float(np.copysign(1.0, wanted[pair, axis])))
+        try:
+            allowed = _allowed(seams, alignments[axis], [*ties[axis], tie])
+        except ContradictionError:
             break
+        ties[axis].append(tie)
+        solved[axis] = solve_coordinate(coordinates[axis], allowed, n_singular)
     return [vector for vector, _ in solved]
 
 
-def _solve(
-    coordinate: Coordinate,
-    alignment: Alignment,
-    seams: Seams,
-    ties: list[tuple[FloatArray, float]],
-) -> tuple[FloatArray, FloatArray] | None:
-    """Vector and relaxed integers; None where the ties contradict the relations."""
-    n_sides = alignment.expressions.shape[1] - seams.shifts.shape[1]
-    relations = np.array([*seams.relations, *(row for row, _ in ties)])
-    relations = relations.reshape(len(seams.relations) + len(ties), seams.shifts.shape[1])
-    padded = np.hstack([relations, np.zeros((len(relations), n_sides))])
-    zeros = np.zeros(len(seams.relations))
-    constants = [zeros, [value for _, value in ties], alignment.relation_constants]
-    solutions = integer_solutions(
-        np.concatenate([padded, alignment.relations]), np.concatenate(constants)
+def _allowed(
+    seams: Seams, alignment: Alignment, ties: Sequence[tuple[FloatArray, float]] = ()
+) -> IntegerSolutions:
+    """Integers that satisfy the relations of the seams and sides, and the given differences."""
+    n_seams, n_sides = seams.shifts.shape[1], alignment.n_sides
+    rows = np.zeros((len(seams.relations) + len(ties), n_seams + n_sides))
+    constants = np.zeros(len(rows))
+    rows[: len(seams.relations), :n_seams] = seams.relations
+    for k, (row, value) in enumerate(ties, len(seams.relations)):
+        rows[k, :n_seams], constants[k] = row, value
+    return integer_solutions(
+        np.concatenate([rows, alignment.relations]),
+        np.concatenate([constants, alignment.relation_constants]),
     )
-    if solutions is None:
-        return None
-    return solve_coordinate(coordinate, solutions, len(seams.singular))
 
 
 def _consistent(seams: Seams, alignment: Alignment) -> Alignment:
     """The alignment, or none where it contradicts itself or the seams."""
-    n_sides = alignment.expressions.shape[1] - seams.shifts.shape[1]
-    padding = np.zeros((len(seams.relations), n_sides))
-    relations = np.concatenate([np.hstack([seams.relations, padding]), alignment.relations])
-    constants = np.concatenate([np.zeros(len(padding)), alignment.relation_constants])
-    is_consistent = integer_solutions(relations, constants) is not None
-    return alignment if is_consistent else no_alignment(seams.shifts.shape[1])
+    try:
+        _allowed(seams, alignment)
+    except ContradictionError:
+        return no_alignment(seams.shifts.shape[1])
+    return alignment

@@ -1,11 +1,12 @@
 """From a sphere congruence to a net of spheres that can have a support structure (Sec. 6.4)."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import BoolArray, FloatArray, IntArray
+from ..arrays import FloatArray, IntArray, norm
 from ..errors import InputError
 from ..mesh import Mesh, face_centroids
 from ..sphere_mesh import SphereMesh
@@ -37,8 +38,10 @@ class Remeshing:
     ----------
     sphere_mesh : SphereMesh
         Mostly quadrilaterals; a sphere of the congruence at each.
-    is_node : (V,) bool array
-        Vertices where two lines of the net cross, the others lie on the boundary.
+    n_irregular : int
+        Vertices inside whose valence is not 4.
+    shortest_edge : float
+        Length, in model units.
     complex_share : float
         Share of the area of the given surface whose directions are complex.
     moved_share : float
@@ -61,7 +64,8 @@ class Remeshing:
     """
 
     sphere_mesh: SphereMesh
-    is_node: BoolArray
+    n_irregular: int
+    shortest_edge: float
     complex_share: float
     moved_share: float
     singular_points: FloatArray
@@ -122,7 +126,7 @@ def remesh(
     """
     surface = congruence_mesh(mesh, spheres)
     step = _checked_step(surface, edge_length)
-    jets = fit_jets(surface, degree, rings)
+    jets, _ = fit_jets(surface, degree, rings)
     trace, deviator = split_form(conjugate_form(jets))
     is_real = form_roots(trace, deviator)[2]
     fans = vertex_fans(surface)
@@ -136,9 +140,11 @@ def remesh(
     singular = np.flatnonzero(frames.indices)
     areas = surface.vertex_areas
     moved = surface.face_areas[~frames.is_real].sum() / surface.face_areas.sum()
+    sphere_mesh = _interpolated(surface, built)
     return Remeshing(
-        sphere_mesh=_interpolated(surface, built),
-        is_node=built.is_node,
+        sphere_mesh=sphere_mesh,
+        n_irregular=_irregular_count(sphere_mesh.mesh),
+        shortest_edge=_shortest_edge(sphere_mesh.mesh),
         complex_share=float(areas[~is_real].sum() / areas.sum()),
         moved_share=float(moved),
         singular_points=mesh.vertices[singular],
@@ -151,6 +157,16 @@ def remesh(
         axis_angles=axis_angles(surface, jets),
         curvatures=2 * surface.rows[:, 0] / surface.size,
     )
+
+
+def _irregular_count(mesh: Mesh) -> int:
+    valences = np.bincount(mesh.corners, minlength=mesh.n_vertices)
+    return int((valences[~mesh.topology.is_boundary_vertex] != 4).sum())
+
+
+def _shortest_edge(mesh: Mesh) -> float:
+    ends = mesh.vertices[mesh.corners[mesh.topology.next_corners]]
+    return float(norm(ends - mesh.vertices[mesh.corners]).min())
 
 
 def _too_large(edge_length: float) -> InputError:
@@ -180,10 +196,11 @@ def _interpolated(surface: CongruenceMesh, built: NetMesh) -> SphereMesh:
     import igl  # pyright: ignore[reportMissingTypeStubs]
 
     centers = face_centroids(built.mesh)
-    nearest = igl.point_mesh_squared_distance(centers, surface.points, surface.triangles)  # pyright: ignore
-    vertices = surface.triangles[np.asarray(nearest[1], np.int64)]
+    nearest: Any = igl.point_mesh_squared_distance  # pyright: ignore[reportUnknownMemberType, reportUnknownVariableType]
+    _, triangles, feet = nearest(centers, surface.points, surface.triangles)
+    vertices = surface.triangles[np.asarray(triangles, np.int64)]
     corners = surface.points[vertices]
-    weights = _barycentric(np.asarray(nearest[2], np.float64), corners)
+    weights = _barycentric(np.asarray(feet, np.float64), corners)
     rows = recenter(surface.rows[vertices], centers[:, None] - corners)
     mixed = np.einsum("fc,fcr->fr", weights, rows)
     mixed /= np.sqrt(minkowski(mixed, mixed))[:, None]

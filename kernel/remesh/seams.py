@@ -2,9 +2,9 @@
 How coordinates of the faces are tied across the seams of a cut mesh.
 
 Along a seam the coordinates of one face are those of the other with a sign and a shift:
-``w' = s w + T``. Around a vertex the shifts must add up. On the graph of the seams this is a law
-of conservation, so a spanning tree of that graph leaves few shifts free: one for every handle
-and hole. Together with the places of the singular vertices they are the integers of a seamless
+``w' = s w + T``. Around a vertex the shifts must add up. On the graph of the seams this is a
+law of conservation, so a spanning tree of that graph leaves few shifts free, those of handles
+and holes. Together with the places of the singular vertices they are the integers of a seamless
 map, and all other shifts are whole-number combinations of them.
 """
 
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..solvers.factorization import SparseArray
+from ..solvers.factorization import SparseArray, factorize
 from .congruence_mesh import CongruenceMesh
 from .frames import CombedFrames, Fans, fan_signs, previous_corners
 
@@ -134,7 +134,6 @@ def _conserve(
 ) -> tuple[SparseArray, FloatArray]:
     """Shifts of the seam edges (n, m) by the integers, and relations between these (r, m)."""
     from scipy.sparse import csr_array, hstack
-    from scipy.sparse.linalg import splu
 
     (root, parents), count = tree, len(surface.points)
     corners = np.arange(len(after))
@@ -153,9 +152,9 @@ def _conserve(
     is_loop = np.ones(steps.shape[1], bool)
     is_loop[tree_edges] = False
     right = hstack([places, -balance[:, np.flatnonzero(is_loop)]]).tocsc()
-    solver: SparseArray = splu(balance[rows][:, tree_edges].tocsc())
+    solve = factorize(balance[rows][:, tree_edges])
     flows = np.zeros((steps.shape[1], right.shape[1]))
-    flows[tree_edges] = np.rint(solver.solve(right[rows].toarray()))
+    flows[tree_edges] = np.rint(solve(right[rows].toarray()))
     flows[is_loop, len(singular) :] = np.eye(int(is_loop.sum()))
     relations = np.zeros((0, right.shape[1]))
     if root < count:

@@ -11,7 +11,30 @@ SparseArray: TypeAlias = Any
 """A sparse array of SciPy, whose types do not say much yet."""
 
 
-def factorize_symmetric(matrix: SparseArray) -> Callable[[FloatArray], FloatArray]:
+Solver: TypeAlias = Callable[[FloatArray], FloatArray]
+"""Takes right sides (n,) or (n, k) to solutions of the same shape."""
+
+
+def factorize(matrix: SparseArray) -> Solver:
+    """
+    Factorise a square matrix.
+
+    Parameters
+    ----------
+    matrix : (n, n) sparse array
+        An invertible matrix.
+
+    Returns
+    -------
+    callable
+        Solves with this matrix.
+    """
+    from scipy.sparse.linalg import splu
+
+    return _solver(splu(matrix.tocsc()))
+
+
+def factorize_symmetric(matrix: SparseArray) -> Solver:
     """
     Factorise a symmetric positive definite matrix.
 
@@ -23,7 +46,7 @@ def factorize_symmetric(matrix: SparseArray) -> Callable[[FloatArray], FloatArra
     Returns
     -------
     callable
-        Takes right sides (n,) or (n, k) to solutions of the same shape.
+        Solves with this matrix.
 
     Notes
     -----
@@ -32,14 +55,18 @@ def factorize_symmetric(matrix: SparseArray) -> Callable[[FloatArray], FloatArra
     """
     from scipy.sparse.linalg import splu
 
-    solver: Any = splu(
-        matrix.tocsc(),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
+    return _solver(
+        splu(
+            matrix.tocsc(),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
     )
 
+
+def _solver(factors: SparseArray) -> Solver:
     def _solve(right: FloatArray) -> FloatArray:
-        return np.asarray(solver.solve(right), np.float64)
+        return np.asarray(factors.solve(right), np.float64)
 
     return _solve
