@@ -8,7 +8,8 @@ from numpy.typing import ArrayLike
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..mesh import Mesh
 from .congruence_mesh import CongruenceMesh, congruence_mesh
-from .conjugate import conjugate_form, form_roots, split_form
+from .conjugate import form_roots
+from .field_smoothing import conjugate_field
 from .frames import comb_frames, vertex_fans
 from .jets import CongruenceJets, fit_jets, node_axes
 
@@ -49,7 +50,7 @@ class ConjugateDirections:
 
 
 def conjugate_directions(
-    mesh: Mesh, spheres: ArrayLike, degree: int = 4, rings: int = 3
+    mesh: Mesh, spheres: ArrayLike, degree: int = 5, rings: int = 3
 ) -> ConjugateDirections:
     """
     Directions in which neighbouring spheres of an SQ-mesh with support structure follow.
@@ -81,7 +82,7 @@ def conjugate_directions(
     """
     surface = congruence_mesh(mesh, spheres)
     jets, slopes = fit_jets(surface, degree, rings)
-    trace, deviator = split_form(conjugate_form(jets))
+    trace, deviator = conjugate_field(surface, jets)
     first, second, is_real = form_roots(trace, deviator)
     angles = np.stack([first, second], 1)[..., None]
     frames = surface.vertex_frames

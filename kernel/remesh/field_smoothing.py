@@ -1,4 +1,4 @@
-"""Smoothing of a field of quadratic forms over a triangle mesh."""
+"""The field of conjugate forms over a triangle mesh, and its smoothing."""
 
 import numpy as np
 
@@ -6,6 +6,8 @@ from ..arrays import ComplexArray, FloatArray, dot, norm
 from ..solvers.factorization import SparseArray, factorize_symmetric
 from ..tolerances import LEAST_STIFFNESS
 from .congruence_mesh import CongruenceMesh
+from .conjugate import conjugate_form, split_form
+from .jets import CongruenceJets
 
 
 def transport(source: FloatArray, target: FloatArray) -> ComplexArray:
@@ -28,6 +30,49 @@ def transport(source: FloatArray, target: FloatArray) -> ComplexArray:
     cosine = dot(first, along) + dot(second, across)
     result = cosine + 1j * (dot(first, across) - dot(second, along))
     return result / np.abs(result)
+
+
+def conjugate_field(
+    surface: CongruenceMesh, jets: CongruenceJets
+) -> tuple[FloatArray, ComplexArray]:
+    """
+    The forms whose roots are the conjugate directions, as a field without jumps.
+
+    Parameters
+    ----------
+    surface : CongruenceMesh
+        The mesh.
+    jets : CongruenceJets
+        The congruence at its vertices.
+
+    Returns
+    -------
+    trace : (V,) float array
+        Means of the forms.
+    deviator : (V,) complex array
+        Deviators, in the coordinates of `vertex_frames`.
+
+    Notes
+    -----
+    The form has a sign as long as ``S, S_u, S_v`` are independent. Where spheres that touch a
+    surface pass its principal spheres they are not, on a curve, and the form passes zero. So
+    does ``<B_u x B_v, n>``, which is ``(k - k1) (k - k2)`` there: its sign undoes the jump. Of
+    the field with and without this sign the one that varies less is taken.
+    """
+    trace, deviator = split_form(conjugate_form(jets))
+    normals = surface.vertex_frames[:, 2]
+    bending = dot(np.cross(jets.rows_u[:, 1:4], jets.rows_v[:, 1:4]), normals)
+    signs = np.where(bending < 0, -1.0, 1.0)
+    size = np.sqrt(trace**2 + np.abs(deviator) ** 2)
+    size = np.where(size > 0, size, 1.0)
+    tails, heads = surface.triangles.ravel(), np.roll(surface.triangles, -1, axis=1).ravel()
+    frames = surface.vertex_frames
+    moved = transport(frames[tails], frames[heads]) ** 2 * deviator[tails]
+    likeness = trace[tails] * trace[heads] + (moved * deviator[heads].conj()).real
+    likeness /= size[tails] * size[heads]
+    if (likeness * signs[tails] * signs[heads]).sum() > likeness.sum():
+        return signs * trace, signs * deviator
+    return trace, deviator
 
 
 def smooth_forms(

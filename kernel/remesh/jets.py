@@ -42,7 +42,7 @@ class CongruenceJets:
 
 
 def fit_jets(
-    surface: CongruenceMesh, degree: int = 4, rings: int = 3
+    surface: CongruenceMesh, degree: int = 5, rings: int = 3
 ) -> tuple[CongruenceJets, FloatArray]:
     """
     Fit a polynomial to all five coordinates of the spheres around each vertex.
@@ -71,8 +71,8 @@ def fit_jets(
 
     Notes
     -----
-    Weighted least squares with a Gaussian of the distance. Degree 4 on 3 rings for exact
-    spheres; degree 3 on 5 rings for noisy ones.
+    Weighted least squares with a Gaussian of the distance. Degree 5 on 3 rings for exact
+    spheres, or degree 4 for three times the error; degree 3 on 5 rings for noisy ones.
 
     References
     ----------

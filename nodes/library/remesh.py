@@ -74,7 +74,7 @@ def triangulated_surface(
 
 @node
 def conjugate_directions(
-    mesh: Mesh, spheres: FloatArray, degree: Degree = 4, rings: Rings = 3
+    mesh: Mesh, spheres: FloatArray, degree: Degree = 5, rings: Rings = 3
 ) -> Directions:
     """
     The directions that a net of these spheres must follow to have a support structure.
@@ -123,7 +123,7 @@ def p4_remesh(
     edge_length: Annotated[float, Port(min=0)],
     smoothing: Annotated[float, Port(min=0, max=10)] = 0.5,
     least_angle: Annotated[float, Port(unit="deg", min=0, max=80)] = 20.0,
-    degree: Degree = 4,
+    degree: Degree = 5,
     rings: Rings = 3,
 ) -> Remeshed:
     """
