@@ -268,8 +268,8 @@ def distortion(
     slopes : (n, 4) float array
         Derivatives by the entries of J.
     curvatures : (n, 4, 4) float array
-        Second derivatives without the term of those of the determinant: positive semidefinite,
-        since the function is convex in J and det together.
+        Second derivatives without those of the determinant and of χ: positive semidefinite,
+        since a square over a linear function is convex.
     """
     flat = jacobians.reshape(-1, 4)
     a, b, c, d = flat.T
@@ -278,11 +278,10 @@ def distortion(
     root = np.sqrt(softness**2 + det**2)
     # det + root without cancellation where det is negative.
     chi = np.where(det > 0, det + root, softness**2 / (root - np.minimum(det, 0))) / 2
-    chi_d, chi_dd = chi / root, softness**2 / (2 * root**3)
+    chi_d = chi / root
     top = dot(flat, flat) + det**2 + 1
     by_det = 2 * det / chi - top * chi_d / chi**2
-    by_det_twice = 2 / chi - 4 * det * chi_d / chi**2
-    by_det_twice -= top * (chi_dd / chi**2 - 2 * chi_d**2 / chi**3)
+    by_det_twice = 2 / chi - 4 * det * chi_d / chi**2 + 2 * top * chi_d**2 / chi**3
     mixed = (-2 * chi_d / chi**2)[:, None] * flat
     slopes = 2 * flat / chi[:, None] + by_det[:, None] * cofactors
     cross = mixed[:, :, None] * cofactors[:, None]

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, norm, sum_by
-from ..errors import ConvergenceError, InputError
+from ..errors import InputError
 from ..mesh import Mesh
 from .extraction import Net
 
@@ -56,8 +56,8 @@ def net_mesh(net: Net, edge_length: float) -> NetMesh:
 
     Raises
     ------
-    ConvergenceError
-        If the cells form no manifold mesh.
+    InputError
+        If the cells form no mesh, since they are too large for the surface.
     """
     merged = _merge_short_edges(net, edge_length)
     try:
@@ -67,9 +67,9 @@ def net_mesh(net: Net, edge_length: float) -> NetMesh:
     try:
         return _build(net, np.arange(len(net.points)))
     except InputError as error:
-        raise ConvergenceError(
-            f"the cells of the net form no mesh ({error}): choose a smaller edge length, or "
-            "smooth the surface"
+        raise InputError(
+            "the edge length is too large for the surface: faces of the net would touch "
+            f"themselves ({error}); choose a smaller one"
         ) from error
 
 

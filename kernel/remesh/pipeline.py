@@ -118,7 +118,7 @@ def remesh(
     InputError
         If the mesh or the spheres cannot be used, or the edge length is out of range.
     ConvergenceError
-        If the lines of the map do not form a mesh.
+        If the lines of the map do not match across the edges of the mesh.
 
     References
     ----------

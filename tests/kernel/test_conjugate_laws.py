@@ -120,7 +120,7 @@ def bump(u: Series, v: Series) -> Vector:
 
 
 class Exact:
-    """A tangential congruence with exact derivatives, and the curvature lines of its surface."""
+    """A tangential congruence with exact derivatives, and the lines of curvature."""
 
     def __init__(self, surface: Callable[..., Vector], kind: str, count: int = 60) -> None:
         rng = np.random.default_rng(2)
