@@ -75,6 +75,9 @@ JET_RANK: Final = 1e-11
 LEAST_STIFFNESS: Final = 1e-3
 """Least weight of an edge or a vertex in the smoothing of a field, relative to the ordinary."""
 
+UNDETERMINED: Final = 1e-9
+"""Conjugate forms below this, relative to the largest that their terms allow, are zero."""
+
 GAUGE_RANK: Final = 1e-9
 """A singular value below this, relative to the largest, belongs to a freedom of the problem."""
 

@@ -28,7 +28,7 @@ class Patch(NamedTuple):
     along_v: FloatArray
 
 
-class _Shape(NamedTuple):
+class ParametricShape(NamedTuple):
     """A map of the rectangle ``low <= (u, v) <= high``, and which directions are closed."""
 
     patch: Callable[[FloatArray, FloatArray], Patch]
@@ -65,19 +65,39 @@ def triangulated_surface(
     InputError
         If the shape is unknown, or the edge length not positive or too large for the shape.
     """
-    if shape not in _SHAPES:
-        raise InputError(f"shape must be one of {', '.join(_SHAPES)}, not {shape!r}")
+    if shape not in SHAPES:
+        raise InputError(f"shape must be one of {', '.join(SHAPES)}, not {shape!r}")
     if not 0 < edge_length < np.inf:
         raise InputError(f"the edge length must be positive, not {edge_length}")
-    chosen = _SHAPES[shape]
-    counts = _grid_counts(chosen, edge_length)
-    u, v, triangles = _parameter_grid(chosen, counts, seed)
+    chosen = SHAPES[shape]
+    counts = grid_counts(chosen, edge_length)
+    u, v, triangles = parameter_grid(chosen, counts, seed)
     patch = chosen.patch(u, v)
     normals = unit(np.cross(patch.along_u, patch.along_v))
     return Mesh(patch.points, triangles), normals
 
 
-def _grid_counts(shape: _Shape, edge_length: float) -> tuple[int, int]:
+def grid_counts(shape: ParametricShape, edge_length: float) -> tuple[int, int]:
+    """
+    Numbers of grid steps along u and v.
+
+    Parameters
+    ----------
+    shape : ParametricShape
+        The surface.
+    edge_length : float
+        Length of a step.
+
+    Returns
+    -------
+    n_u, n_v : int
+        At least 3.
+
+    Raises
+    ------
+    InputError
+        If the edge length is too large.
+    """
     axes = [np.linspace(low, high, 60) for low, high in zip(shape.low, shape.high, strict=True)]
     patch = shape.patch(*np.meshgrid(*axes, indexing="ij"))
     spans = np.subtract(shape.high, shape.low)
@@ -91,10 +111,28 @@ def _grid_counts(shape: _Shape, edge_length: float) -> tuple[int, int]:
     return counts[0], counts[1]
 
 
-def _parameter_grid(
-    shape: _Shape, counts: tuple[int, int], seed: int | None
+def parameter_grid(
+    shape: ParametricShape, counts: tuple[int, int], seed: int | None
 ) -> tuple[FloatArray, FloatArray, IntArray]:
-    """Parameters of the vertices and triangles of the grid."""
+    """
+    Parameters of the vertices and the triangles of a grid.
+
+    Parameters
+    ----------
+    shape : ParametricShape
+        The surface.
+    counts : (int, int)
+        Steps along u and v.
+    seed : int, optional
+        Moves the vertices at random.
+
+    Returns
+    -------
+    u, v : (V,) float array
+        Parameters.
+    triangles : (F, 3) int array
+        Counter-clockwise in the parameters.
+    """
     sizes = [n if closed else n + 1 for n, closed in zip(counts, shape.closed, strict=True)]
     places = np.stack(np.meshgrid(*map(np.arange, sizes), indexing="ij"), -1).astype(float)
     if seed is not None:
@@ -171,11 +209,11 @@ def _ellipsoid(u: FloatArray, v: FloatArray) -> Patch:
 
 
 _TURN = 2 * np.pi
-_SHAPES: dict[str, _Shape] = {
-    "torus": _Shape(_torus, (0, 0), (_TURN, _TURN), (True, True)),
-    "annulus": _Shape(_annulus, (0, 0.8), (_TURN, 1.9), (True, False)),
-    "hypar": _Shape(_hypar, (-1, -1), (1, 1)),
-    "bump": _Shape(_bump, (-1.2, -1.2), (1.2, 1.2)),
-    "ellipsoid": _Shape(_ellipsoid, (0, -1.2), (_TURN, 1.2), (True, False)),
-    "waves": _Shape(_waves, (-1.5, -1.5), (1.5, 1.5)),
+SHAPES: dict[str, ParametricShape] = {
+    "torus": ParametricShape(_torus, (0, 0), (_TURN, _TURN), (True, True)),
+    "annulus": ParametricShape(_annulus, (0, 0.8), (_TURN, 1.9), (True, False)),
+    "hypar": ParametricShape(_hypar, (-1, -1), (1, 1)),
+    "bump": ParametricShape(_bump, (-1.2, -1.2), (1.2, 1.2)),
+    "ellipsoid": ParametricShape(_ellipsoid, (0, -1.2), (_TURN, 1.2), (True, False)),
+    "waves": ParametricShape(_waves, (-1.5, -1.5), (1.5, 1.5)),
 }

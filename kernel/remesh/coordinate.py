@@ -12,7 +12,7 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..solvers.factorization import SparseArray, factorize_symmetric
 from .boundary_alignment import Alignment
 from .congruence_mesh import CongruenceMesh
-from .integers import IntegerSolutions, relaxed_minimum, round_minimum
+from .integers import IntegerSolutions, Quadratic, relaxed_minimum, round_minimum
 from .seams import Seams
 
 ACROSS = 30.0
@@ -47,6 +47,8 @@ class Coordinate:
         How the free vertices follow them, with the opposite sign.
     target : (2 F,) float array
         Right side of the least squares.
+    scale : float
+        Largest square of a column of the integers before the elimination.
     """
 
     corner_map: SparseArray
@@ -59,6 +61,7 @@ class Coordinate:
     rest: FloatArray
     follow: FloatArray
     target: FloatArray
+    scale: float
 
 
 def eliminate(
@@ -113,6 +116,7 @@ def eliminate(
         rest=rest,
         follow=follow,
         target=target,
+        scale=float((whole**2).sum(axis=0).max(initial=0.0)),
     )
 
 
@@ -142,13 +146,14 @@ def solve_coordinate(
     rest, target = coordinate.rest, coordinate.target
     hessian = rest[:, :n].T @ rest[:, :n]
     slopes = rest[:, :n].T @ rest[:, n:]
-    relaxed = relaxed_minimum(hessian, slopes[:, 0] - slopes[:, 1], solutions)
+    function = Quadratic(hessian, slopes[:, 0] - slopes[:, 1], coordinate.scale)
+    relaxed = relaxed_minimum(function, solutions)
     step = float(target @ (target + rest @ np.concatenate([relaxed, [-1.0, 1.0]])))
     # Where the directions do not integrate the steps come out too long: correct their mean.
     stretch = float(np.clip(1 / step, 1.0, MOST_STRETCH)) if step > 0 else 1.0
-    gradient = stretch * slopes[:, 0] - slopes[:, 1]
-    relaxed = relaxed_minimum(hessian, gradient, solutions)
-    integers = round_minimum(hessian, gradient, solutions, n_first)
+    function = function._replace(gradient=stretch * slopes[:, 0] - slopes[:, 1])
+    relaxed = relaxed_minimum(function, solutions)
+    integers = round_minimum(function, solutions, n_first)
     values = np.empty(len(coordinate.is_fixed))
     values[coordinate.fixed] = coordinate.expressions @ integers + coordinate.constants
     known = np.concatenate([integers, [-stretch, 1.0]])

@@ -2,12 +2,16 @@
 
 import numpy as np
 
-from ..arrays import ComplexArray, FloatArray, dot, norm
+from ..arrays import ComplexArray, FloatArray, dot, norm, sum_by
+from ..errors import InputError
 from ..solvers.factorization import SparseArray, factorize_symmetric
-from ..tolerances import LEAST_STIFFNESS
+from ..tolerances import LEAST_STIFFNESS, UNDETERMINED
 from .congruence_mesh import CongruenceMesh
 from .conjugate import conjugate_form, split_form
 from .jets import CongruenceJets
+
+COHERENCE = 4
+"""Power with which disagreement with the neighbours lowers the confidence."""
 
 
 def transport(source: FloatArray, target: FloatArray) -> ComplexArray:
@@ -52,6 +56,11 @@ def conjugate_field(
     deviator : (V,) complex array
         Deviators, in the coordinates of `vertex_frames`.
 
+    Raises
+    ------
+    InputError
+        If the form vanishes everywhere: then every direction is conjugate to some other.
+
     Notes
     -----
     The form has a sign as long as ``S, S_u, S_v`` are independent. Where spheres that touch a
@@ -59,7 +68,15 @@ def conjugate_field(
     does ``<B_u x B_v, n>``, which is ``(k - k1) (k - k2)`` there: its sign undoes the jump. Of
     the field with and without this sign the one that varies less is taken.
     """
-    trace, deviator = split_form(conjugate_form(jets))
+    form = conjugate_form(jets)
+    parts = [jets.rows, jets.rows_u, jets.rows_v, jets.rows_uu + jets.rows_vv, jets.rows_uv]
+    bound = np.prod([norm(part) for part in parts], axis=0)
+    if not (norm(form) > UNDETERMINED * bound).any():
+        raise InputError(
+            "the spheres do not determine conjugate directions: they are planes, or touch a "
+            "sphere, or are all orthogonal to one; use spheres of other radii"
+        )
+    trace, deviator = split_form(form)
     normals = surface.vertex_frames[:, 2]
     bending = dot(np.cross(jets.rows_u[:, 1:4], jets.rows_v[:, 1:4]), normals)
     signs = np.where(bending < 0, -1.0, 1.0)
@@ -103,8 +120,8 @@ def smooth_forms(
     -----
     Screened Poisson: the minimum of ``Σ c |q - q'|² + length² |grad q|²`` for the forms q' of
     unit size. The confidence c grows with the size of the given form, which vanishes where
-    every direction is conjugate: there the neighbours decide, and pairs of singularities that
-    noise has made disappear.
+    every direction is conjugate, and with its likeness to the forms around, which noise does
+    not have: elsewhere the neighbours decide, and pairs of singularities vanish.
     """
     from scipy.sparse import block_array
 
@@ -113,8 +130,9 @@ def smooth_forms(
     trace, deviator = trace / unit_size, deviator / unit_size
     if length == 0:
         return trace, deviator
-    middle = np.median(size)
+    middle = float(np.median(size))
     confidence = size / (size + middle) if middle > 0 else np.zeros_like(size)
+    confidence = confidence * _coherence(surface, trace, deviator) ** COHERENCE
     weights = surface.vertex_areas * np.maximum(confidence, LEAST_STIFFNESS)
     flat = _solve(length**2 * _stiffness(surface, 0).real, weights, trace)
     # In real coordinates: the factorisation of complex matrices is ten times slower.
@@ -123,6 +141,20 @@ def smooth_forms(
     values = np.concatenate([deviator.real, deviator.imag])
     real, imaginary = np.split(_solve(parts, np.tile(weights, 2), values), 2)
     return flat, real + 1j * imaginary
+
+
+def _coherence(
+    surface: CongruenceMesh, trace: FloatArray, deviator: ComplexArray
+) -> FloatArray:
+    """Length of the mean of the unit forms around each vertex: 1 where all are alike."""
+    starts = surface.triangles.ravel()
+    ends = np.roll(surface.triangles, -1, axis=1).ravel()
+    tails, heads = np.concatenate([starts, ends]), np.concatenate([ends, starts])
+    count = len(trace)
+    frames = surface.vertex_frames
+    moved = transport(frames[tails], frames[heads]) ** 2 * deviator[tails]
+    parts = np.stack([trace[tails], moved.real, moved.imag], 1)
+    return norm(sum_by(heads, parts, count)) / np.bincount(heads, minlength=count)
 
 
 def _solve(stiffness: SparseArray, weights: FloatArray, values: FloatArray) -> FloatArray:

@@ -80,18 +80,33 @@ def integer_solutions(relations: FloatArray, constants: FloatArray) -> IntegerSo
     return IntegerSolutions(change[:, ~is_open] @ values[~is_open], change[:, is_open])
 
 
-def relaxed_minimum(
-    hessian: FloatArray, gradient: FloatArray, solutions: IntegerSolutions
-) -> FloatArray:
+class Quadratic(NamedTuple):
     """
-    The minimum of ``n H n / 2 - g n`` if numbers need not be whole.
+    The function ``n H n / 2 - g n``.
+
+    Attributes
+    ----------
+    hessian : (m, m) float array
+        Positive semidefinite matrix H.
+    gradient : (m,) float array
+        The vector g.
+    scale : float
+        Size that entries of H have by themselves: eigenvalues far below belong to freedoms.
+    """
+
+    hessian: FloatArray
+    gradient: FloatArray
+    scale: float
+
+
+def relaxed_minimum(function: Quadratic, solutions: IntegerSolutions) -> FloatArray:
+    """
+    The minimum of a quadratic function if numbers need not be whole.
 
     Parameters
     ----------
-    hessian : (m, m) float array
-        Positive semidefinite.
-    gradient : (m,) float array
-        The vector g.
+    function : Quadratic
+        The function.
     solutions : IntegerSolutions
         The equations that n satisfies.
 
@@ -101,22 +116,19 @@ def relaxed_minimum(
         Of several minima the one nearest to the offset of the solutions.
     """
     offset, basis = solutions
-    right = basis.T @ (gradient - hessian @ offset)
-    return offset + basis @ _solve(basis.T @ hessian @ basis, right)
+    right = basis.T @ (function.gradient - function.hessian @ offset)
+    values = _solve(basis.T @ function.hessian @ basis, right, function.scale)
+    return offset + basis @ values
 
 
-def round_minimum(
-    hessian: FloatArray, gradient: FloatArray, solutions: IntegerSolutions, n_first: int
-) -> FloatArray:
+def round_minimum(function: Quadratic, solutions: IntegerSolutions, n_first: int) -> FloatArray:
     """
-    Whole numbers near the minimum of ``n H n / 2 - g n``.
+    Whole numbers near the minimum of a quadratic function.
 
     Parameters
     ----------
-    hessian : (m, m) float array
-        Positive semidefinite.
-    gradient : (m,) float array
-        The vector g.
+    function : Quadratic
+        The function.
     solutions : IntegerSolutions
         Which n are allowed.
     n_first : int
@@ -133,10 +145,10 @@ def round_minimum(
     as long as one of them lowers the function.
     """
     offset, basis = solutions
-    reduced = basis.T @ hessian @ basis
-    right = basis.T @ (gradient - hessian @ offset)
+    matrix = basis.T @ function.hessian @ basis
+    right = basis.T @ (function.gradient - function.hessian @ offset)
     is_first = (basis[:n_first] != 0).any(axis=0)
-    values = _solve(reduced, right)
+    values = _solve(matrix, right, function.scale)
     is_open = np.ones(len(values), bool)
     for group in (is_first, ~is_first):
         while (is_open & group).any():
@@ -144,24 +156,28 @@ def round_minimum(
             misses = np.abs(values[candidates] - np.rint(values[candidates]))
             chosen = candidates[np.argmin(misses)]
             values[chosen], is_open[chosen] = np.rint(values[chosen]), False
-            rest = right[is_open] - reduced[np.ix_(is_open, ~is_open)] @ values[~is_open]
-            values[is_open] = _solve(reduced[np.ix_(is_open, is_open)], rest)
-    _descend(reduced, right, values)
+            rest = right[is_open] - matrix[np.ix_(is_open, ~is_open)] @ values[~is_open]
+            open_part = matrix[np.ix_(is_open, is_open)]
+            values[is_open] = _solve(open_part, rest, function.scale)
+    _descend(matrix, right, values, function.scale)
     return np.rint(offset + basis @ values)
 
 
-def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    return np.asarray(np.linalg.lstsq(matrix, right, rcond=GAUGE_RANK)[0], np.float64)
+def _solve(matrix: FloatArray, right: FloatArray, scale: float) -> FloatArray:
+    """Solution without any share of the freedoms."""
+    sizes, axes = np.linalg.eigh(matrix)
+    is_bound = sizes > GAUGE_RANK * scale
+    shares = np.where(is_bound, axes.T @ right / np.where(is_bound, sizes, 1.0), 0.0)
+    return axes @ shares
 
 
-def _descend(matrix: FloatArray, right: FloatArray, values: FloatArray) -> None:
+def _descend(matrix: FloatArray, right: FloatArray, values: FloatArray, scale: float) -> None:
     """Single steps of one, in place, while the function falls by more than rounding."""
     diagonal = np.diag(matrix)
-    limit = 100 * len(values)
-    for _ in range(limit):
+    for _ in range(100 * len(values)):
         slope = matrix @ values - right
         gains = np.abs(slope) - diagonal / 2
-        if len(gains) == 0 or gains.max() <= GAUGE_RANK * np.abs(diagonal).max():
+        if len(gains) == 0 or gains.max() <= GAUGE_RANK * scale:
             return
         best = int(np.argmax(gains))
         values[best] -= np.sign(slope[best])

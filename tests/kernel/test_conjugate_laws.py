@@ -16,7 +16,7 @@ from spheremesh.kernel.mobius import inversion, rotation_about, similarity
 from spheremesh.kernel.mobius_maps import map_points, map_spheres
 from spheremesh.kernel.remesh.conjugate import conjugate_form, form_roots, split_form
 from spheremesh.kernel.remesh.directions import conjugate_directions
-from spheremesh.kernel.remesh.jets import CongruenceJets
+from spheremesh.kernel.remesh.jets import CongruenceJets, node_axes
 from spheremesh.kernel.triangulated import SampleShape, triangulated_surface
 
 ORDER = 4
@@ -377,8 +377,20 @@ def test_node_axes_of_constant_radius_are_the_normals() -> None:
     mesh, normals = triangulated_surface("torus", 0.2)
     found = conjugate_directions(mesh, touching_spheres(mesh.vertices, normals, -2.0))
     assert np.degrees(np.nanmax(found.axis_angles)) < 1.0
-    planes = conjugate_directions(mesh, touching_spheres(mesh.vertices, normals, 0.0))
-    assert np.isnan(planes.axis_angles).all()
+    planes = CongruenceJets(*np.random.default_rng(0).normal(size=(6, 20, 5)))
+    planes.rows[:, 0] = planes.rows_u[:, 0] = planes.rows_v[:, 0] = 0
+    assert (node_axes(planes) == 0).all()
+
+
+def test_spheres_that_determine_no_directions_are_refused() -> None:
+    mesh, normals = triangulated_surface("hypar", 0.2, seed=1)
+    center = np.array([0.3, 0.2, 4.0])
+    arms = center - mesh.vertices
+    # Planes, and spheres orthogonal to one: power of its centre is the square of its radius.
+    power = (dot(arms, arms) - 1) / (2 * dot(arms, normals))
+    for curvatures in (np.zeros(len(normals)), 1 / power):
+        with pytest.raises(InputError, match="do not determine conjugate directions"):
+            conjugate_directions(mesh, touching_spheres(mesh.vertices, normals, curvatures))
 
 
 def test_complex_directions_are_found_with_their_share() -> None:

@@ -19,6 +19,7 @@ from spheremesh.kernel.remesh.frames import CombedFrames, Fans, comb_frames, ver
 from spheremesh.kernel.remesh.injectivity import distortion
 from spheremesh.kernel.remesh.integers import (
     ContradictionError,
+    Quadratic,
     integer_solutions,
     relaxed_minimum,
     round_minimum,
@@ -106,14 +107,15 @@ def test_rounding_satisfies_the_equations_and_stays_near_the_minimum() -> None:
     hessian, gradient = root.T @ root, 5 * rng.normal(size=8)
     relations = rng.integers(-2, 3, (2, 8)).astype(float)
     solutions = integer_solutions(relations, np.zeros(2))
-    numbers = round_minimum(hessian, gradient, solutions, 3)
+    function = Quadratic(hessian, gradient, float(np.diag(hessian).max()))
+    numbers = round_minimum(function, solutions, 3)
     assert (numbers == np.rint(numbers)).all()
     assert (relations @ numbers == 0).all()
 
     def _value(n: FloatArray) -> float:
         return float(n @ hessian @ n / 2 - gradient @ n)
 
-    relaxed = relaxed_minimum(hessian, gradient, solutions)
+    relaxed = relaxed_minimum(function, solutions)
     np.testing.assert_allclose(relations @ relaxed, 0, atol=1e-9)
     assert _value(relaxed) <= _value(numbers)
     for step in np.eye(solutions.basis.shape[1]):
@@ -301,7 +303,7 @@ def test_law_f8_spheres_around_a_node_nearly_share_two_points() -> None:
         )
         values = np.linalg.svd(pentaspherical(rows), compute_uv=False)
         ratios.append(float(np.median(values[:, 3] / values[:, 2])))
-    # Four general points of a surface in P4 span a solid of third order, of a conjugate net less.
+    # For other nets the ratio falls with the edge length, for conjugate ones with its square.
     assert ratios[0] < 0.1
     assert ratios[1] < 0.5 * ratios[0]
 
