@@ -1,6 +1,7 @@
 """Laws of seamless maps along conjugate directions and of the nets that they give (F8)."""
 
 import dataclasses
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -52,6 +53,40 @@ def monkey_saddle(n: int) -> Congruence:
     upward /= norm(upward)[:, None]
     points = np.stack([u, v, z], 1)
     return Mesh(points, faces), touching_spheres(points, upward, 1.0)
+
+
+def closed_ellipsoid(n: int) -> Congruence:
+    """A whole triaxial ellipsoid, made of six grids."""
+    line = np.tan(np.linspace(-np.pi / 4, np.pi / 4, n + 1))
+    u, v = np.meshgrid(line, line, indexing="ij")
+    points, faces = [], []
+    for axis in range(3):
+        for side in (1.0, -1.0):
+            ids = len(points) * (n + 1) ** 2 + np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
+            a, b, c, d = ids[:-1, :-1], ids[1:, :-1], ids[1:, 1:], ids[:-1, 1:]
+            faces += [np.stack(t, -1).reshape(-1, 3) for t in ((a, b, c), (a, c, d))]
+            patch = np.stack([np.full_like(u, side), side * u, v], -1)
+            points.append(np.roll(patch, axis, -1).reshape(-1, 3))
+    joined = np.concatenate(points)
+    joined /= norm(joined)[:, None]
+    keys = np.rint(1e6 * joined).astype(np.int64)
+    _, first, ids = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    axes = np.array([1.6, 1.2, 0.9])
+    outward = joined[first] / axes
+    outward /= norm(outward)[:, None]
+    mesh = Mesh(joined[first] * axes, ids.ravel()[np.concatenate(faces)])
+    return mesh, touching_spheres(mesh.vertices, outward, -2.0)
+
+
+def dome() -> Congruence:
+    """A piece of a sphere, all of whose directions are conjugate, with one side to align to."""
+    line = np.linspace(-0.8, 0.8, 21)
+    u, v = (grid.ravel() for grid in np.meshgrid(line, line, indexing="ij"))
+    ids = np.arange(len(u)).reshape(21, 21)
+    a, b, c, d = ids[:-1, :-1], ids[1:, :-1], ids[1:, 1:], ids[:-1, 1:]
+    faces = np.concatenate([np.stack(t, -1).reshape(-1, 3) for t in ((a, b, c), (a, c, d))])
+    points = np.stack([u, v, np.sqrt(4 - u * u - v * v)], 1)
+    return Mesh(points, faces), touching_spheres(points, points / 2, -2.0)
 
 
 def prepared(
@@ -164,9 +199,13 @@ def test_the_field_is_the_same_in_other_frames_and_smoothing_keeps_constants() -
     np.testing.assert_allclose(constant[0], 1, atol=1e-10)
 
 
-@pytest.mark.parametrize("shape", ["torus", "annulus", "ellipsoid"])
-def test_shifts_close_around_every_vertex(shape: SampleShape) -> None:
-    surface, fans, frames = prepared(constant_radius(shape, 0.3 if shape == "torus" else 0.15))
+@pytest.mark.parametrize("shape", ["torus", "annulus", "ellipsoid", "closed"])
+def test_shifts_close_around_every_vertex(shape: SampleShape | Literal["closed"]) -> None:
+    if shape == "closed":
+        congruence = closed_ellipsoid(12)
+    else:
+        congruence = constant_radius(shape, 0.3 if shape == "torus" else 0.15)
+    surface, fans, frames = prepared(congruence)
     seams = find_seams(surface, fans, frames)
     rng = np.random.default_rng(1)
     # Any integers that satisfy the relations, and any values, fit together on all edges.
@@ -321,6 +360,26 @@ def test_singular_points_keep_their_degree() -> None:
     assert lemons.n_irregular == 8
     assert lemons.n_flipped == 0
     assert lemons.shortest_edge > 0.2 * mean_edge_length(lemons.sphere_mesh.mesh)
+
+
+def test_a_closed_net_with_four_lemons() -> None:
+    mesh, spheres = closed_ellipsoid(16)
+    done = remesh(mesh, spheres, 0.25)
+    net = done.sphere_mesh.mesh
+    assert done.indices.tolist() == [1, 1, 1, 1]
+    assert done.n_flipped == 0
+    assert done.n_irregular == 8
+    assert characteristic(net) == 2
+    assert (net.degrees == 4).all()
+    assert done.shortest_edge > 0.2 * mean_edge_length(net)
+
+
+def test_a_piece_of_a_sphere_gets_some_net() -> None:
+    mesh, spheres = dome()
+    done = remesh(mesh, spheres, 0.3)
+    assert done.n_flipped == 0
+    assert characteristic(done.sphere_mesh.mesh) == 1
+    assert mean_edge_length(done.sphere_mesh.mesh) == pytest.approx(0.3, rel=0.3)
 
 
 def matched(one: Remeshing, two: Remeshing, points: FloatArray) -> float:
