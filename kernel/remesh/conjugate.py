@@ -7,8 +7,9 @@ four-space has at most one conjugate net. Its directions are the roots of one qu
 
 import numpy as np
 
-from ..arrays import BoolArray, ComplexArray, FloatArray
-from ..tolerances import EPSILON
+from ..arrays import BoolArray, ComplexArray, FloatArray, norm
+from ..errors import InputError
+from ..tolerances import EPSILON, UNDETERMINED
 from .jets import CongruenceJets
 
 
@@ -66,6 +67,38 @@ def split_form(form: FloatArray) -> tuple[FloatArray, ComplexArray]:
     """
     trace = (form[..., 0] + form[..., 2]) / 2
     return trace, (form[..., 0] - form[..., 2]) / 2 + 0.5j * form[..., 1]
+
+
+def conjugate_field(jets: CongruenceJets) -> tuple[FloatArray, ComplexArray]:
+    """
+    The forms whose roots are the conjugate directions, in trace and deviator.
+
+    Parameters
+    ----------
+    jets : CongruenceJets
+        The congruence at the vertices of a mesh.
+
+    Returns
+    -------
+    trace : (V,) float array
+        Means of the forms.
+    deviator : (V,) complex array
+        Deviators, in the coordinates of `vertex_frames`.
+
+    Raises
+    ------
+    InputError
+        If the form vanishes everywhere: then every direction is conjugate to some other.
+    """
+    form = conjugate_form(jets)
+    parts = [jets.rows, jets.rows_u, jets.rows_v, jets.rows_uu + jets.rows_vv, jets.rows_uv]
+    bound = np.prod([norm(part) for part in parts], axis=0)
+    if not (norm(form) > UNDETERMINED * bound).any():
+        raise InputError(
+            "the spheres do not determine conjugate directions: they are planes, or touch a "
+            "sphere, or are all orthogonal to one; use spheres of other radii"
+        )
+    return split_form(form)
 
 
 def form_roots(

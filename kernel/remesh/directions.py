@@ -8,8 +8,7 @@ from numpy.typing import ArrayLike
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..mesh import Mesh
 from .congruence_mesh import CongruenceMesh, congruence_mesh
-from .conjugate import form_roots
-from .field_smoothing import conjugate_field
+from .conjugate import conjugate_field, form_roots
 from .frames import comb_frames, vertex_fans
 from .jets import CongruenceJets, fit_jets, node_axes
 
@@ -82,7 +81,7 @@ def conjugate_directions(
     """
     surface = congruence_mesh(mesh, spheres)
     jets, slopes = fit_jets(surface, degree, rings)
-    trace, deviator = conjugate_field(surface, jets)
+    trace, deviator = conjugate_field(jets)
     first, second, is_real = form_roots(trace, deviator)
     angles = np.stack([first, second], 1)[..., None]
     frames = surface.vertex_frames

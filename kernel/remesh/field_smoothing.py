@@ -1,14 +1,11 @@
-"""The field of conjugate forms over a triangle mesh, and its smoothing."""
+"""Smoothing of a field of quadratic forms over a triangle mesh."""
 
 import numpy as np
 
 from ..arrays import ComplexArray, FloatArray, dot, norm, sum_by
-from ..errors import InputError
 from ..solvers.factorization import SparseArray, factorize_symmetric
-from ..tolerances import LEAST_STIFFNESS, UNDETERMINED
+from ..tolerances import LEAST_STIFFNESS
 from .congruence_mesh import CongruenceMesh
-from .conjugate import conjugate_form, split_form
-from .jets import CongruenceJets
 
 COHERENCE = 4
 """Power with which disagreement with the neighbours lowers the confidence."""
@@ -34,62 +31,6 @@ def transport(source: FloatArray, target: FloatArray) -> ComplexArray:
     cosine = dot(first, along) + dot(second, across)
     result = cosine + 1j * (dot(first, across) - dot(second, along))
     return result / np.abs(result)
-
-
-def conjugate_field(
-    surface: CongruenceMesh, jets: CongruenceJets
-) -> tuple[FloatArray, ComplexArray]:
-    """
-    The forms whose roots are the conjugate directions, as a field without jumps.
-
-    Parameters
-    ----------
-    surface : CongruenceMesh
-        The mesh.
-    jets : CongruenceJets
-        The congruence at its vertices.
-
-    Returns
-    -------
-    trace : (V,) float array
-        Means of the forms.
-    deviator : (V,) complex array
-        Deviators, in the coordinates of `vertex_frames`.
-
-    Raises
-    ------
-    InputError
-        If the form vanishes everywhere: then every direction is conjugate to some other.
-
-    Notes
-    -----
-    The form has a sign as long as ``S, S_u, S_v`` are independent. Where spheres that touch a
-    surface pass its principal spheres they are not, on a curve, and the form passes zero. So
-    does ``<B_u x B_v, n>``, which is ``(k - k1) (k - k2)`` there: its sign undoes the jump. Of
-    the field with and without this sign the one that varies less is taken.
-    """
-    form = conjugate_form(jets)
-    parts = [jets.rows, jets.rows_u, jets.rows_v, jets.rows_uu + jets.rows_vv, jets.rows_uv]
-    bound = np.prod([norm(part) for part in parts], axis=0)
-    if not (norm(form) > UNDETERMINED * bound).any():
-        raise InputError(
-            "the spheres do not determine conjugate directions: they are planes, or touch a "
-            "sphere, or are all orthogonal to one; use spheres of other radii"
-        )
-    trace, deviator = split_form(form)
-    normals = surface.vertex_frames[:, 2]
-    bending = dot(np.cross(jets.rows_u[:, 1:4], jets.rows_v[:, 1:4]), normals)
-    signs = np.where(bending < 0, -1.0, 1.0)
-    size = np.sqrt(trace**2 + np.abs(deviator) ** 2)
-    size = np.where(size > 0, size, 1.0)
-    tails, heads = surface.triangles.ravel(), np.roll(surface.triangles, -1, axis=1).ravel()
-    frames = surface.vertex_frames
-    moved = transport(frames[tails], frames[heads]) ** 2 * deviator[tails]
-    likeness = trace[tails] * trace[heads] + (moved * deviator[heads].conj()).real
-    likeness /= size[tails] * size[heads]
-    if (likeness * signs[tails] * signs[heads]).sum() > likeness.sum():
-        return signs * trace, signs * deviator
-    return trace, deviator
 
 
 def smooth_forms(

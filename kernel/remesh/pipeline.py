@@ -12,10 +12,10 @@ from ..mesh import Mesh, face_centroids
 from ..sphere_mesh import SphereMesh
 from ..spheres import minkowski, recenter, rescale
 from .congruence_mesh import CongruenceMesh, congruence_mesh
-from .conjugate import form_roots
+from .conjugate import conjugate_field, form_roots
 from .directions import axis_angles
 from .extraction import extract_net
-from .field_smoothing import conjugate_field, smooth_forms
+from .field_smoothing import smooth_forms
 from .frames import comb_frames, vertex_fans
 from .jets import fit_jets
 from .net_mesh import NetMesh, net_mesh
@@ -127,7 +127,7 @@ def remesh(
     surface = congruence_mesh(mesh, spheres)
     step = _checked_step(surface, edge_length)
     jets, _ = fit_jets(surface, degree, rings)
-    trace, deviator = conjugate_field(surface, jets)
+    trace, deviator = conjugate_field(jets)
     is_real = form_roots(trace, deviator)[2]
     fans = vertex_fans(surface)
     smooth = smooth_forms(surface, trace, deviator, smoothing * step)

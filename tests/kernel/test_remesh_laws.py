@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from numpy.polynomial import Polynomial
 
 from spheremesh import Mesh
 from spheremesh.kernel.arrays import FloatArray, dot, norm
@@ -15,7 +16,8 @@ from spheremesh.kernel.congruence import touching_spheres
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.mesh import face_centroids, face_normals, mean_edge_length
 from spheremesh.kernel.remesh.congruence_mesh import CongruenceMesh, congruence_mesh
-from spheremesh.kernel.remesh.field_smoothing import conjugate_field, smooth_forms
+from spheremesh.kernel.remesh.conjugate import conjugate_field
+from spheremesh.kernel.remesh.field_smoothing import smooth_forms
 from spheremesh.kernel.remesh.frames import CombedFrames, Fans, comb_frames, vertex_fans
 from spheremesh.kernel.remesh.injectivity import distortion
 from spheremesh.kernel.remesh.integers import (
@@ -40,19 +42,24 @@ def constant_radius(shape: SampleShape, edge: float, offset: float = 0.5) -> Con
     return mesh, touching_spheres(mesh.vertices, vertex_normals, 1 / offset)
 
 
-def monkey_saddle(n: int) -> Congruence:
-    """One singular point, around which the directions make half a turn backwards."""
+def harmonic_graph(n: int, terms: Polynomial, dome: float = 0.0) -> Congruence:
+    """Heights that are real parts of a polynomial: umbilics where its curvature is zero."""
     line = np.linspace(-1, 1, n + 1)
     u, v = (grid.ravel() for grid in np.meshgrid(line, line, indexing="ij"))
     ids = np.arange(len(u)).reshape(n + 1, n + 1)
     a, b, c, d = ids[:-1, :-1], ids[1:, :-1], ids[1:, 1:], ids[:-1, 1:]
     faces = np.concatenate([np.stack(t, -1).reshape(-1, 3) for t in ((a, b, c), (a, c, d))])
-    z = 0.2 * (u**3 - 3 * u * v * v) - 0.1 * (u * u + v * v)
-    slopes = 0.6 * (u * u - v * v) - 0.2 * u, -1.2 * u * v - 0.2 * v
-    upward = np.stack([-slopes[0], -slopes[1], np.ones_like(u)], 1)
+    w = u + 1j * v
+    slope = terms.deriv()(w)
+    upward = np.stack([2 * dome * u - slope.real, 2 * dome * v + slope.imag, 0 * u + 1], 1)
     upward /= norm(upward)[:, None]
-    points = np.stack([u, v, z], 1)
+    points = np.stack([u, v, terms(w).real - dome * (u * u + v * v)], 1)
     return Mesh(points, faces), touching_spheres(points, upward, 1.0)
+
+
+def monkey_saddle(n: int) -> Congruence:
+    """One singular point, around which the directions make half a turn backwards."""
+    return harmonic_graph(n, Polynomial([0, 0, 0, 0.2]), 0.1)
 
 
 def closed_ellipsoid(n: int) -> Congruence:
@@ -93,9 +100,7 @@ def prepared(
     congruence: Congruence, smoothing: float = 1.0
 ) -> tuple[CongruenceMesh, Fans, CombedFrames]:
     surface = congruence_mesh(*congruence)
-    form = smooth_forms(
-        surface, *conjugate_field(surface, fit_jets(surface)[0]), length=smoothing
-    )
+    form = smooth_forms(surface, *conjugate_field(fit_jets(surface)[0]), length=smoothing)
     fans = vertex_fans(surface)
     return surface, fans, comb_frames(surface, fans, *form, 0.3)
 
@@ -182,7 +187,7 @@ def test_a_monkey_saddle_has_one_singular_vertex_in_the_middle() -> None:
 def test_the_field_is_the_same_in_other_frames_and_smoothing_keeps_constants() -> None:
     congruence = constant_radius("hypar", 0.2)
     surface = congruence_mesh(*congruence)
-    trace, deviator = conjugate_field(surface, fit_jets(surface)[0])
+    trace, deviator = conjugate_field(fit_jets(surface)[0])
     angles = np.random.default_rng(3).uniform(0, 6, len(trace))
     cosine, sine = np.cos(angles)[:, None], np.sin(angles)[:, None]
     first, second, upward = surface.vertex_frames.transpose(1, 0, 2)
@@ -360,6 +365,25 @@ def test_singular_points_keep_their_degree() -> None:
     assert lemons.n_irregular == 8
     assert lemons.n_flipped == 0
     assert lemons.shortest_edge > 0.2 * mean_edge_length(lemons.sphere_mesh.mesh)
+
+
+def test_singular_points_within_a_step_are_kept_apart() -> None:
+    # Umbilics at ±0.08, with steps of 0.3.
+    mesh, spheres = harmonic_graph(40, Polynomial([0, 0, -6 * 0.1 * 0.08**2, 0, 0.1]))
+    done = remesh(mesh, spheres, 0.3, smoothing=0.1)
+    assert done.indices.tolist() == [-1, -1]
+    degrees = done.sphere_mesh.mesh.degrees
+    assert (degrees == 6).sum() == 2
+    assert degrees.max() == 6
+    assert done.n_flipped == 0
+
+
+@pytest.mark.parametrize("offset", [-5.0, 2.0])
+def test_spheres_that_pass_principal_spheres_give_regular_nets(offset: float) -> None:
+    done = remesh(*constant_radius("torus", 0.2, offset), edge_length=0.35)
+    assert done.complex_share < 0.01
+    assert (done.n_irregular, done.n_flipped, len(done.indices)) == (0, 0, 0)
+    assert (done.sphere_mesh.mesh.degrees == 4).all()
 
 
 def test_a_closed_net_with_four_lemons() -> None:
