@@ -57,6 +57,8 @@ class Remeshing:
         Sides of the boundary that are lines of the net.
     n_contracted, n_slivers : int
         Short edges at the boundary that were contracted, and the cells lost with them.
+    n_digons : int
+        Cells of two corners, which became edges.
     axis_angles : (V',) float array
         Angles of the normals with the expected node axes at the given vertices, in radians.
     curvatures : (V',) float array
@@ -75,6 +77,7 @@ class Remeshing:
     n_aligned: int
     n_contracted: int
     n_slivers: int
+    n_digons: int
     axis_angles: FloatArray
     curvatures: FloatArray
 
@@ -154,6 +157,7 @@ def remesh(
         n_aligned=mapped.n_aligned,
         n_contracted=built.n_contracted,
         n_slivers=built.n_slivers,
+        n_digons=built.n_digons,
         axis_angles=axis_angles(surface, jets),
         curvatures=2 * surface.rows[:, 0] / surface.size,
     )

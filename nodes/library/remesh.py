@@ -156,6 +156,7 @@ def p4_remesh(
         ``complex_share`` and ``moved_share`` of the area, ``edges`` (target, mean and min
         length), ``folded`` and ``flipped`` triangles of the map before and after unfolding,
         ``aligned_sides`` of the boundary, ``contracted_edges`` and ``lost_cells`` along it,
+        ``digons`` (cells of two corners around singular points, which became edges),
         ``node_axis_deg`` (angle between normal and expected node axis: median, p95 and max)
         and ``radius_to_edge`` (min and median; below 0.71 nodes are not real). None stands for
         infinite.
@@ -209,6 +210,7 @@ def _report(done: pipeline.Remeshing, edge_length: float) -> dict[str, Any]:
         "aligned_sides": done.n_aligned,
         "contracted_edges": done.n_contracted,
         "lost_cells": done.n_slivers,
+        "digons": done.n_digons,
         "node_axis_deg": _axis_angles(done.axis_angles),
         "radius_to_edge": _radius_report(_radii(done.curvatures) / edge_length),
     }

@@ -363,6 +363,7 @@ def test_singular_points_keep_their_degree() -> None:
     lemons = remesh(*constant_radius("ellipsoid", 0.1, -0.5), edge_length=0.25)
     assert lemons.indices.tolist() == [1, 1, 1, 1]
     assert lemons.n_irregular == 8
+    assert lemons.n_digons == 4
     assert lemons.n_flipped == 0
     assert lemons.shortest_edge > 0.2 * mean_edge_length(lemons.sphere_mesh.mesh)
 
@@ -445,6 +446,15 @@ def test_nets_do_not_depend_on_numbers(shape: SampleShape) -> None:
         assert again.sphere_mesh.mesh.n_faces == done.sphere_mesh.mesh.n_faces
     else:
         assert matched(done, again, done.sphere_mesh.mesh.vertices) < 1e-6
+
+
+def test_turning_the_mesh_over_turns_the_net_over() -> None:
+    mesh, spheres = constant_radius("hypar", 0.15)
+    done = remesh(mesh, spheres, 0.25)
+    over = remesh(Mesh(mesh.vertices, mesh.corners.reshape(-1, 3)[:, ::-1]), -spheres, 0.25)
+    assert matched(done, over, done.sphere_mesh.mesh.vertices) < 1e-6
+    one, two = (face_normals(net.sphere_mesh.mesh).mean(axis=0) for net in (done, over))
+    np.testing.assert_allclose(one, -two, atol=1e-6)
 
 
 def test_bad_edge_lengths_are_refused() -> None:
