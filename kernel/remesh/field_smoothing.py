@@ -24,13 +24,14 @@ def transport(source: FloatArray, target: FloatArray) -> ComplexArray:
     -------
     (...) complex array
         Unit factors r: the vector with coordinate w in the source has ``r w`` in the target,
-        after the smallest rotation that takes normal to normal.
+        after the smallest rotation that takes normal to normal; 1 if the normals are opposite.
     """
     first, second = source[..., 0, :], source[..., 1, :]
     along, across = target[..., 0, :], target[..., 1, :]
     cosine = dot(first, along) + dot(second, across)
     result = cosine + 1j * (dot(first, across) - dot(second, along))
-    return result / np.abs(result)
+    size = np.abs(result)
+    return np.divide(result, size, out=np.ones_like(result), where=size > 0)
 
 
 def smooth_forms(
