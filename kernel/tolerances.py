@@ -182,3 +182,24 @@ OFFSET_STEP: Final = 1e-6
 
 FAR_CORNER: Final = 0.6
 """A corner farther from its triangle than this share of the longest side is worth a warning."""
+
+JET_RANK: Final = 1e-11
+"""Squared singular values of a polynomial fit below this, relative to the largest: noise."""
+
+LEAST_STIFFNESS: Final = 1e-3
+"""Least weight of an edge or a vertex in the smoothing of a field, relative to the ordinary."""
+
+UNDETERMINED: Final = 1e-9
+"""Conjugate forms below this, relative to the largest that their terms allow, are zero."""
+
+GAUGE_RANK: Final = 1e-9
+"""A singular value below this, relative to the largest, belongs to a freedom of the problem."""
+
+FOLD_SMOOTHING: Final = 1e-6
+"""How sharp the barrier against folded triangles is in the end, relative to their area."""
+
+FOLD_STEP: Final = 1e-3
+"""Unfolding ends when a round lowers the distortion by less than this share."""
+
+LATTICE_TIE: Final = 1e-7
+"""A vertex this close to a line of a map, in steps of the map, is moved off it."""

@@ -1,14 +1,79 @@
-"""Direct solution of symmetric, positive definite sparse systems."""
+"""Direct solution of sparse systems."""
 
 import importlib.util
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from ..arrays import FloatArray
 
+SparseArray: TypeAlias = Any
+"""A sparse array of SciPy, whose types do not say much yet."""
 
-def solve_definite(matrix: Any, shift: float, right: FloatArray) -> FloatArray:  # noqa: ANN401
+
+Solver: TypeAlias = Callable[[FloatArray], FloatArray]
+"""Takes right sides (n,) or (n, k) to solutions of the same shape."""
+
+
+def factorize(matrix: SparseArray) -> Solver:
+    """
+    Factorise a square matrix.
+
+    Parameters
+    ----------
+    matrix : (n, n) sparse array
+        An invertible matrix.
+
+    Returns
+    -------
+    callable
+        Solves with this matrix.
+    """
+    from scipy.sparse.linalg import splu
+
+    return _solver(splu(matrix.tocsc()))
+
+
+def factorize_symmetric(matrix: SparseArray) -> Solver:
+    """
+    Factorise a symmetric positive definite matrix.
+
+    Parameters
+    ----------
+    matrix : (n, n) sparse array
+        The matrix.
+
+    Returns
+    -------
+    callable
+        Solves with this matrix.
+
+    Notes
+    -----
+    SuperLU with minimum degree on the symmetric pattern and pivots on the diagonal: several
+    times faster than its default for such matrices.
+    """
+    from scipy.sparse.linalg import splu
+
+    return _solver(
+        splu(
+            matrix.tocsc(),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+    )
+
+
+def _solver(factors: SparseArray) -> Solver:
+    def _solve(right: FloatArray) -> FloatArray:
+        return np.asarray(factors.solve(right), np.float64)
+
+    return _solve
+
+
+def solve_definite(matrix: SparseArray, shift: float, right: FloatArray) -> FloatArray:
     """
     Solve ``(H + shift I) x = b`` by factorisation.
 
@@ -33,41 +98,13 @@ def solve_definite(matrix: Any, shift: float, right: FloatArray) -> FloatArray: 
     """
     from scipy.sparse import csc_array, eye_array
 
-    shifted: Any = csc_array(matrix + shift * eye_array(len(right)))
+    shifted: SparseArray = csc_array(matrix + shift * eye_array(len(right)))
     if importlib.util.find_spec("sksparse") is not None:
         return solve_by_cholmod(shifted, right)
-    return solve_by_superlu(shifted, right)
+    return factorize_symmetric(shifted)(right)
 
 
-def solve_by_superlu(matrix: Any, right: FloatArray) -> FloatArray:  # noqa: ANN401
-    """
-    Solve ``H x = b`` by SuperLU.
-
-    Parameters
-    ----------
-    matrix : (n, n) csc_array
-        Symmetric, positive definite H.
-    right : (n,) float array
-        Vector b.
-
-    Returns
-    -------
-    (n,) float array
-        The solution.
-    """
-    from scipy.sparse import linalg
-
-    solver: Any = linalg
-    factors = solver.splu(
-        matrix,
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
-    return np.asarray(factors.solve(right), np.float64)
-
-
-def solve_by_cholmod(matrix: Any, right: FloatArray) -> FloatArray:  # noqa: ANN401
+def solve_by_cholmod(matrix: SparseArray, right: FloatArray) -> FloatArray:
     """
     Solve ``H x = b`` by CHOLMOD; needs scikit-sparse 0.4.
 

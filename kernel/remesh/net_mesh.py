@@ -1,0 +1,131 @@
+"""From the cells of a net to a mesh without slivers along its boundary."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, IntArray, norm, sum_by
+from ..errors import InputError
+from ..mesh import Mesh
+from .extraction import Net
+
+SHORT = 0.4
+"""Edges at the boundary below this length, in edge lengths, are contracted."""
+
+
+class NetMesh(NamedTuple):
+    """
+    The mesh of a net.
+
+    Attributes
+    ----------
+    mesh : Mesh
+        Its cells as faces.
+    is_node : (V,) bool array
+        Vertices where two lines cross inside the surface.
+    n_contracted : int
+        Edges at the boundary that were too short to keep.
+    n_digons : int
+        Cells of two corners, around lemon singularities, that became edges.
+    n_slivers : int
+        Cells that were lost with a contracted edge.
+    """
+
+    mesh: Mesh
+    is_node: BoolArray
+    n_contracted: int
+    n_digons: int
+    n_slivers: int
+
+
+def net_mesh(net: Net, edge_length: float) -> NetMesh:
+    """
+    Build the mesh of a net.
+
+    Parameters
+    ----------
+    net : Net
+        The cells.
+    edge_length : float
+        Length of a step of the net.
+
+    Returns
+    -------
+    NetMesh
+        Where contracting the short edges would pinch the mesh they are kept.
+
+    Raises
+    ------
+    InputError
+        If the cells form no mesh, since they are too large for the surface.
+    """
+    merged = _merge_short_edges(net, edge_length)
+    try:
+        return _build(net, merged)
+    except InputError:
+        pass
+    try:
+        return _build(net, np.arange(len(net.points)))
+    except InputError as error:
+        raise InputError(
+            "the edge length is too large for the surface: faces of the net would touch "
+            f"themselves ({error}); choose a smaller one"
+        ) from error
+
+
+def _merge_short_edges(net: Net, edge_length: float) -> IntArray:
+    """For each point the one that stands for it."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    count = len(net.points)
+    tails, heads = net.corners, net.corners[_following(net.offsets)]
+    is_short = norm(net.points[tails] - net.points[heads]) < SHORT * edge_length
+    is_short &= (tails >= net.n_nodes) | (heads >= net.n_nodes)
+    ones = np.ones(int(is_short.sum()))
+    graph = coo_array((ones, (tails[is_short], heads[is_short])), shape=(count, count))
+    clusters = connected_components(graph, directed=False)[1]
+    # A corner of the boundary stands for its cluster, else a point of the boundary.
+    standing = np.concatenate([np.zeros(net.n_nodes), 1.0 + net.is_corner])
+    order = np.lexsort((np.arange(count), -standing, clusters))
+    first = np.unique(clusters[order], return_index=True)[1]
+    return order[first][clusters]
+
+
+def _build(net: Net, merged: IntArray) -> NetMesh:
+    corners = merged[net.corners]
+    cells = np.repeat(np.arange(len(net.offsets) - 1), np.diff(net.offsets))
+    keep = corners != corners[_following(net.offsets)]
+    degrees = np.bincount(cells[keep], minlength=len(net.offsets) - 1)
+    is_face = degrees >= 3
+    keep &= is_face[cells]
+    kept = corners[keep]
+    used, renumbered = np.unique(kept, return_inverse=True)
+    faces = np.split(renumbered, np.cumsum(degrees[is_face])[:-1])
+    mesh = Mesh(_places(net, merged)[used], faces)
+    is_digon = np.diff(net.offsets) == 2
+    is_inner = used < net.n_nodes
+    return NetMesh(
+        mesh, is_inner, int((merged != np.arange(len(merged))).sum()), int(is_digon.sum()),
+        int((~is_face & ~is_digon).sum()),
+    )  # fmt: skip
+
+
+def _places(net: Net, merged: IntArray) -> FloatArray:
+    """Corners stay where they are; other clusters lie in the middle of their rim points."""
+    count = len(net.points)
+    weights = np.concatenate([np.zeros(net.n_nodes), np.ones(count - net.n_nodes)])
+    total = sum_by(merged, weights, count)
+    means = sum_by(merged, weights[:, None] * net.points, count)
+    is_corner = np.concatenate([np.zeros(net.n_nodes, bool), net.is_corner])
+    is_mean = (total > 0) & ~is_corner
+    result = net.points.copy()
+    result[is_mean] = means[is_mean] / total[is_mean, None]
+    return result
+
+
+def _following(offsets: IntArray) -> IntArray:
+    """The next place in each group, the first after the last."""
+    result = np.arange(1, int(offsets[-1]) + 1)
+    result[offsets[1:] - 1] = offsets[:-1]
+    return result

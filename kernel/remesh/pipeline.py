@@ -1,0 +1,223 @@
+"""From a sphere congruence to a net of spheres that can have a support structure (Sec. 6.4)."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arrays import FloatArray, IntArray, norm
+from ..errors import InputError
+from ..mesh import Mesh, face_centroids
+from ..sphere_mesh import SphereMesh
+from ..spheres import minkowski, recenter, rescale
+from .congruence_mesh import CongruenceMesh, congruence_mesh
+from .conjugate import conjugate_field, form_roots
+from .directions import axis_angles
+from .extraction import extract_net
+from .field_smoothing import smooth_forms
+from .frames import comb_frames, vertex_fans
+from .jets import fit_jets
+from .net_mesh import NetMesh, net_mesh
+from .parametrization import parametrize
+from .seams import find_seams
+
+LEAST_CELLS = 4
+"""A surface with room for fewer faces is smaller than the edge length."""
+
+FINEST = 0.2
+"""An edge length below this, in mean edges of the mesh, asks for a finer mesh."""
+
+
+@dataclass(frozen=True)
+class Remeshing:
+    """
+    A quadrilateral net of spheres and how it was reached.
+
+    Attributes
+    ----------
+    sphere_mesh : SphereMesh
+        Mostly quadrilaterals; a sphere of the congruence at each.
+    n_irregular : int
+        Vertices inside whose valence is not 4.
+    shortest_edge : float
+        Length, in model units.
+    complex_share : float
+        Share of the area of the given surface whose directions are complex.
+    moved_share : float
+        Share of the area whose directions, once smooth, were moved apart to the least angle.
+    singular_points : (s, 3) float array
+        Where the directions turn, in model coordinates.
+    indices : (s,) int array
+        How often, in half turns: around -1 lies a face of degree 6, around 1 an edge with ends
+        of valence 3.
+    n_folded, n_flipped : int
+        Triangles folded by the map before and after they were unfolded.
+    n_aligned : int
+        Sides of the boundary that are lines of the net.
+    n_contracted, n_slivers : int
+        Short edges at the boundary that were contracted, and the cells lost with them.
+    n_digons : int
+        Cells of two corners, which became edges.
+    axis_angles : (V',) float array
+        Angles of the normals with the expected node axes at the given vertices, in radians.
+    curvatures : (V',) float array
+        Signed curvatures of the given spheres, in inverse model units.
+    """
+
+    sphere_mesh: SphereMesh
+    n_irregular: int
+    shortest_edge: float
+    complex_share: float
+    moved_share: float
+    singular_points: FloatArray
+    indices: IntArray
+    n_folded: int
+    n_flipped: int
+    n_aligned: int
+    n_contracted: int
+    n_slivers: int
+    n_digons: int
+    axis_angles: FloatArray
+    curvatures: FloatArray
+
+
+def remesh(
+    mesh: Mesh,
+    spheres: ArrayLike,
+    edge_length: float,
+    smoothing: float = 0.5,
+    least_angle: float = np.radians(20),
+    degree: int = 5,
+    rings: int = 3,
+) -> Remeshing:
+    """
+    Remesh a sphere congruence along its conjugate directions.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        A connected triangle mesh.
+    spheres : (V, 5) array_like of float
+        A real sphere or plane for every vertex, in model coordinates.
+    edge_length : float
+        Length of the edges of the net, in model units.
+    smoothing : float
+        Distance over which uncertain directions are smoothed, in edge lengths.
+    least_angle : float
+        Directions that meet at less, or are complex, are moved apart to it, in radians.
+    degree : int
+        Degree of the polynomials that are fitted to the spheres.
+    rings : int
+        Rings of neighbours that they are fitted to.
+
+    Returns
+    -------
+    Remeshing
+        The net; its nodes lie on the triangles.
+
+    Raises
+    ------
+    InputError
+        If the mesh or the spheres cannot be used, or the edge length is out of range.
+    ConvergenceError
+        If the lines of the map do not match across the edges of the mesh.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Sec. 6.4.
+    """
+    surface = congruence_mesh(mesh, spheres)
+    step = _checked_step(surface, edge_length)
+    jets, _ = fit_jets(surface, degree, rings)
+    trace, deviator = conjugate_field(jets)
+    is_real = form_roots(trace, deviator)[2]
+    fans = vertex_fans(surface)
+    smooth = smooth_forms(surface, trace, deviator, smoothing * step)
+    frames = comb_frames(surface, fans, *smooth, least_angle)
+    mapped = parametrize(surface, fans, frames, find_seams(surface, fans, frames), step)
+    net = extract_net(surface, fans, frames, mapped)
+    built = net_mesh(net, step)
+    if not built.is_node.any():
+        raise _too_large(edge_length)
+    singular = np.flatnonzero(frames.indices)
+    areas = surface.vertex_areas
+    moved = surface.face_areas[~frames.is_real].sum() / surface.face_areas.sum()
+    sphere_mesh = _interpolated(surface, built)
+    return Remeshing(
+        sphere_mesh=sphere_mesh,
+        n_irregular=_irregular_count(sphere_mesh.mesh),
+        shortest_edge=_shortest_edge(sphere_mesh.mesh),
+        complex_share=float(areas[~is_real].sum() / areas.sum()),
+        moved_share=float(moved),
+        singular_points=mesh.vertices[singular],
+        indices=frames.indices[singular],
+        n_folded=mapped.n_folded,
+        n_flipped=int(mapped.is_flipped.sum()),
+        n_aligned=mapped.n_aligned,
+        n_contracted=built.n_contracted,
+        n_slivers=built.n_slivers,
+        n_digons=built.n_digons,
+        axis_angles=axis_angles(surface, jets),
+        curvatures=2 * surface.rows[:, 0] / surface.size,
+    )
+
+
+def _irregular_count(mesh: Mesh) -> int:
+    valences = np.bincount(mesh.corners, minlength=mesh.n_vertices)
+    return int((valences[~mesh.topology.is_boundary_vertex] != 4).sum())
+
+
+def _shortest_edge(mesh: Mesh) -> float:
+    ends = mesh.vertices[mesh.corners[mesh.topology.next_corners]]
+    return float(norm(ends - mesh.vertices[mesh.corners]).min())
+
+
+def _too_large(edge_length: float) -> InputError:
+    return InputError(
+        f"an edge length of {edge_length:g} is too large for the surface: the net has no room "
+        "for its steps; choose a smaller one"
+    )
+
+
+def _checked_step(surface: CongruenceMesh, edge_length: float) -> float:
+    """The edge length in mean edges."""
+    if not 0 < edge_length < np.inf:
+        raise InputError(f"the edge length must be positive, not {edge_length}")
+    step = float(edge_length) / surface.size
+    if surface.face_areas.sum() < LEAST_CELLS * step**2:
+        raise _too_large(edge_length)
+    if step < FINEST:
+        raise InputError(
+            f"an edge length of {edge_length:g} is finer than the mesh, whose edges measure "
+            f"{surface.size:.3g}: subdivide the mesh"
+        )
+    return step
+
+
+def _interpolated(surface: CongruenceMesh, built: NetMesh) -> SphereMesh:
+    """Spheres of the congruence at the points of the triangles nearest to the face centres."""
+    import igl  # pyright: ignore[reportMissingTypeStubs]
+
+    centers = face_centroids(built.mesh)
+    nearest: Any = igl.point_mesh_squared_distance  # pyright: ignore[reportUnknownMemberType, reportUnknownVariableType]
+    _, triangles, feet = nearest(centers, surface.points, surface.triangles)
+    vertices = surface.triangles[np.asarray(triangles, np.int64)]
+    corners = surface.points[vertices]
+    weights = _barycentric(np.asarray(feet, np.float64), corners)
+    rows = recenter(surface.rows[vertices], centers[:, None] - corners)
+    mixed = np.einsum("fc,fcr->fr", weights, rows)
+    mixed /= np.sqrt(minkowski(mixed, mixed))[:, None]
+    points = surface.origin + surface.size * built.mesh.vertices
+    mesh = Mesh(points, built.mesh.faces)
+    return SphereMesh.from_local(mesh, rescale(mixed, surface.size))
+
+
+def _barycentric(points: FloatArray, corners: FloatArray) -> FloatArray:
+    """Barycentric coordinates (n, 3) of points in their triangles (n, 3, 3)."""
+    opposite = np.roll(corners, -1, axis=1) - points[:, None]
+    other = np.roll(corners, -2, axis=1) - points[:, None]
+    sides = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    normal = np.cross(*sides)
+    areas = np.einsum("nci,ni->nc", np.cross(opposite, other), normal)
+    return areas / areas.sum(axis=1, keepdims=True)

@@ -1,0 +1,110 @@
+"""The nodes of remeshing: reports for people, warnings, and use in a graph."""
+
+import json
+import warnings
+
+import numpy as np
+import pytest
+
+import spheremesh as sm
+from spheremesh.kernel.arrays import norm
+from spheremesh.nodes import (
+    NodeWarning,
+    conjugate_directions,
+    p4_remesh,
+    sphere_congruence,
+    triangulated_surface,
+)
+
+
+def test_directions_come_with_a_report_of_what_to_expect() -> None:
+    surface = triangulated_surface("hypar", 0.15, seed=1)
+    spheres = sphere_congruence(surface.mesh, "tangent", 0.5)
+    found = conjugate_directions(surface.mesh, spheres)
+    assert found.directions.shape == (surface.mesh.n_vertices, 2, 3)
+    np.testing.assert_allclose(norm(found.directions), 1)
+    assert found.is_real.shape == (surface.mesh.n_vertices,)
+    report = json.loads(json.dumps(dict(found.report), allow_nan=False))
+    assert report["complex_share"] < 0.02
+    assert report["largest_edge"] == pytest.approx(np.sqrt(2) * 0.5)
+    assert report["radius_to_edge"]["min"] == pytest.approx(0.5 / 0.17, rel=0.2)
+    assert 0 < report["node_axis_deg"]["median"] < 10
+
+
+def test_planes_determine_no_directions() -> None:
+    surface = triangulated_surface("hypar", 0.2)
+    spheres = sphere_congruence(surface.mesh, "tangent", np.inf)
+    with pytest.raises(ValueError, match="they are planes"):
+        conjugate_directions(surface.mesh, spheres)
+
+
+def test_a_few_planes_among_spheres_are_infinite_radii_in_the_report() -> None:
+    surface = triangulated_surface("hypar", 0.2)
+    x = surface.mesh.vertices[:, 0]
+    with np.errstate(divide="ignore"):
+        offset = 1 / np.where(np.abs(x) < 0.1, 0.0, x**2)
+    spheres = sphere_congruence(surface.mesh, "tangent", offset)
+    assert (spheres[:, 0] == 0).any()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        report = conjugate_directions(surface.mesh, spheres).report
+    json.dumps(dict(report), allow_nan=False)
+    assert report["radius_to_edge"]["median"] is not None
+
+
+def test_a_net_and_its_report() -> None:
+    surface = triangulated_surface("annulus", 0.12, seed=1)
+    spheres = sphere_congruence(surface.mesh, "tangent", 0.5)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        net, report = p4_remesh(surface.mesh, spheres, 0.25)
+    report = json.loads(json.dumps(dict(report), allow_nan=False))
+    assert report["faces"]["count"] == net.mesh.n_faces
+    assert report["faces"]["degrees"] == {"4": net.mesh.n_faces}
+    assert report["irregular_nodes"] == report["flipped"] == 0
+    assert report["singular"] == []
+    assert report["aligned_sides"] == 2
+    assert report["edges"]["target"] == 0.25
+    assert report["edges"]["mean"] == pytest.approx(0.25, rel=0.1)
+    assert 0 < report["edges"]["min"] < report["edges"]["mean"]
+    assert report["radius_to_edge"]["min"] == pytest.approx(2)
+
+
+def test_complex_directions_are_said_with_their_share() -> None:
+    surface = triangulated_surface("bump", 0.12, seed=1)
+    spheres = sphere_congruence(surface.mesh, "central")
+    with pytest.warns(NodeWarning, match=r"complex on [0-9.]+ % of the area"):
+        report = conjugate_directions(surface.mesh, spheres).report
+    assert report["complex_share"] > 0.05
+    with pytest.warns(NodeWarning) as caught:
+        again = p4_remesh(surface.mesh, spheres, 0.3).report
+    assert again["complex_share"] == pytest.approx(report["complex_share"])
+    assert again["moved_share"] > 0
+    texts = " ".join(str(entry.message) for entry in caught)
+    assert "less than 20 degrees" in texts
+
+
+def test_a_mesh_coarser_than_the_net_is_said() -> None:
+    surface = triangulated_surface("hypar", 0.25)
+    spheres = sphere_congruence(surface.mesh, "tangent", 0.7)
+    with pytest.warns(NodeWarning, match="coarser than the net"):
+        p4_remesh(surface.mesh, spheres, 0.15)
+
+
+def test_remeshing_in_a_graph() -> None:
+    graph = sm.Graph("net")
+    surface = graph.add(triangulated_surface, shape="hypar", edge_length=0.2)
+    spheres = graph.add(sphere_congruence, mesh=surface.mesh, kind="tangent", offset=0.5)
+    net = graph.add(p4_remesh, mesh=surface.mesh, spheres=spheres, edge_length=0.4)
+    assert graph.run(net.sphere_mesh).mesh.n_faces >= 16
+
+
+def test_bad_input_is_one_clear_error() -> None:
+    surface = triangulated_surface("hypar", 0.3)
+    spheres = sphere_congruence(surface.mesh, "tangent", 0.7)
+    with pytest.raises(ValueError, match="too large for the surface"):
+        p4_remesh(surface.mesh, spheres, 5.0)
+    with pytest.raises(ValueError, match="too large"):
+        triangulated_surface("hypar", 2.0)
+    with pytest.raises(ValueError, match="shape must be one of"):
+        triangulated_surface("moebius", 0.1)
