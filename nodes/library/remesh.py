@@ -8,9 +8,13 @@ import numpy as np
 
 from ...kernel import triangulated
 from ...kernel.arrays import BoolArray, FloatArray, IntArray
+from ...kernel.errors import ConvergenceError, name_ids
 from ...kernel.mesh import Mesh, mean_edge_length
-from ...kernel.remesh import directions, pipeline
-from ...kernel.sphere_mesh import SphereMesh
+from ...kernel.remesh import directions, pipeline, relax
+from ...kernel.remesh.planarize import Nodes, axis_angles, measure_nodes, planarize
+from ...kernel.remesh.relax import CongruenceQuality
+from ...kernel.sphere_mesh import SphereMesh, vertex_error
+from ...kernel.tolerances import NODE_ON_SPHERES, TORSION_FREE
 from ..node import node, warn
 from ..ports import Port
 
@@ -149,7 +153,8 @@ def p4_remesh(
     Returns
     -------
     sphere_mesh : SphereMesh
-        Mostly quadrilaterals, cut by the boundary where that does not follow the directions.
+        Mostly quadrilaterals, cut by the boundary where that does not follow the directions;
+        around every interior node the spheres meet in two points.
     report : mapping
         ``faces`` (count, and how many of each degree), ``irregular_nodes`` (inner vertices
         whose valence is not 4), ``singular`` points with their ``half_turns``,
@@ -159,7 +164,8 @@ def p4_remesh(
         ``digons`` (cells of two corners around singular points, which became edges),
         ``node_axis_deg`` (angle between normal and expected node axis: median, p95 and max)
         and ``radius_to_edge`` (min and median; below 0.71 nodes are not real). None stands for
-        infinite.
+        infinite. ``planarized`` is the report of `planarize_p4`, which comes last; None if it
+        failed, and the net keeps some torsion.
     """
     done = pipeline.remesh(
         mesh, spheres, edge_length, smoothing, float(np.radians(least_angle)), degree, rings
@@ -181,7 +187,13 @@ def p4_remesh(
             f"the mesh, with edges of {mean_edge_length(mesh):.3g}, is coarser than the net: "
             "subdivide it"
         )
-    return Remeshed(done.sphere_mesh, _report(done, edge_length))
+    report = _report(done, edge_length)
+    try:
+        planar = _planarized(done.sphere_mesh)
+    except ConvergenceError as error:
+        warn(f"the net keeps some torsion: {error}")
+        return Remeshed(done.sphere_mesh, {**report, "planarized": None})
+    return Remeshed(planar.sphere_mesh, {**report, "planarized": planar.report})
 
 
 def _report(done: pipeline.Remeshing, edge_length: float) -> dict[str, Any]:
@@ -254,3 +266,151 @@ def _finite(value: float) -> float | None:
 
 def _percent(share: float) -> str:
     return f"{100 * share:.3g} %"
+
+
+class Planarized(NamedTuple):
+    """A torsion-free sphere mesh and how it was reached."""
+
+    sphere_mesh: SphereMesh
+    report: Mapping[str, Any]
+
+
+@node
+def planarize_p4(
+    sphere_mesh: SphereMesh, fairness: Annotated[float, Port(min=0)] = 1.0
+) -> Planarized:
+    """
+    Give a sphere mesh torsion-free nodes: planar faces in the point model of Möbius geometry.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        A mesh of any face degrees that nearly has such nodes, as `p4_remesh` makes them.
+    fairness : float
+        How much it counts that neighbouring spheres change differently, relative to how much
+        changes count; larger for rough nets.
+
+    Returns
+    -------
+    sphere_mesh : SphereMesh
+        Moved nodes and changed spheres on the same faces: around every interior node the
+        spheres pass through the node and through one more common point.
+    report : mapping
+        ``status``, ``iterations``; ``planarity`` (largest fourth singular
+        value of the spheres around a node, relative to the first), ``corner_gap`` (largest
+        distance of a node from its spheres, in mean edges) and ``real_nodes`` (share of the
+        interior nodes whose spheres meet in two real points), each ``before`` and ``after``;
+        ``axis_angles_deg`` (``p95`` and ``max`` of the angles between node axes and normals,
+        null if there is no axis), ``moved`` (``max`` and ``mean`` over the nodes, in mean
+        edges) and ``nodes_without_axis`` (ids).
+    """
+    return _planarized(sphere_mesh, fairness)
+
+
+def _planarized(sphere_mesh: SphereMesh, fairness: float = 1.0) -> Planarized:
+    result = planarize(sphere_mesh, fairness)
+    nodes = measure_nodes(result.sphere_mesh)
+    before = _quality(sphere_mesh, measure_nodes(sphere_mesh))
+    after = _quality(result.sphere_mesh, nodes)
+    if after["planarity"] > TORSION_FREE or after["corner_gap"] > NODE_ON_SPHERES:
+        worst = np.argsort(-nodes.planarity, kind="stable")[:3].tolist()
+        raise ConvergenceError(
+            f"the nodes are not free of torsion after {result.iterations} steps: "
+            f"planarity {after['planarity']:.1e} (from {before['planarity']:.1e}), worst at "
+            f"vertices {name_ids(worst)}; try more fairness, a finer net of conjugate "
+            "directions, or relax the congruence first"
+        )
+    angles = np.degrees(axis_angles(result.sphere_mesh, nodes))
+    lost = np.flatnonzero(nodes.is_inner & np.isnan(angles)).tolist()
+    if lost:
+        warn(
+            f"the nodes at vertices {name_ids(lost)} have no axis: their spheres share a "
+            "circle (then try more fairness), or all of them are planes"
+        )
+    report = {
+        "status": result.status,
+        "iterations": result.iterations,
+        **{key: {"before": before[key], "after": after[key]} for key in before},
+        "axis_angles_deg": _spread(angles[np.isfinite(angles)]),
+        "moved": {"max": float(result.shifts.max()), "mean": float(result.shifts.mean())},
+        "nodes_without_axis": lost,
+    }
+    return Planarized(result.sphere_mesh, report)
+
+
+def _quality(sphere_mesh: SphereMesh, nodes: Nodes) -> dict[str, float]:
+    gap = vertex_error(sphere_mesh).max() / mean_edge_length(sphere_mesh.mesh)
+    is_real = nodes.is_real[nodes.is_inner]
+    return {
+        "planarity": float(nodes.planarity.max()),
+        "corner_gap": float(gap),
+        "real_nodes": float(is_real.mean()) if len(is_real) else 1.0,
+    }
+
+
+def _spread(angles: FloatArray) -> dict[str, float | None]:
+    if len(angles) == 0:
+        return {"p95": None, "max": None}
+    return {"p95": float(np.percentile(angles, 95)), "max": float(angles.max())}
+
+
+class Relaxed(NamedTuple):
+    """A congruence that can be remeshed, and how far it is from the given one."""
+
+    spheres: FloatArray
+    report: Mapping[str, Any]
+
+
+@node
+def relax_congruence(
+    mesh: Mesh,
+    spheres: FloatArray,
+    max_complex: Annotated[float, Port(min=0, max=1)] = 0.02,
+    max_axis_angle: Annotated[float, Port(unit="deg", min=0, max=90)] = 20.0,
+    radius: float | None = None,
+) -> Relaxed:
+    """
+    Change the radii of a congruence as little as gives it a real net and upright node axes.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Triangles.
+    spheres : (V, 5) float array
+        Rows of the spheres at the vertices, which touch the surface or nearly so.
+    max_complex : float
+        Largest share of the area without a real conjugate net.
+    max_axis_angle : float
+        Largest angle between node axes and normals, over 95 % of the area.
+    radius : float, optional
+        Signed distance, along the vertex normals, of the centres of the spheres of constant
+        radius that are blended in; half of the surface's smallest radius of curvature, on the
+        side of the given spheres, by default.
+
+    Returns
+    -------
+    spheres : (V, 5) float array
+        The given spheres if they are fit.
+    report : mapping
+        ``blend`` (share of the spheres of constant radius), ``radius`` of those,
+        ``complex_share`` and ``axis_angle_p95_deg``, each ``before`` and ``after``.
+    """
+    target = CongruenceQuality(max_complex, float(np.radians(max_axis_angle)))
+    result = relax.relax_congruence(
+        mesh,
+        spheres,
+        lambda rows: directions.conjugate_directions(mesh, rows).complex_share,
+        target,
+        radius,
+    )
+    before, after = result.before, result.after
+    report = {
+        "blend": result.blend,
+        "radius": result.radius,
+        "complex_share": {"before": before.complex_share, "after": after.complex_share},
+        "axis_angle_p95_deg": {
+            "before": float(np.degrees(before.axis_angle)),
+            "after": float(np.degrees(after.axis_angle)),
+        },
+    }
+    return Relaxed(result.spheres, report)

@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 
 from spheremesh import Mesh, SphereMesh
+from spheremesh.kernel.congruence import sphere_congruence
 from spheremesh.kernel.errors import ConvergenceError
 from spheremesh.kernel.mesh import mean_edge_length
 from spheremesh.kernel.remesh import planarize
+from spheremesh.kernel.remesh.directions import conjugate_directions
+from spheremesh.kernel.triangulated import triangulated_surface
+from spheremesh.nodes import planarize_p4, relax_congruence
 from spheremesh.nodes.library.input import torus_mesh
-from spheremesh.nodes.library.remesh_planar import planarize_p4
 from spheremesh.nodes.library.spheres import central_spheres, face_planes
 
 
@@ -55,3 +58,17 @@ def test_too_few_steps_are_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(planarize, "STEPS", 2)
     with pytest.raises(ConvergenceError, match="not free of torsion after 2 steps"):
         planarize_p4(shaken(0.05))
+
+
+def test_central_spheres_of_a_bump_are_relaxed() -> None:
+    mesh, _ = triangulated_surface("bump", 0.1)
+    spheres, _ = sphere_congruence(mesh, "central")
+    result = relax_congruence(mesh, spheres)
+    report = json.loads(json.dumps(result.report, allow_nan=False))
+    assert report["complex_share"]["before"] > 0.2
+    assert report["complex_share"]["after"] <= 0.02
+    assert report["axis_angle_p95_deg"]["before"] > 60
+    assert report["axis_angle_p95_deg"]["after"] <= 20
+    assert 0 < report["blend"] < 1
+    share = conjugate_directions(mesh, result.spheres).complex_share
+    assert share == report["complex_share"]["after"]
