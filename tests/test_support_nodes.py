@@ -46,7 +46,7 @@ def test_annulus_support_reports_and_warns() -> None:
     assert json.loads(json.dumps(found.report, allow_nan=False)) == found.report
     assert found.report["made"] == found.annuli.n_annuli
     with pytest.raises(InputError, match="either a depth or a power"):
-        annulus_support(sphere_mesh)
+        annulus_support(sphere_mesh, depth=0.2, kappa=0.1)
 
 
 def test_beams_reports_and_warns() -> None:

@@ -28,7 +28,7 @@ def graph() -> sm.Graph:
     side = graph.param("side", "centred")
     mesh = graph.add("torus_mesh", n_around=16, n_across=6)
     best = graph.add("minimize_angles", sphere_mesh=graph.add("fit_spheres", mesh=mesh))
-    few = graph.add("cluster_radii", "few", sphere_mesh=best.sphere_mesh, k=3)
+    few = graph.add("cluster_radii", "few", sphere_mesh=best.sphere_mesh, k=3, relax=False)
     made = graph.add(
         "panels", "panels", sphere_mesh=few.sphere_mesh, thickness=0.1, labels=few.labels,
         side=side,

@@ -153,7 +153,7 @@ def test_panels_without_any_beam(tmp_path: Path) -> None:
     none = select_beams(CASES["mitred"], np.zeros(CASES["mitred"].n_beams, bool))
     path = write_step(panels, tmp_path / "m.step", beams=none)
     assert len(read_solids(path)) == panels.n_panels
-    model = rhino3dm.File3dm.Read(str(write_3dm(panels, tmp_path / "m.3dm", beams=none)))
+    model = rhino3dm.File3dm.Read(str(write_3dm(panels, tmp_path / "m.3dm", beams=none).path))
     assert on_layer(model, "Beams") == on_layer(model, "Axes") == []
 
 

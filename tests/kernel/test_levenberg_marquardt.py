@@ -82,7 +82,7 @@ def test_reaches_the_minimum_without_ever_rising(
 def test_a_minimum_is_left_alone() -> None:
     descent = solve(rosenbrock, [1, 1])
     assert descent.status == "converged"
-    assert descent.iterations == 1
+    assert descent.iterations <= 1
     np.testing.assert_array_equal(descent.state, [1, 1])
 
 
