@@ -69,9 +69,11 @@ def normal_product_by_numba(matrix: Any) -> Product:  # noqa: ANN401
         (n,) vector x to ``Jᵀ (J x)``.
     """
     sweep = _sweep()
+    # Unsigned indices spare numba the question whether they count from the end.
+    columns, starts = matrix.indices.view(np.uint32), matrix.indptr.astype(np.uint64)
 
     def _product(vector: FloatArray) -> FloatArray:
-        return sweep(matrix.data, matrix.indices, matrix.indptr, vector)
+        return sweep(matrix.data, columns, starts, vector)
 
     return _product
 
@@ -80,7 +82,7 @@ def normal_product_by_numba(matrix: Any) -> Product:  # noqa: ANN401
 def _sweep() -> Any:  # noqa: ANN401
     numba: Any = importlib.import_module("numba")
 
-    @numba.njit(cache=True)
+    @numba.njit(cache=True, error_model="numpy")
     def _rows(data: Any, columns: Any, starts: Any, vector: Any) -> Any:  # noqa: ANN401
         result = np.zeros_like(vector)
         for row in range(len(starts) - 1):
