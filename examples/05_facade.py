@@ -3,7 +3,7 @@
 import numpy as np
 
 from spheremesh.nodes import (
-    ellipsoid_mesh,
+    catenoid_mesh,
     fit_spheres,
     intersection_angles,
     minimize_angles,
@@ -11,13 +11,14 @@ from spheremesh.nodes import (
     render,
 )
 
-start = fit_spheres(ellipsoid_mesh(n_around=28, n_across=13))
+start = fit_spheres(catenoid_mesh(n_around=36, n_across=13))
 for target in (0.0, 30.0, 60.0):
     facade = minimize_angles(start, target_angle=target).sphere_mesh
     angles = intersection_angles(facade)
-    off = np.abs(angles - target)
-    print(f"{target:.0f} degrees asked for: {np.median(angles):.2f} in the middle, ", end="")
-    print(f"nine of ten edges within {np.percentile(off, 90):.2f}")
+    print(
+        f"{target:.0f} degrees asked for: {np.median(angles):.1f} in the middle, all between "
+        f"{angles.min():.1f} and {angles.max():.1f}"
+    )
 
-cut = panels(facade, thickness=0.01)
-print(render(cut.panels, "facade.png"), f"{cut.report['written']} panels")
+cut = panels(facade, edges="intersection", thickness=0.01)
+print(f"{cut.report['written']} panels; {render(cut.panels, 'facade.png')}")
