@@ -28,6 +28,7 @@ lint: system
 
 bench: system
 	$(BIN)/python benchmarks/run.py
+	$(BIN)/python benchmarks/energy.py large scipy
 
 install: $(INSTALLED)
 

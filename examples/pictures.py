@@ -4,7 +4,9 @@ The pictures of README and docs, each drawn by one function.
     python examples/pictures.py docs/images
 """
 
+import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -125,6 +127,36 @@ def hexagons() -> Image.Image:
     return sheet
 
 
+def _made_by(example: str, picture: str) -> Image.Image:
+    """The picture that an example writes, half as large."""
+    with tempfile.TemporaryDirectory() as folder:
+        script = Path(__file__).with_name(f"{example}.py").resolve()
+        subprocess.run([sys.executable, "-W", "ignore", script], cwd=folder, check=True)  # noqa: S603
+        image = Image.open(Path(folder) / picture)
+        image.load()
+    return image.convert("RGB").reduce(2)
+
+
+def hybrid_dome() -> Image.Image:
+    """A dome of triangles and quadrilaterals with nodes free of torsion."""
+    return _made_by("04_hybrid_roof", "dome.png")
+
+
+def facade() -> Image.Image:
+    """Cushions that meet at sixty degrees."""
+    return _made_by("05_facade", "facade.png")
+
+
+def strips() -> Image.Image:
+    """Reflections on strips around a catenoid."""
+    return _made_by("06_strips", "strips_0.png")
+
+
+def few_moulds() -> Image.Image:
+    """484 panels on six moulds."""
+    return _made_by("09_few_moulds", "few_moulds.png")
+
+
 PICTURES = {
     "roof": roof,
     "roof-zebra": roof_zebra,
@@ -132,6 +164,10 @@ PICTURES = {
     "mobius": mobius,
     "models": models,
     "hexagons": hexagons,
+    "hybrid-dome": hybrid_dome,
+    "facade": facade,
+    "strips": strips,
+    "few-moulds": few_moulds,
 }
 
 

@@ -97,7 +97,8 @@ def project_displacements(freedom: Freedom, displacements: FloatArray) -> FloatA
     length = norm(displacements)
     too_long = length > freedom.tolerance
     factor = np.ones_like(length)
-    factor[too_long] = freedom.tolerance / length[too_long]
+    # A hair inside, so that rounding does not carry a vertex out again.
+    factor[too_long] = (1 - AT_BOUND / 2) * freedom.tolerance / length[too_long]
     return displacements * factor[:, None]
 
 
