@@ -63,11 +63,11 @@ def write_step(
         Application protocol.
     title : str
         Title in the header of the file.
-    beams : Beams, optional
-        Beams to write as exact solids, with or without panels.
     copies : {"shapes", "instances"}
         ``shapes``: a shape of its own for every panel. ``instances``: identical panels (see
         `congruent_panels`) are instances of one shape, named after the first of them.
+    beams : Beams, optional
+        Beams to write as exact solids, with or without panels.
 
     Returns
     -------
