@@ -121,6 +121,7 @@ def solve_by_cholmod(matrix: SparseArray, right: FloatArray) -> FloatArray:
         The solution.
     """
     from scipy.sparse import csc_matrix
+    from sksparse.cholmod import cholesky  # pyright: ignore
 
-    cholmod: Any = importlib.import_module("sksparse.cholmod")
-    return np.asarray(cholmod.cholesky(csc_matrix(matrix))(right), np.float64)
+    factorized: Any = cholesky  # pyright: ignore
+    return np.asarray(factorized(csc_matrix(matrix))(right), np.float64)

@@ -80,9 +80,11 @@ def normal_product_by_numba(matrix: Any) -> Product:  # noqa: ANN401
 
 @cache
 def _sweep() -> Any:  # noqa: ANN401
-    numba: Any = importlib.import_module("numba")
+    import numba
 
-    @numba.njit(cache=True, error_model="numpy")
+    compiler: Any = numba
+
+    @compiler.njit(cache=True, error_model="numpy")
     def _rows(data: Any, columns: Any, starts: Any, vector: Any) -> Any:  # noqa: ANN401
         result = np.zeros_like(vector)
         for row in range(len(starts) - 1):

@@ -113,11 +113,11 @@ def write_step(
         Units of the file.
     schema : {"AP214IS", "AP242DIS"}
         Application protocol.
-    beams : Beams, optional
-        The beams, with mitred ends.
     copies : {"shapes", "instances"}
         A shape of its own for every panel, or one shape for identical panels: smaller files
         where panels repeat.
+    beams : Beams, optional
+        The beams, with mitred ends.
 
     Returns
     -------
