@@ -169,9 +169,16 @@ def jacobian_matrix(pattern: JacobianPattern, entries: Sequence[Sequence[FloatAr
     """
     from scipy.sparse import csr_array
 
-    rows = np.concatenate([np.hstack(term).ravel() for term in entries if len(term)])
+    data = np.empty(len(pattern.columns))
+    place = 0
+    for tables in entries:
+        if len(tables):
+            count, width = len(tables[0]), sum(table.shape[1] for table in tables)
+            rows = data[place : place + count * width].reshape(count, width)
+            np.concatenate(tables, axis=1, out=rows)
+            place += count * width
     shape = (len(pattern.starts) - 1, int(pattern.layout.starts[-1]))
-    return csr_array((rows, pattern.columns, pattern.starts), shape=shape)
+    return csr_array((data, pattern.columns, pattern.starts), shape=shape)
 
 
 def diagonal_blocks(
