@@ -80,12 +80,12 @@ def general_solver(n_span: int, n_length: int, aim: float, limit: float) -> None
 
     def _residuals(x: FloatArray) -> FloatArray:
         unknowns = _unknowns(x)
-        residuals = weighted_residuals(problem, unknowns)
+        residuals = np.concatenate(weighted_residuals(problem, unknowns))
         # Our rows are unit rows; those of a general solver, a little shorter, gain by it.
         unit_rows = moved(
             problem.freedom, unknowns, (0 * unknowns.spheres, none, unknowns.normals)
         )
-        energy = float((weighted_residuals(problem, unit_rows) ** 2).sum())
+        energy = sum(float(part @ part) for part in weighted_residuals(problem, unit_rows))
         seconds = time.perf_counter() - began
         if energy < best[0]:
             best[:] = energy, seconds

@@ -77,9 +77,9 @@ def energy_problem(setting: Setting, freedom: Freedom, weights: EnergyWeights) -
     return EnergyProblem(setting, freedom, terms, values, jacobian_pattern(layout, blocks))
 
 
-def term_energies(problem: EnergyProblem, unknowns: Unknowns) -> FloatArray:
+def weighted_residuals(problem: EnergyProblem, unknowns: Unknowns) -> list[FloatArray]:
     """
-    Weighted energy of each term.
+    Residuals of each term, times its weight.
 
     Parameters
     ----------
@@ -90,39 +90,13 @@ def term_energies(problem: EnergyProblem, unknowns: Unknowns) -> FloatArray:
 
     Returns
     -------
-    (terms,) float array
-        ``λ² |r|²``.
-    """
-    return np.array(
-        [
-            weight**2 * float((term.residuals(problem.setting, unknowns) ** 2).sum())
-            for term, weight in zip(problem.terms, problem.weights, strict=True)
-        ]
-    )
-
-
-def weighted_residuals(problem: EnergyProblem, unknowns: Unknowns) -> FloatArray:
-    """
-    All residuals, each times the weight of its term.
-
-    Parameters
-    ----------
-    problem : EnergyProblem
-        The problem.
-    unknowns : Unknowns
-        The values.
-
-    Returns
-    -------
-    (m,) float array
+    list of (m,) float arrays
         Term after term.
     """
-    return np.concatenate(
-        [
-            weight * term.residuals(problem.setting, unknowns)
-            for term, weight in zip(problem.terms, problem.weights, strict=True)
-        ]
-    )
+    return [
+        weight * term.residuals(problem.setting, unknowns)
+        for term, weight in zip(problem.terms, problem.weights, strict=True)
+    ]
 
 
 def weighted_entries(
@@ -175,12 +149,20 @@ def minimize_energy(
     Descent
         Its history has one column per term of the problem.
     """
+    # A state is linearised right after its energy was asked for.
+    known: tuple[Unknowns, list[FloatArray]] = (start, weighted_residuals(problem, start))
+
+    def _residuals(unknowns: Unknowns) -> list[FloatArray]:
+        nonlocal known
+        if unknowns is not known[0]:
+            known = (unknowns, weighted_residuals(problem, unknowns))
+        return known[1]
 
     def _energies(unknowns: Unknowns) -> FloatArray:
-        return term_energies(problem, unknowns)
+        return np.array([float(dot(part, part)) for part in _residuals(unknowns)])
 
     def _linearize(unknowns: Unknowns) -> Callable[[float], DampedStep]:
-        residuals = weighted_residuals(problem, unknowns)
+        residuals = np.concatenate(_residuals(unknowns))
         entries = _free_entries(problem, unknowns, residuals)
         linear = linearization(problem.pattern, residuals, entries)
         return lambda damping: damped_step(linear, damping)

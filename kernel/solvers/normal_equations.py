@@ -20,7 +20,7 @@ from .levenberg_marquardt import DampedStep
 from .products import normal_product
 
 MAX_ITERATIONS = 300
-MAX_OPERATIONS = 25 * 10**8
+MAX_OPERATIONS = 2 * 10**9
 """Entries of J visited by the conjugate gradients of one step: a large problem gets rougher
 steps, and more of them."""
 MAX_FACTORIZED = 100_000

@@ -298,14 +298,12 @@ def test_the_matrix_is_the_jacobian_of_the_sum() -> None:
     rows, moves, normals = problem.pattern.layout.split(direction)
 
     def _at(step: float) -> FloatArray:
-        return weighted_residuals(
-            problem,
-            Unknowns(
-                unknowns.spheres + step * rows,
-                unknowns.displacements + step * moves,
-                unknowns.normals + step * normals,
-            ),
+        moved_on = Unknowns(
+            unknowns.spheres + step * rows,
+            unknowns.displacements + step * moves,
+            unknowns.normals + step * normals,
         )
+        return np.concatenate(weighted_residuals(problem, moved_on))
 
     expected = (_at(STEP) - _at(-STEP)) / (2 * STEP)
     np.testing.assert_allclose(matrix @ direction, expected, atol=1e-6)
