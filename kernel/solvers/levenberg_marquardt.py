@@ -116,8 +116,9 @@ def levenberg_marquardt(
     damping, growth = FIRST_DAMPING, 2.0
     if history[0].sum() <= least_energy:
         return Descent(state, "converged", np.array(history), 0)
-    solve = linearize(state)
+    solve: Callable[[float], DampedStep] | None = None
     for iteration in range(1, max_iterations + 1):
+        solve = linearize(state) if solve is None else solve
         energy = float(history[-1].sum())
         trial = solve(damping)
         promised = energy - trial.predicted
@@ -136,7 +137,7 @@ def levenberg_marquardt(
                 return Descent(state, "converged", np.array(history), iteration)
             damping = max(DAMPING, damping * max(0.1, 1 - (2 * agreement - 1) ** 3))
             growth = 2.0
-            solve = linearize(state)
+            solve = None
         else:
             damping *= growth
             growth *= 2
