@@ -34,7 +34,7 @@ Corners = Literal["soft", "common", "own"]
 
 SPHERICITY_FACTORS = (10, 100, 1000)
 SUPPORT_FACTORS = (10, 100, 1000, 10_000, 100_000)
-LANDING_SUPPORT = 1000.0
+LANDING_SUPPORT = 100.0
 """Weight of the support against that of sphericity in the landing: its residuals are products
 of two curvatures, and small."""
 
@@ -228,6 +228,8 @@ def move_vertices(
     )
     problem = _tightened(replace(problem, freedom=freedom), weights, ("sphericity",))
     exact = EnergyWeights(sphericity=1.0, angle=0.0, support=LANDING_SUPPORT * weights.support)
+    # Coming closer than this gains nothing, and moves much where few shapes of a mesh will do.
+    problem = replace(problem, setting=replace(problem.setting, allowance=COMMON_VERTEX / 2))
     return _finished(_descend(problem, ("landing", exact), ENERGY_CHANGE), "common")
 
 

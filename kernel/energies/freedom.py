@@ -102,11 +102,9 @@ def project_displacements(freedom: Freedom, displacements: FloatArray) -> FloatA
     return displacements * factor[:, None]
 
 
-def active_vertices(
-    freedom: Freedom, displacements: FloatArray, descent: FloatArray
-) -> FloatArray:
+def pushed_out(freedom: Freedom, displacements: FloatArray, push: FloatArray) -> BoolArray:
     """
-    Free directions of this step: a vertex at its bound may not be pushed out further.
+    Vertices at their bound that a push carries out of it.
 
     Parameters
     ----------
@@ -114,19 +112,38 @@ def active_vertices(
         The bounds.
     displacements : (V, 3) float array
         Where the vertices are.
-    descent : (V, 3) float array
-        Direction in which the energy falls.
+    push : (V or 0, 3) float array
+        A direction for each; empty where vertices take no part.
 
     Returns
     -------
-    (V, 3, 3) float array
+    (V or 0,) bool array
+        Which ones.
+    """
+    where = displacements[: len(push)]
+    return (norm(where) >= freedom.tolerance * (1 - AT_BOUND)) & (dot(push, where) > 0)
+
+
+def free_directions(freedom: Freedom, displacements: FloatArray, held: BoolArray) -> FloatArray:
+    """
+    Free directions of a step: vertices that are held at their bound only move along it.
+
+    Parameters
+    ----------
+    freedom : Freedom
+        The bounds.
+    displacements : (V, 3) float array
+        Where the vertices are.
+    held : (V or 0,) bool array
+        Which vertices are held; empty where vertices take no part.
+
+    Returns
+    -------
+    (V or 0, 3, 3) float array
         Orthogonal projections.
     """
-    directions = unit(displacements)
-    at_bound = norm(displacements) >= freedom.tolerance * (1 - AT_BOUND)
-    pushed = at_bound & (dot(descent, directions) > 0)
-    outward = np.where(pushed[:, None], directions, 0.0)
-    return freedom.vertices - outward[:, :, None] * outward[:, None, :]
+    outward = np.where(held[:, None], unit(displacements[: len(held)]), 0.0)
+    return freedom.vertices[: len(held)] - outward[:, :, None] * outward[:, None, :]
 
 
 def tangent_to_spheres(

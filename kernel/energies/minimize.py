@@ -2,15 +2,23 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from ..arrays import FloatArray, dot, sum_by
+from ..arrays import BoolArray, FloatArray, dot, norm, sum_by
 from ..solvers.blocks import Block, JacobianPattern, Layout, jacobian_pattern
 from ..solvers.levenberg_marquardt import DampedStep, Descent, levenberg_marquardt
-from ..solvers.normal_equations import damped_step, linearization
+from ..solvers.normal_equations import Linearization, damped_step, linearization
 from ..tolerances import LEAST_ENERGY
-from .freedom import Freedom, active_vertices, moved, tangent_to_spheres
+from .freedom import (
+    Freedom,
+    free_directions,
+    moved,
+    project_displacements,
+    pushed_out,
+    tangent_to_spheres,
+)
 from .setting import WIDTHS, Group, Setting, Unknowns
 from .table import TERMS, EnergyWeights, Term
 
@@ -162,10 +170,7 @@ def minimize_energy(
         return np.array([float(dot(part, part)) for part in _residuals(unknowns)])
 
     def _linearize(unknowns: Unknowns) -> Callable[[float], DampedStep]:
-        residuals = np.concatenate(_residuals(unknowns))
-        entries = _free_entries(problem, unknowns, residuals)
-        linear = linearization(problem.pattern, residuals, entries)
-        return lambda damping: damped_step(linear, damping)
+        return _bounded_steps(problem, unknowns, np.concatenate(_residuals(unknowns)))
 
     def _move(unknowns: Unknowns, step: FloatArray) -> Unknowns:
         spheres, displacements, normals = problem.pattern.layout.split(step)
@@ -176,23 +181,89 @@ def minimize_energy(
     )
 
 
-def _free_entries(
+def _bounded_steps(
     problem: EnergyProblem, unknowns: Unknowns, residuals: FloatArray
+) -> Callable[[float], DampedStep]:
+    """
+    Steps at a state, by damping, that leave vertices within their bound.
+
+    A vertex that a step would carry out goes to the bound and along it, and the others make up
+    for what it cannot do: the step is found again. Shortening the vertex alone would tear it
+    from the spheres that were to go with it.
+    """
+    pattern, freedom = problem.pattern, problem.freedom
+    entries, energy = weighted_entries(problem, unknowns), float(dot(residuals, residuals))
+    start = unknowns.displacements[: pattern.layout.counts[Group.VERTEX]]
+    pushed = pushed_out(freedom, start, _vertex_descent(pattern, entries, residuals))
+
+    def _linear(held: BoolArray, ends: FloatArray) -> Linearization:
+        free = _free_entries(problem, unknowns, entries, free_directions(freedom, ends, held))
+        known = residuals + _vertex_changes(pattern, entries, ends - start)
+        return linearization(pattern, known, free)
+
+    first = _linear(pushed, start)
+    if not len(start):
+        # Nothing has a bound, and the unprojected entries need not be kept.
+        return partial(damped_step, first)
+
+    def _step(damping: float) -> DampedStep:
+        held, ends = pushed, start
+        found = damped_step(first, damping)
+        while True:
+            reached = ends + pattern.layout.split(found.step)[Group.VERTEX]
+            leaving = ~held & (norm(reached) > freedom.tolerance)
+            if not leaving.any():
+                break
+            bound = np.where(leaving[:, None], project_displacements(freedom, reached), ends)
+            trial = damped_step(_linear(held | leaving, bound), damping)
+            if not trial.predicted < energy:
+                # Too many would have to stop at once: a shorter step comes next.
+                break
+            held, ends, found = held | leaving, bound, trial
+        step = found.step.copy()
+        pattern.layout.split(step)[Group.VERTEX][:] += ends - start
+        return DampedStep(step, found.predicted)
+
+    return _step
+
+
+def _vertex_changes(
+    pattern: JacobianPattern, entries: list[tuple[FloatArray, ...]], moves: FloatArray
+) -> FloatArray:
+    """Change of the residuals if vertices move and nothing else does, to first order."""
+    changes: list[FloatArray] = []
+    for blocks, tables in zip(pattern.blocks, entries, strict=True):
+        change = np.zeros(len(tables[0]))
+        for block, table in zip(blocks, tables, strict=True):
+            if block.group == Group.VERTEX:
+                change += dot(table, moves[block.ids])
+        changes.append(change)
+    return np.concatenate(changes)
+
+
+def _vertex_descent(
+    pattern: JacobianPattern, entries: list[tuple[FloatArray, ...]], residuals: FloatArray
+) -> FloatArray:
+    """Direction (V, 3) in which moving each vertex lowers the energy; empty if none may."""
+    count = pattern.layout.counts[Group.VERTEX]
+    descent, row = np.zeros((count, 3)), 0
+    for blocks, tables in zip(pattern.blocks, entries, strict=True):
+        part = residuals[row : row + len(tables[0])]
+        row += len(part)
+        for block, table in zip(blocks, tables, strict=True):
+            if block.group == Group.VERTEX:
+                descent -= sum_by(block.ids, part[:, None] * table, count)
+    return descent
+
+
+def _free_entries(
+    problem: EnergyProblem,
+    unknowns: Unknowns,
+    entries: list[tuple[FloatArray, ...]],
+    vertices: FloatArray,
 ) -> list[tuple[FloatArray, ...]]:
-    """Derivatives by what may move: the rest is projected away."""
-    entries = weighted_entries(problem, unknowns)
-    freedom, pattern = problem.freedom, problem.pattern
-    n_vertices = pattern.layout.counts[Group.VERTEX]
-    vertices = freedom.vertices
-    if n_vertices:
-        descent, row = np.zeros((n_vertices, 3)), 0
-        for blocks, tables in zip(pattern.blocks, entries, strict=True):
-            part = residuals[row : row + len(tables[0])]
-            row += len(part)
-            for block, table in zip(blocks, tables, strict=True):
-                if block.group == Group.VERTEX:
-                    descent -= sum_by(block.ids, part[:, None] * table, n_vertices)
-        vertices = active_vertices(freedom, unknowns.displacements, descent)
+    """Derivatives by what may move, vertices as their projections (V, 3, 3) say."""
+    freedom = problem.freedom
 
     def _project(block: Block, table: FloatArray) -> FloatArray:
         if block.group == Group.VERTEX:
@@ -205,6 +276,7 @@ def _free_entries(
     def _keep(block: Block, table: FloatArray) -> FloatArray:
         """A gauge term acts across the tangents; a fixed A is no unknown all the same."""
         if block.group == Group.SPHERE:
+            table = table.copy()
             table[freedom.has_fixed_radius[block.ids], 0] = 0
         return table
 
@@ -213,5 +285,7 @@ def _free_entries(
             _keep(block, table) if term.is_gauge else _project(block, table)
             for block, table in zip(blocks, tables, strict=True)
         )
-        for term, blocks, tables in zip(problem.terms, pattern.blocks, entries, strict=True)
+        for term, blocks, tables in zip(
+            problem.terms, problem.pattern.blocks, entries, strict=True
+        )
     ]

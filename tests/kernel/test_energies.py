@@ -11,9 +11,10 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, norm, unit
 from spheremesh.kernel.energies.freedom import (
     Freedom,
-    active_vertices,
+    free_directions,
     moved,
     project_displacements,
+    pushed_out,
     tangent_to_spheres,
     vertex_freedom,
 )
@@ -264,9 +265,13 @@ def test_a_vertex_at_its_bound_is_not_pushed_out() -> None:
     freedom = Freedom(0.1, vertex_freedom(net, "free", "free"), np.zeros(net.n_faces, bool))
     at_bound = np.tile([0.1, 0, 0], (net.n_vertices, 1))
     inward = np.tile([-1.0, 1, 0], (net.n_vertices, 1))
-    np.testing.assert_array_equal(active_vertices(freedom, at_bound, inward), freedom.vertices)
-    held = active_vertices(freedom, at_bound, -inward)
-    np.testing.assert_allclose(held, np.tile(np.diag([0, 1, 1]), (net.n_vertices, 1, 1)))
+    assert not pushed_out(freedom, at_bound, inward).any()
+    held = pushed_out(freedom, at_bound, -inward)
+    assert held.all()
+    assert not pushed_out(freedom, 0.9 * at_bound, -inward).any()
+    along = free_directions(freedom, at_bound, held)
+    np.testing.assert_allclose(along, np.tile(np.diag([0, 1, 1]), (net.n_vertices, 1, 1)))
+    np.testing.assert_array_equal(free_directions(freedom, at_bound, ~held), freedom.vertices)
     np.testing.assert_allclose(project_displacements(freedom, 3 * at_bound), at_bound)
 
 

@@ -75,10 +75,12 @@ def test_law_e4_a_vase_gets_nodes_without_torsion() -> None:
     assert curvature >= 0.25 * np.median(np.abs(central_spheres(mesh).local_spheres[:, 0]))
 
 
-def test_support_on_moved_vertices() -> None:
-    mesh = vase_mesh(9, 7)
+@pytest.mark.parametrize("mesh", [vase_mesh(9, 7), noisy(vase_mesh(8, 5), 0.001)])
+def test_support_on_moved_vertices(mesh: Mesh) -> None:
     found, report = optimize_spheres(smooth(mesh), TABLE_1, Conditions(tolerance=0.05))
     assert report.corners == "common"
+    assert report.converged
+    assert report.stages[-1].iterations <= 10
     assert support_structure(found).torsion.max() <= 1e-3
     assert miss(found) <= 1e-6
     assert 0 < moves(found, mesh) <= 0.05 * (1 + 1e-12)
@@ -244,7 +246,7 @@ def test_scale_and_place_change_nothing(scale: float, tolerance: float) -> None:
         there = Mesh(scale * net.vertices @ turn.T + shift, net.faces)
         away, _ = optimize_spheres(smooth(there), TABLE_1, conditions)
         difference = np.degrees(intersection_angles(here) - intersection_angles(away))
-        assert np.abs(difference).max() < 0.05
+        assert np.abs(difference).max() < 1e-4
 
 
 def test_pieces_do_not_know_of_each_other() -> None:
