@@ -106,6 +106,23 @@ def minkowski(s: FloatArray, t: FloatArray) -> FloatArray:
     return dot(s[..., 1:4], t[..., 1:4]) - 2 * (s[..., 0] * t[..., 4] + s[..., 4] * t[..., 0])
 
 
+def minkowski_gradient(rows: FloatArray) -> FloatArray:
+    """
+    Derivative of the Minkowski product by the coefficients of its other factor.
+
+    Parameters
+    ----------
+    rows : (..., 5) float array
+        Rows ``(A, B, C)``.
+
+    Returns
+    -------
+    (..., 5) float array
+        ``(-2 C, B, -2 A)``.
+    """
+    return rows[..., [4, 1, 2, 3, 0]] * np.array([-2.0, 1.0, 1.0, 1.0, -2.0])
+
+
 def kind(rows: FloatArray) -> IntArray:
     """
     Classify rows as sphere, plane, point or imaginary sphere.

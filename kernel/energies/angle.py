@@ -4,7 +4,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..solvers.blocks import Block
-from ..spheres import minkowski, recenter
+from ..spheres import minkowski, minkowski_gradient, recenter
 from .setting import Group, Setting, Unknowns
 
 
@@ -92,8 +92,7 @@ def product_gradient(other: FloatArray, middle: FloatArray) -> FloatArray:
     (E, 5) float array
         ``(-2 C, B, -2 A)`` of S' seen from the origin of S.
     """
-    seen = recenter(other, -middle)
-    return np.column_stack([-2 * seen[:, 4], seen[:, 1:4], -2 * seen[:, 0]])
+    return minkowski_gradient(recenter(other, -middle))
 
 
 def _rows_at_middles(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, FloatArray]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from ..mesh import Mesh, face_normals
-from ..spheres import minkowski
+from ..spheres import minkowski, minkowski_gradient
 from ..tolerances import AT_BOUND
 from .setting import Unknowns
 
@@ -170,8 +170,7 @@ def tangent_to_spheres(
     """
     rows = unknowns.spheres[faces]
     along = dot(derivatives, rows)[:, None]
-    conormals = np.column_stack([-2 * rows[:, 4], rows[:, 1:4], -2 * rows[:, 0]])
-    result = derivatives - along * conormals
+    result = derivatives - along * minkowski_gradient(rows)
     fixed = freedom.has_fixed_radius[faces]
     if fixed.any():
         b = unit(rows[fixed, 1:4])

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..solvers.blocks import Block
-from ..spheres import minkowski
+from ..spheres import minkowski, minkowski_gradient
 from .setting import Group, Setting, Unknowns
 
 
@@ -64,5 +64,4 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  #
     tuple of one (F, 5) float array
         ``(-4 C, 2 B, -4 A)``.
     """
-    rows = unknowns.spheres
-    return (np.column_stack([-4 * rows[:, 4], 2 * rows[:, 1:4], -4 * rows[:, 0]]),)
+    return (2 * minkowski_gradient(unknowns.spheres),)

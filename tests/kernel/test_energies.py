@@ -165,7 +165,7 @@ def test_an_allowance_is_a_distance() -> None:
             assert residuals.any() == costs
 
 
-def zero_on(name: str, sphere_mesh: SphereMesh, limit: float = 1e-12) -> None:
+def assert_zero(name: str, sphere_mesh: SphereMesh, limit: float = 1e-12) -> None:
     setting = energy_setting(
         sphere_mesh.mesh, np.ones(len(sphere_mesh.mesh.topology.edge_corners))
     )
@@ -179,14 +179,14 @@ def test_terms_vanish_where_they_should(scale: float) -> None:
     net = Mesh(net.vertices * scale + 100 * scale, net.faces)
     smooth, _ = minimize_angles(face_planes(net))
     for name in ("sphericity", "unit_norm", "dual_norm", "closeness"):
-        zero_on(name, smooth)
+        assert_zero(name, smooth)
     planes = face_planes(net)
     for name in ("regularity", "support"):
-        zero_on(name, planes, 1e-30)
+        assert_zero(name, planes, 1e-30)
     ball = ellipsoid_mesh(12, 7, radius=2, height=2)
     rows = np.tile([-0.25, 0, 0, 0, 1.0], (ball.n_faces, 1))
     for name in ("sphericity", "angle", "regularity", "support"):
-        zero_on(name, SphereMesh(ball, rows), 1e-10)
+        assert_zero(name, SphereMesh(ball, rows), 1e-10)
 
 
 def test_a_spike_costs_more_than_a_right_angle() -> None:
