@@ -17,9 +17,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .arrays import BoolArray, FloatArray, IntArray
+from .axis_tilt import axis_angles, axis_tilt
 from .congruence import touching_spheres
 from .delaunay import MAX_SWEEPS, dual_edge_lengths, flip_to_convex
-from .energies.axis_tilt import axis_angles, axis_tilt
 from .errors import InputError
 from .mesh import Mesh, mean_edge_length
 from .offsets import (
@@ -122,7 +122,7 @@ def evolve_spheres(
     -----
     Minimises ``E_cs + w E_ortho + E_fair``: ``E_cs = sum (λ / ρ - 0.95)²`` with
     ``ρ = 1 / max(k1, k2)`` for curvatures with respect to the normal towards the centres;
-    ``E_ortho`` of `energies.axis_tilt`, with a weight that is raised until the bound holds; and
+    ``E_ortho`` of `axis_tilt`, with a weight that is raised until the bound holds; and
     for fairness ``E_fair``, the squared differences of offsets along edges (a Laplacian of the
     centres would pull closed surfaces together). Between descents edges are flipped; where
     faces are not convex all the same, the aim is lowered: around small spheres they are.

@@ -180,7 +180,7 @@ def optimize_spheres(
     near = _angles_first(_problem(sphere_mesh, conditions), weights)
     if conditions.tolerance == 0:
         return _finished(_tightened(near, weights, ()), "soft")
-    result, report = move_vertices(sphere_mesh, weights, conditions)
+    result, report = _landed(near, weights, conditions)
     is_free = weights.regularity == 0 and weights.support == 0
     is_rough = is_free and _is_rougher_than_planes(result, conditions)
     if report.vertex_miss <= COMMON_VERTEX and not is_rough:
@@ -220,17 +220,8 @@ def move_vertices(
     InputError
         If a condition is out of range or does not match the mesh.
     """
-    problem = _angles_first(_problem(sphere_mesh, conditions), weights)
-    freedom = replace(
-        problem.freedom,
-        tolerance=conditions.tolerance,
-        vertices=vertex_freedom(problem.mesh, conditions.interior, conditions.boundary),
-    )
-    problem = _tightened(replace(problem, freedom=freedom), weights, ("sphericity",))
-    exact = EnergyWeights(sphericity=1.0, angle=0.0, support=LANDING_SUPPORT * weights.support)
-    # Coming closer than this gains nothing, and moves much where few shapes of a mesh will do.
-    problem = replace(problem, setting=replace(problem.setting, allowance=COMMON_VERTEX / 2))
-    return _finished(_descend(problem, ("landing", exact), ENERGY_CHANGE), "common")
+    near = _angles_first(_problem(sphere_mesh, conditions), weights)
+    return _landed(near, weights, conditions)
 
 
 @dataclass(frozen=True)
@@ -241,6 +232,22 @@ class _Problem:
     unknowns: Unknowns
     max_iterations: int
     stages: tuple[Stage, ...] = ()
+
+
+def _landed(
+    problem: _Problem, weights: EnergyWeights, conditions: Conditions
+) -> tuple[SphereMesh, Optimization]:
+    """Vertices move onto their spheres."""
+    freedom = replace(
+        problem.freedom,
+        tolerance=conditions.tolerance,
+        vertices=vertex_freedom(problem.mesh, conditions.interior, conditions.boundary),
+    )
+    problem = _tightened(replace(problem, freedom=freedom), weights, ("sphericity",))
+    exact = EnergyWeights(sphericity=1.0, angle=0.0, support=LANDING_SUPPORT * weights.support)
+    # Coming closer than this gains nothing, and moves much where few shapes of a mesh will do.
+    problem = replace(problem, setting=replace(problem.setting, allowance=COMMON_VERTEX / 2))
+    return _finished(_descend(problem, ("landing", exact), ENERGY_CHANGE), "common")
 
 
 def _problem(sphere_mesh: SphereMesh, conditions: Conditions) -> _Problem:

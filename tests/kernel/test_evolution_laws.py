@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from spheremesh import Mesh
 from spheremesh.kernel.arrays import FloatArray, dot, norm
-from spheremesh.kernel.energies.axis_tilt import axis_angles, axis_tilt
+from spheremesh.kernel.axis_tilt import axis_angles, axis_tilt
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.evolution import Evolution, descend, evolve_spheres
 from spheremesh.kernel.face_shapes import face_shapes

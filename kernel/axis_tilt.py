@@ -11,7 +11,7 @@ References: Meshes with Spherical Faces, Sec. 7, with a hinge in place of slack 
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray, dot, norm, unit
+from .arrays import FloatArray, IntArray, dot, norm, unit
 
 
 def node_axes(
