@@ -26,7 +26,7 @@ from ..kernel.tolerances import EPSILON
 from .beam_bodies import beam_bodies
 from .beam_numbers import beam_numbers
 from .brep_numbers import CONFUSION, copy_places, panel_tolerances, panels_in_place
-from .files import check_suffix, replacing
+from .files import check_suffix, check_target, replacing
 from .panel_bodies import panel_bodies
 from .part21_assembly import Group, Instance, Part, StepHeader, StepSchema, assembly_text
 from .units import millimeters_per
@@ -98,6 +98,7 @@ def write_step(
         check_writable(panels, target)
     elif not n_beams:
         raise InputError(f"there are no panels or beams to write to {target}")
+    check_target(target)
     if schema not in get_args(StepSchema):
         raise InputError(f"unknown STEP schema {schema!r}: use AP214IS or AP242DIS")
     if copies not in get_args(StepCopies):
