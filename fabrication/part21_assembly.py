@@ -182,6 +182,7 @@ class _Assembler:
         self._products: list[int] = []
         self._styled: list[int] = []
         self._layers: dict[str, list[int]] = {}
+        self._colors: dict[Color, int] = {}
         self._styles: dict[Color, int] = {}
         self._contexts: dict[float, int] = {}
         _, protocol, year, subject = _SCHEMAS[header.schema]
@@ -302,21 +303,32 @@ class _Assembler:
         layout, first = part.body.layout, self._count + 1
         self._count += layout.n_entities
         self._lines.append(part.body.text(first))
-        kind = "ADVANCED_BREP" if layout.is_solid else "MANIFOLD_SURFACE"
         context = self._representation_context(part.tolerance)
         self._write(
             definition.shape,
-            f"{kind}_SHAPE_REPRESENTATION('',(#{self._origin},#{first}),#{context})",
+            f"{layout.representation}('',(#{self._origin},#{first}),#{context})",
         )
-        style = self._style(part.color)
+        is_line = layout.representation.startswith("GEOMETRICALLY_BOUNDED_WIREFRAME")
+        style = self._line_style(part.color) if is_line else self._surface_style(part.color)
         self._styled.append(self._add(f"STYLED_ITEM('color',(#{style}),#{first})"))
         self._layers.setdefault(part.layer, []).append(first)
         return definition
 
-    def _style(self, color: Color) -> int:
+    def _color(self, color: Color) -> int:
+        if color not in self._colors:
+            shares = numbers(value / 255 for value in color)
+            self._colors[color] = self._add(f"COLOUR_RGB('',{shares})")
+        return self._colors[color]
+
+    def _line_style(self, color: Color) -> int:
+        font = self._add("DRAUGHTING_PRE_DEFINED_CURVE_FONT('continuous')")
+        width = "POSITIVE_LENGTH_MEASURE(0.1)"
+        style = self._add(f"CURVE_STYLE('',#{font},{width},#{self._color(color)})")
+        return self._add(f"PRESENTATION_STYLE_ASSIGNMENT((#{style}))")
+
+    def _surface_style(self, color: Color) -> int:
         if color not in self._styles:
-            shares = ",".join(real(value / 255) for value in color)
-            entity = self._add(f"COLOUR_RGB('',{shares})")
+            entity = self._color(color)
             for form in (
                 "FILL_AREA_STYLE_COLOUR('',{})", "FILL_AREA_STYLE('',({}))",
                 "SURFACE_STYLE_FILL_AREA({})", "SURFACE_SIDE_STYLE('',({}))",

@@ -1,5 +1,5 @@
 """
-Solids and surfaces as entities of STEP files (ISO 10303-21), text without a CAD kernel.
+Solids, surfaces and lines as entities of STEP files (ISO 10303-21), text without a CAD kernel.
 
 Bodies of the same topology differ in their numbers alone. A batch says the topology once, and
 gives the numbers of its curves and surfaces as arrays; its text is laid out once and filled for
@@ -14,7 +14,7 @@ from typing import Final, Literal, TypeAlias
 
 import numpy as np
 
-from ..kernel.arrays import FloatArray, IntArray
+from ..kernel.arrays import FloatArray, IntArray, norm, unit
 
 Ring: TypeAlias = tuple[tuple[int, bool], ...]
 """Edges of a closed chain, each with whether it is run from its start to its end."""
@@ -92,14 +92,14 @@ class BodyLayout:
         Numbers of entities in the order of the text, the first entity being 0.
     n_entities : int
         How many entities there are.
-    is_solid : bool
-        Whether it is a solid, or else a surface.
+    representation : str
+        Type of the shape representation that holds such bodies.
     """
 
     template: str
     references: IntArray
     n_entities: int
-    is_solid: bool
+    representation: str
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ class Body:
         Parameters
         ----------
         first : int
-            Number of the first of them, which is the solid or surface.
+            Number of the first of them, which is the solid, surface or set of lines.
 
         Returns
         -------
@@ -200,6 +200,25 @@ def bodies(
     return [Body(layout, numbers) for numbers in np.concatenate(parts, axis=1) + 0.0]
 
 
+def line_body(segments: FloatArray) -> Body:
+    """
+    A set of straight lines.
+
+    Parameters
+    ----------
+    segments : (n, 2, 3) float array
+        Their ends.
+
+    Returns
+    -------
+    Body
+        The set.
+    """
+    changes = segments[:, 1] - segments[:, 0]
+    numbers = [segments.reshape(-1, 6), unit(changes), norm(changes)[:, None]]
+    return Body(_line_layout(len(segments)), np.concatenate(numbers, axis=1).ravel() + 0.0)
+
+
 _Edge: TypeAlias = tuple[int, int, str]
 _Face: TypeAlias = tuple[str, Ring, bool, int]
 
@@ -213,6 +232,12 @@ class _Entities:
     def add(self, text: str) -> int:
         self.lines.append(f"#{len(self.lines)}={text};\n")
         return len(self.lines) - 1
+
+    def layout(self, representation: str) -> BodyLayout:
+        text = "".join(self.lines)
+        numbers = np.array([int(found) for found in re.findall(r"#(\d+)", text)])
+        template = re.sub(r"#\d+", "#%%d", text)
+        return BodyLayout(template, numbers, len(self.lines), representation)
 
     def point(self, kind: str = "CARTESIAN_POINT") -> int:
         return self.add(f"{kind}('',(%s,%s,%s))")
@@ -261,17 +286,27 @@ def _layout(
         surface = entities.surface(kind, points[corner])
         face = f"ADVANCED_FACE('',(#{bound}),#{surface},{_SENSES[is_along]})"
         shell.append(entities.add(face))
-    body, shell_kind = (
-        ("MANIFOLD_SOLID_BREP('',#1)", "CLOSED_SHELL")
+    body, shell_kind, representation = (
+        ("MANIFOLD_SOLID_BREP('',#1)", "CLOSED_SHELL", "ADVANCED_BREP")
         if is_solid
-        else ("SHELL_BASED_SURFACE_MODEL('',(#1))", "OPEN_SHELL")
+        else ("SHELL_BASED_SURFACE_MODEL('',(#1))", "OPEN_SHELL", "MANIFOLD_SURFACE")
     )
     entities.lines[0] = f"#0={body};\n"
     entities.lines[1] = f"#1={shell_kind}('',({references(shell)}));\n"
-    text = "".join(entities.lines)
-    numbers = np.array([int(found) for found in re.findall(r"#(\d+)", text)])
-    template = re.sub(r"#\d+", "#%%d", text)
-    return BodyLayout(template, numbers, len(entities.lines), is_solid)
+    return entities.layout(f"{representation}_SHAPE_REPRESENTATION")
+
+
+def _line_layout(count: int) -> BodyLayout:
+    entities = _Entities()
+    entities.lines = [""]
+    lines: list[int] = []
+    for _ in range(count):
+        start, end = entities.point(), entities.point()
+        line = entities.curve("LINE", start)
+        ends = f"(#{start},PARAMETER_VALUE(0.)),(#{end},PARAMETER_VALUE(%s))"
+        lines.append(entities.add(f"TRIMMED_CURVE('',#{line},{ends},.T.,.PARAMETER.)"))
+    entities.lines[0] = f"#0=GEOMETRIC_CURVE_SET('',({references(lines)}));\n"
+    return entities.layout("GEOMETRICALLY_BOUNDED_WIREFRAME_SHAPE_REPRESENTATION")
 
 
 def references(ids: Iterable[int]) -> str:
