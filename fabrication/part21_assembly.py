@@ -142,9 +142,9 @@ class _Definition:
     shape: int
 
 
-def assembly_text(root: Group, header: StepHeader) -> str:
+def assembly_lines(root: Group, header: StepHeader) -> list[str]:
     """
-    Text of a STEP file.
+    Lines of a STEP file.
 
     Parameters
     ----------
@@ -155,10 +155,11 @@ def assembly_text(root: Group, header: StepHeader) -> str:
 
     Returns
     -------
-    str
-        The file, in ASCII. The same parts give the same text, but for the time in the header.
+    list of str
+        The file in pieces of whole lines, in ASCII. The same parts give the same text, but for
+        the time in the header.
     """
-    return "".join([*_frame(header), *_Assembler(header).lines(root), _END])
+    return [*_frame(header), *_Assembler(header).lines(root), _END]
 
 
 _END: Final = "ENDSEC;\nEND-ISO-10303-21;\n"

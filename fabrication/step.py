@@ -28,7 +28,7 @@ from .beam_numbers import beam_numbers
 from .brep_numbers import CONFUSION, copy_places, panel_tolerances, panels_in_place
 from .files import check_suffix, check_target, replacing
 from .panel_bodies import panel_bodies
-from .part21_assembly import Group, Instance, Part, StepHeader, StepSchema, assembly_text
+from .part21_assembly import Group, Instance, Part, StepHeader, StepSchema, assembly_lines
 from .units import millimeters_per
 
 if TYPE_CHECKING:
@@ -114,9 +114,12 @@ def write_step(
     system = f"spheremesh {version('spheremesh')}"
     header = StepHeader(schema, step_units, millimeters, confusion, title, system)
     root = groups[0] if len(groups) == 1 else Group("Model", groups)
-    text = assembly_text(root, header)
-    with replacing(target) as temporary:
-        temporary.write_text(text, encoding="ascii", newline="\n")
+    lines = assembly_lines(root, header)
+    with (
+        replacing(target) as temporary,
+        temporary.open("w", encoding="ascii", newline="\n") as file,
+    ):
+        file.writelines(lines)
     return target
 
 

@@ -20,7 +20,7 @@ from spheremesh.fabrication.part21_assembly import (
     Instance,
     Part,
     StepHeader,
-    assembly_text,
+    assembly_lines,
 )
 from spheremesh.fabrication.part21_bodies import Body, line_body
 from spheremesh.kernel.arrays import unit
@@ -31,7 +31,7 @@ HEADER = StepHeader("AP214IS", "mm", 1.0, 1e-7, "Nodes", "test")
 def read_back(path: Path, bodies: list[Body], kind: TopAbs_ShapeEnum) -> list[TopoDS_Shape]:
     place = (Instance("N", (10.0, 20.0, 30.0)),)
     parts = [Part(b, f"N{i}", "Nodes", (9, 9, 9), 1e-7, place) for i, b in enumerate(bodies)]
-    path.write_text(assembly_text(Group("Nodes", parts), HEADER), encoding="ascii")
+    path.write_text("".join(assembly_lines(Group("Nodes", parts), HEADER)), encoding="ascii")
     assert check_part21(path) == ()
     reader = STEPControl_Reader()
     reader.ReadFile(str(path))

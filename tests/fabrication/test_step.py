@@ -1,5 +1,6 @@
 """STEP files: checked by OpenCASCADE in memory, read back by it, and from their own text."""
 
+import os
 import re
 import subprocess
 import sys
@@ -29,7 +30,7 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication import step
 from spheremesh.fabrication.brep import panel_shapes
 from spheremesh.fabrication.part21 import check_part21
-from spheremesh.fabrication.part21_assembly import Group, StepHeader, StepSchema, assembly_text
+from spheremesh.fabrication.part21_assembly import Group, StepHeader, StepSchema, assembly_lines
 from spheremesh.fabrication.step import to_cadquery, write_step
 from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.circles import circle_pencils, face_circles, pencil_spheres
@@ -370,7 +371,8 @@ def test_groups_are_assemblies_within_the_assembly(panels: Panels, tmp_path: Pat
     second = Group("Beams", step._shared_parts(panels, 1000.0, 1e-7))
     header = StepHeader("AP242DIS", "mm", 1.0, 1e-7, "Roof", "test")
     path = tmp_path / "roof.step"
-    path.write_text(assembly_text(Group("Roof", [first, second]), header), encoding="ascii")
+    text = "".join(assembly_lines(Group("Roof", [first, second]), header))
+    path.write_text(text, encoding="ascii")
     assert check_part21(path) == ()
     document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
     XCAFApp_Application.GetApplication_s().InitDocument(document)
@@ -556,7 +558,7 @@ def test_an_interrupted_write_leaves_the_old_file(
     def interrupt(*_: object, **__: object) -> int:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Path, "write_text", interrupt)
+    monkeypatch.setattr(os, "fsync", interrupt)
     with pytest.raises(KeyboardInterrupt):
         write_step(panels, target)
     assert [p.name for p in tmp_path.iterdir()] == ["panels.step"]
