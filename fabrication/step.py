@@ -22,7 +22,6 @@ from ..kernel.congruent_panels import congruent_panels
 from ..kernel.errors import InputError, MissingLibraryError
 from ..kernel.panel_checks import check_writable
 from ..kernel.panels import Panels
-from ..kernel.tolerances import EPSILON
 from .beam_bodies import beam_bodies
 from .beam_numbers import beam_numbers
 from .brep_numbers import CONFUSION, copy_places, panel_tolerances, panels_in_place
@@ -168,7 +167,7 @@ def _beam_parts(beams: Beams, scale: float, confusion: float) -> list[Part]:
 
 def _file_tolerances(tolerances: FloatArray, confusion: float) -> list[float]:
     """Tolerances rounded up to the next of few: parts that share one share its definition."""
-    steps = np.ceil(np.log10(tolerances / confusion) - EPSILON)
+    steps = np.ceil(np.log10(tolerances / confusion))
     return [float(f"{confusion * 10**step:.3g}") for step in steps.tolist()]
 
 
