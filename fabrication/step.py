@@ -267,4 +267,6 @@ def _opencascade() -> Generator[None]:
             )
         else:
             remedy = "install the package cadquery, which brings it"
-        raise MissingLibraryError(f"STEP needs OpenCASCADE: {error}; {remedy}") from error
+        raise MissingLibraryError(
+            f"objects of CadQuery need OpenCASCADE: {error}; {remedy}"
+        ) from error
