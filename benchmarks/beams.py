@@ -93,7 +93,7 @@ def report(name: str, sphere_mesh: SphereMesh) -> None:
         f"{ms / count:.3f} ms each"
     )
     scale = 1000.0
-    shapes, ms = timed(lambda: beam_shapes(made.beams, scale, pcurves=False))
+    shapes, ms = timed(lambda: beam_shapes(made.beams, scale))
     full = beam_shapes(made.beams, scale)
     valid = sum(BRepCheck_Analyzer(shape).IsValid() for shape in full)
     exact = beam_volumes(made.beams) * scale**3

@@ -3,16 +3,22 @@ Is a file always whole? Kills writers at random moments and looks at what is lef
 
     python benchmarks/killed_writing.py [KILLS] [EXPORTS]
 
-For .3dm and STEP: a process writes a new file over an old one and is killed by SIGKILL, half of
-the times at a random moment, half of them as soon as there are first bytes on the disk, or a
-few milliseconds later. Then the file must be the old one or a whole new one. What killed
-processes left beside it is counted: hidden files, as nothing can tidy up after SIGKILL. Before
-that, EXPORTS whole programs must end with exit code 0.
+For .3dm and STEP: a process writes a new file over an old one and is killed by SIGKILL, half
+of the times at a random moment, half of them as soon as there are first bytes on the disk, or
+a few milliseconds later. Then the file must be the old one or a whole new one. The same for
+the command ``panel --support``, which writes a folder: half of the times it is killed as soon
+as the first file has changed. Every file must be the old one or a whole new one, and all must
+be new if the report is, which comes last.
+
+What killed processes left beside is counted: hidden files, as nothing can tidy up after
+SIGKILL. Before that, EXPORTS whole programs that write panels and beams must end with exit
+code 0.
 """
 
 import multiprocessing
 import os
 import random
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -28,14 +34,18 @@ import rhino3dm
 
 from spheremesh import nodes
 from spheremesh.fabrication import rhino, step
+from spheremesh.interfaces.panel import PanelOptions, panel_graph, run_job
 from spheremesh.kernel.panels import Panels
 
 OLD = b"the older file"
 PROGRAM = """
 import sys
-from spheremesh.nodes import fit_spheres, panels, roof_mesh, write_3dm, write_step
-made = panels(fit_spheres(roof_mesh(8, 10)), thickness=0.02).panels
-(write_3dm if sys.argv[1].endswith(".3dm") else write_step)(made, sys.argv[1])
+from spheremesh import nodes
+spheres = nodes.fit_spheres(nodes.roof_mesh(8, 10))
+made = nodes.panels(spheres, thickness=0.02).panels
+beams = nodes.beams(nodes.annulus_support(spheres, depth=0.25).annuli, 0.025).beams
+write = nodes.write_3dm if sys.argv[1].endswith(".3dm") else nodes.write_step
+write(made, sys.argv[1], beams=beams)
 """
 Writer = Callable[[Panels, Path], object]
 FORK = multiprocessing.get_context("fork")
@@ -107,8 +117,54 @@ def torment(write: Writer, panels: Panels, path: Path, kills: int) -> Counter[st
     return found
 
 
+def write_folder(folder: Path) -> None:
+    """The main job on a small roof, files of all kinds."""
+    mesh = nodes.roof_mesh(6, 8)
+    source = folder.parent / "roof.obj"
+    vertices = [f"v {x!r} {y!r} {z!r}\n" for x, y, z in mesh.vertices.tolist()]
+    faces = ["f " + " ".join(str(i + 1) for i in face) + "\n" for face in mesh.faces]
+    source.write_text("".join(vertices + faces), encoding="ascii")
+    options = PanelOptions(mesh=source, thickness=0.02, support=True, depth=0.25)
+    run_job(panel_graph(options), folder, lambda *_: None)
+
+
+def torment_folder(folder: Path, kills: int) -> Counter[str]:
+    """What was found after each kill of the main job."""
+    began = time.perf_counter()
+    write_folder(folder)
+    seconds = time.perf_counter() - began
+    files = sorted(folder.iterdir())
+    sizes = {path.name: path.stat().st_size for path in files}
+    found: Counter[str] = Counter()
+    for i in range(kills):
+        for path in files:
+            path.write_bytes(OLD)
+        process = FORK.Process(target=write_folder, args=(folder,))
+        process.start()
+        if i % 2:
+            time.sleep(random.uniform(0, 1.2 * seconds))  # noqa: S311
+        else:
+            while process.is_alive() and all(p.stat().st_size == len(OLD) for p in files):
+                pass
+        process.kill()
+        process.join()
+        new = {path.name for path in files if path.read_bytes() != OLD}
+        # Times in the header and the report change their lengths by little.
+        whole = all((folder / n).stat().st_size > 0.99 * sizes[n] for n in new)
+        if not whole or ("report.json" in new and len(new) < len(files)):
+            found["DAMAGED"] += 1
+        else:
+            kinds = {0: "all old", len(files): "all new"}
+            found[kinds.get(len(new), "some new, each whole")] += 1
+        others = [each for each in folder.iterdir() if each not in files]
+        found["left beside"] += len(others)
+        for each in others:
+            shutil.rmtree(each)
+    return found
+
+
 def main() -> None:
-    """Torment both writers."""
+    """Torment the writers."""
     warnings.simplefilter("ignore")
     words = [*sys.argv[1:], *("50", "10")[len(sys.argv) - 1 :]]
     kills, exports = int(words[0]), int(words[1])
@@ -122,6 +178,10 @@ def main() -> None:
             found = torment(write, panels, Path(folder) / name, kills)
         print(f"{name}: exit codes {dict(codes)}, after {kills} kills {dict(found)}")
         is_good &= not found["DAMAGED"] and set(codes) <= {0}
+    with tempfile.TemporaryDirectory() as folder:
+        found = torment_folder(Path(folder) / "out", kills)
+    print(f"folder: after {kills} kills {dict(found)}")
+    is_good &= not found["DAMAGED"]
     print("always whole" if is_good else "NOT always whole")
     sys.exit(not is_good)
 

@@ -13,7 +13,7 @@ This module imports OCP, which takes more than a second: others import it inside
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -30,17 +30,14 @@ from OCP.TColgp import TColgp_Array1OfPnt2d
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape, TopoDS_Vertex
 
-from ..kernel.arcs import arc_circles
+from ..kernel.arcs import circle_axes
 from ..kernel.arrays import FloatArray, dot, norm
-from ..kernel.beam_edges import CutEdges, cut_edges
-from ..kernel.beams import Beams, scale_beams, side_arcs
-from ..kernel.errors import InputError
-from ..kernel.tolerances import EPSILON
+from ..kernel.beam_edges import CutEdges
+from ..kernel.beams import Beams, scale_beams
+from .beam_numbers import LEVELS, BeamNumbers, beam_numbers
 from .brep_parts import (
     BUILDER,
-    CONFUSION,
     arc_curves,
-    circle_axes,
     make_edge,
     make_face,
     make_solid,
@@ -48,13 +45,11 @@ from .brep_parts import (
     make_vertex,
     placement,
     quintic_poles,
-    rounded_origins,
 )
 
 _SPAN = 0.05
 """Longest span, in radians, of a spline for an ellipse in the parameters of a cylinder."""
 
-_LEVELS = ((0, 1), (1, 2), (0, 2))
 _Upright: TypeAlias = tuple[int, int, tuple[int, int]]
 """End, outer (0) or inner (1) face, and levels of an edge across the thickness."""
 
@@ -73,13 +68,8 @@ class _Sides:
 class _Solids:
     """What the solids of a batch of beams are made of, about their rounded origins."""
 
-    beams: Beams
-    corners: FloatArray
-    centers: FloatArray
-    radii: FloatArray
-    frames: FloatArray
+    numbers: BeamNumbers
     sides: dict[int, _Sides]
-    cuts: dict[tuple[int, int], CutEdges]
     parameters: dict[tuple[int, int], tuple[FloatArray, FloatArray]]
     tolerances: list[float]
 
@@ -95,9 +85,7 @@ class _Block:
     steps: tuple[list[tuple[int, int]], list[tuple[int, int]]]
 
 
-def beam_shapes(
-    beams: Beams, scale: float = 1.0, *, pcurves: bool = True
-) -> list[TopoDS_Shape]:
+def beam_shapes(beams: Beams, scale: float = 1.0) -> list[TopoDS_Shape]:
     """
     A closed solid per beam.
 
@@ -107,14 +95,12 @@ def beam_shapes(
         B beams.
     scale : float
         Units of the shapes per model unit; OpenCASCADE's tolerances suit millimetres.
-    pcurves : bool
-        Whether edges carry curves in the parameters of cylinders, which OpenCASCADE's own
-        algorithms need; a STEP file does not.
 
     Returns
     -------
     list of TopoDS_Shape
-        B solids, each placed by a translation to the origin of its beam.
+        B solids, each placed by a translation to the origin of its beam. Edges carry curves in
+        the parameters of cylinders, which OpenCASCADE's algorithms need.
 
     Raises
     ------
@@ -123,68 +109,43 @@ def beam_shapes(
     """
     if beams.n_beams == 0:
         return []
-    beams = scale_beams(beams, scale)
-    places = rounded_origins(beams.annuli.origins)
-    shifts = beams.annuli.origins - places
-    solids = _solids(beams, shifts, _LEVELS if pcurves else ())
+    solids = _solids(beam_numbers(scale_beams(beams, scale)))
     shapes: list[TopoDS_Shape] = []
-    for beam, place in enumerate(places.tolist()):
+    for beam, place in enumerate(solids.numbers.places.tolist()):
         block = _block(solids, beam)
         faces = _plane_faces(solids, beam, block)
-        faces += [_long_face(solids, beam, block, k, pcurves=pcurves) for k in (0, 1)]
+        faces += [_long_face(solids, beam, block, k) for k in (0, 1)]
         shapes.append(make_solid(faces).Located(placement(place)))
     return shapes
 
 
-def _solids(
-    beams: Beams, shifts: FloatArray, with_curves: tuple[tuple[int, int], ...]
-) -> _Solids:
-    """Parts of solids, with curves in parameters for the edges between some levels."""
-    annuli = beams.annuli
-    corners = beams.corners + shifts[:, None, None, None]
-    rows = np.stack([annuli.outer, annuli.inner], 1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        radii = 0.5 / np.abs(rows[..., 0])
-        centers = rows[..., 1:4] / (2 * rows[..., :1]) + shifts[:, None]
-    up, axis = annuli.frames[:, None, 1], annuli.frames[:, None, 2]
-    # On a plane the frame stands on it: along z, with the normal to the outer side.
-    x = np.where(rows[..., :1] > 0, up, np.where(rows[..., :1] < 0, -up, -rows[..., 1:4]))
-    frames = np.stack([x, np.cross(axis, x), np.broadcast_to(axis, x.shape)], 2)
-    cuts = {levels: cut_edges(beams, corners, centers, radii, levels) for levels in _LEVELS}
+def _solids(numbers: BeamNumbers) -> _Solids:
     with np.errstate(invalid="ignore"):
         parameters = {
-            levels: _cut_parameters(cuts[levels], centers, radii, frames)
-            for levels in with_curves
+            levels: _cut_parameters(
+                numbers.cuts[levels], numbers.centers, numbers.radii, numbers.frames
+            )
+            for levels in LEVELS
         }
-    misses = 8 * EPSILON * np.where(np.isfinite(radii), radii, 0.0).max(axis=1)
-    misses = np.maximum(misses, 8 * EPSILON * norm(annuli.origins))
-    for cut in cuts.values():
-        misses = np.maximum(misses, 2 * cut.misses.max(axis=(1, 2)))
-    tolerances = np.maximum(CONFUSION, misses)
-    is_finite = np.isfinite(beams.corners).all(axis=(1, 2, 3, 4)) & np.isfinite(tolerances)
-    broken = [annuli.ids[i] for i in np.flatnonzero(~is_finite)]
-    if broken:
-        raise InputError(f"beam {broken[0]} ({len(broken)} in all) is not finite")
-    sides = {level: _sides(beams, shifts, frames, level) for level in (0, 2)}
-    return _Solids(
-        beams, corners, centers, radii, frames, sides, cuts, parameters, tolerances.tolist()
-    )
+    sides = {level: _sides(numbers, level) for level in (0, 2)}
+    return _Solids(numbers, sides, parameters, numbers.tolerances.tolist())
 
 
-def _sides(beams: Beams, shifts: FloatArray, frames: FloatArray, level: int) -> _Sides:
+def _sides(numbers: BeamNumbers, level: int) -> _Sides:
     curves: list[list[Geom_Curve]] = []
     lengths: list[list[float]] = []
     starts: list[FloatArray] = []
     turns: list[FloatArray] = []
-    for k, arcs in enumerate(side_arcs(beams, level)):
-        moved = replace(arcs, starts=arcs.starts + shifts, ends=arcs.ends + shifts)
-        circles = arc_circles(moved)
-        found, spans = arc_curves(moved, circles)
+    for k, (arcs, circles) in enumerate(
+        zip(numbers.arcs[level], numbers.circles[level], strict=True)
+    ):
+        found, spans = arc_curves(arcs, circles)
         curves.append(found)
         lengths.append(spans)
-        x, _ = circle_axes(moved, circles)
-        starts.append(np.pi + np.arctan2(-dot(x, frames[:, k, 1]), -dot(x, frames[:, k, 0])))
-        turns.append(np.copysign(1.0, dot(circles.axes, frames[:, k, 2])))
+        x, _ = circle_axes(arcs, circles)
+        frames = numbers.frames[:, k]
+        starts.append(np.pi + np.arctan2(-dot(x, frames[:, 1]), -dot(x, frames[:, 0])))
+        turns.append(np.copysign(1.0, dot(circles.axes, frames[:, 2])))
     return _Sides(curves, lengths, np.stack(starts, 1), np.stack(turns, 1))
 
 
@@ -227,9 +188,9 @@ def _cut_parameters(
 
 def _block(solids: _Solids, beam: int) -> _Block:
     tolerance = solids.tolerances[beam]
-    flat: list[bool] = solids.beams.is_flat[beam].tolist()
+    flat: list[bool] = solids.numbers.beams.is_flat[beam].tolist()
     steps = tuple([(0, 2)] if is_flat else [(0, 1), (1, 2)] for is_flat in flat)
-    points = solids.corners[beam].tolist()
+    points = solids.numbers.corners[beam].tolist()
     levels = [sorted({level for step in ends for level in step}) for ends in steps]
     vertices = {
         (end, k, level): make_vertex(points[end][k][level], tolerance)
@@ -279,18 +240,18 @@ def _upright(
     vertices: dict[tuple[int, int, int], TopoDS_Vertex],
 ) -> TopoDS_Edge:
     end, k, (low, high) = place
-    cuts, tolerance = solids.cuts[low, high], solids.tolerances[beam]
+    cuts, tolerance = solids.numbers.cuts[low, high], solids.tolerances[beam]
     ends = vertices[end, k, low], vertices[end, k, high]
     spot = beam, end, k
     if cuts.is_line[spot]:
-        points = solids.corners[beam, end, k].tolist()
+        points = solids.numbers.corners[beam, end, k].tolist()
         return _line((points[low], points[high]), ends, tolerance)
     axes = gp_Ax2(
         gp_Pnt(*cuts.centers[spot].tolist()),
         gp_Dir(*cuts.normals[spot].tolist()),
         gp_Dir(*cuts.majors[spot].tolist()),
     )
-    radius = float(solids.radii[beam, k])
+    radius = float(solids.numbers.radii[beam, k])
     curve = Geom_Ellipse(gp_Elips(axes, max(float(cuts.radii[spot]), radius), radius))
     length, first = float(cuts.lengths[spot]), float(cuts.firsts[spot])
     return make_edge(curve, *ends, length, tolerance, first)
@@ -299,8 +260,8 @@ def _upright(
 def _plane_faces(solids: _Solids, beam: int, block: _Block) -> list[TopoDS_Shape]:
     """Sides and ends; edges run along the beam, from outer to inner, and upwards."""
     arcs, lines, uprights = block.arcs, block.lines, block.uprights
-    x, _, z = solids.beams.annuli.frames[beam]
-    corners, tolerance = solids.corners[beam], solids.tolerances[beam]
+    x, _, z = solids.numbers.beams.annuli.frames[beam]
+    corners, tolerance = solids.numbers.corners[beam], solids.tolerances[beam]
     rings: list[tuple[FloatArray, FloatArray, FloatArray, list[TopoDS_Shape]]] = []
     for level, normal in ((0, -z), (2, z)):
         ring = [
@@ -309,7 +270,7 @@ def _plane_faces(solids: _Solids, beam: int, block: _Block) -> list[TopoDS_Shape
         ]  # fmt: skip
         rings.append((corners[0, 0, level], normal, x, ring if level else _backwards(ring)))
     for end in (0, 1):
-        down = solids.beams.annuli.end_directions[beam, end]
+        down = solids.numbers.beams.annuli.end_directions[beam, end]
         for low, high in block.steps[end]:
             rise = corners[end, 0, high] - corners[end, 0, low]
             normal = np.cross(rise, down)
@@ -336,29 +297,25 @@ def _backwards(ring: list[TopoDS_Shape]) -> list[TopoDS_Shape]:
     return [edge.Reversed() for edge in reversed(ring)]
 
 
-def _long_face(
-    solids: _Solids, beam: int, block: _Block, k: int, *, pcurves: bool
-) -> TopoDS_Shape:
+def _long_face(solids: _Solids, beam: int, block: _Block, k: int) -> TopoDS_Shape:
     """Outer (0) or inner (1) face, with the normal out of the beam."""
-    tolerance, curvature = solids.tolerances[beam], 1 / float(solids.radii[beam, k])
+    tolerance, curvature = solids.tolerances[beam], 1 / float(solids.numbers.radii[beam, k])
     up = [block.uprights[0, k, step] for step in block.steps[0]]
     down = [block.uprights[1, k, step].Reversed() for step in reversed(block.steps[1])]
     outwards = [*up, block.arcs[k, 2], *down, block.arcs[k, 0].Reversed()]
-    x, _, z = solids.frames[beam, k].tolist()
+    x, _, z = solids.numbers.frames[beam, k].tolist()
     if curvature == 0:
         normal = -np.array(x) if k == 0 else np.array(x)
-        point = solids.corners[beam, 0, k, 0]
+        point = solids.numbers.corners[beam, 0, k, 0]
         surface = _plane(point, normal, np.array(z))
         return make_face(surface, outwards if k == 0 else _backwards(outwards), tolerance)
-    axes = gp_Ax3(gp_Pnt(*solids.centers[beam, k].tolist()), gp_Dir(*z), gp_Dir(*x))
+    axes = gp_Ax3(gp_Pnt(*solids.numbers.centers[beam, k].tolist()), gp_Dir(*z), gp_Dir(*x))
     surface = Geom_CylindricalSurface(axes, 1 / curvature)
-    # A dome's own normal, away from the axis, points to the outer side.
-    is_dome = float(dot(np.array(x), solids.beams.annuli.frames[beam, 1])) < 0
+    is_dome = bool(solids.numbers.is_dome[beam, k])
     ring = outwards if is_dome else _backwards(outwards)
     face = make_face(surface, ring, tolerance)
-    if pcurves:
-        for edge, curve in _parameter_curves(solids, beam, block, k):
-            BUILDER.UpdateEdge(edge, curve, face, tolerance)
+    for edge, curve in _parameter_curves(solids, beam, block, k):
+        BUILDER.UpdateEdge(edge, curve, face, tolerance)
     return face if is_dome == (k == 0) else face.Reversed()
 
 
@@ -366,7 +323,7 @@ def _parameter_curves(
     solids: _Solids, beam: int, block: _Block, k: int
 ) -> Iterator[tuple[TopoDS_Edge, Geom2d_Curve]]:
     """Edges of a cylinder and their curves in its parameters."""
-    heights = solids.beams.levels[beam]
+    heights = solids.numbers.beams.levels[beam]
     for level, sides in solids.sides.items():
         start, turn = float(sides.starts[beam, k]), float(sides.turns[beam, k])
         height = float(heights[0, level])
@@ -378,11 +335,14 @@ def _parameter_curves(
         for step in block.steps[end]:
             edge = block.uprights[end, k, step]
             knots, poles = (values[beam, end, k] for values in solids.parameters[step])
-            if not solids.cuts[step].is_line[beam, end, k]:
+            if not solids.numbers.cuts[step].is_line[beam, end, k]:
                 yield edge, make_spline(knots.tolist(), poles.tolist())
                 continue
-            relative = solids.corners[beam, end, k, list(step)] - solids.centers[beam, k]
-            x, y, z = solids.frames[beam, k] @ relative.T
+            relative = (
+                solids.numbers.corners[beam, end, k, list(step)]
+                - solids.numbers.centers[beam, k]
+            )
+            x, y, z = solids.numbers.frames[beam, k] @ relative.T
             points = np.stack([np.pi + np.arctan2(-y, -x), z], 1)
             yield edge, _straight(points.tolist(), float(norm(relative[1] - relative[0])))
 

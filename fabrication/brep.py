@@ -23,8 +23,7 @@ from OCP.Geom import (
     Geom_Surface,
 )
 from OCP.Geom2d import Geom2d_BSplineCurve
-from OCP.gp import gp_Ax3, gp_Dir, gp_Mat, gp_Pnt, gp_Quaternion, gp_Trsf, gp_Vec
-from OCP.TopLoc import TopLoc_Location
+from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt
 from OCP.TopoDS import (
     TopoDS_Edge,
     TopoDS_Face,
@@ -32,18 +31,14 @@ from OCP.TopoDS import (
     TopoDS_Vertex,
 )
 
-from ..kernel.arcs import ArcCircles, Arcs, arc_circles
-from ..kernel.arrays import FloatArray, IntArray, dot, norm, unit
-from ..kernel.congruent_panels import CongruentPanels
-from ..kernel.errors import InputError
-from ..kernel.panels import Panels, inner_panel_arcs, move_origins, panel_arcs, scale_panels
-from ..kernel.spheres import center_radius, signed_distance
-from ..kernel.tolerances import EPSILON
+from ..kernel.arcs import ArcCircles, Arcs, arc_circles, circle_axes
+from ..kernel.arrays import FloatArray, IntArray, norm
+from ..kernel.panels import Panels, inner_panel_arcs, panel_arcs
+from ..kernel.spheres import center_radius
+from .brep_numbers import CONFUSION, panel_tolerances, panels_in_place, surface_frames
 from .brep_parts import (
     BUILDER,
-    CONFUSION,
     arc_curves,
-    circle_axes,
     make_edge,
     make_face,
     make_solid,
@@ -51,7 +46,6 @@ from .brep_parts import (
     make_vertex,
     placement,
     quintic_poles,
-    rounded_origins,
 )
 
 
@@ -64,9 +58,7 @@ class _Layer:
     faces: list[TopoDS_Shape]
 
 
-def panel_shapes(
-    panels: Panels, scale: float = 1.0, *, pcurves: bool = True
-) -> list[TopoDS_Shape]:
+def panel_shapes(panels: Panels, scale: float = 1.0) -> list[TopoDS_Shape]:
     """
     A face per panel, or a closed solid where panels have a thickness.
 
@@ -76,9 +68,6 @@ def panel_shapes(
         P panels.
     scale : float
         Units of the shapes per model unit; OpenCASCADE's tolerances suit millimetres.
-    pcurves : bool
-        Whether edges carry curves in the parameters of spheres, which OpenCASCADE's own
-        algorithms need; a STEP file does not.
 
     Returns
     -------
@@ -93,20 +82,17 @@ def panel_shapes(
 
     Notes
     -----
-    A solid has the outer face, the concentric inner face and a plane wall per edge. The shape
-    of a panel of n edges takes 0.1 n ms with, half of it without curves in parameters.
+    A solid has the outer face, the concentric inner face and a plane wall per edge. Edges carry
+    curves in the parameters of spheres, which OpenCASCADE's algorithms need. The shape of a
+    panel of n edges takes 0.1 n ms.
     """
-    panels = scale_panels(panels, scale)
-    panels = move_origins(panels, rounded_origins(panels.origins))
-    tolerances = _tolerances(panels)
-    broken = [panels.ids[i] for i in np.flatnonzero(~np.isfinite(tolerances))]
-    if broken:
-        raise InputError(f"panel {broken[0]} ({len(broken)} in all) is not finite")
-    outer = _layer(panels, panels.spheres, panel_arcs(panels), tolerances, pcurves=pcurves)
+    panels = panels_in_place(panels, scale)
+    tolerances = panel_tolerances(panels)
+    outer = _layer(panels, panels.spheres, panel_arcs(panels), tolerances)
     shapes: Iterable[TopoDS_Shape] = outer.faces
     if panels.thickness > 0:
         arcs = inner_panel_arcs(panels)
-        inner = _layer(panels, panels.inner_spheres, arcs, tolerances, pcurves=pcurves)
+        inner = _layer(panels, panels.inner_spheres, arcs, tolerances)
         walls = _walls(panels, outer, inner, tolerances)
         bounds = panels.offsets.tolist()
         shapes = [
@@ -119,64 +105,10 @@ def panel_shapes(
     return [shape.Located(placement(x)) for shape, x in zip(shapes, places, strict=True)]
 
 
-def copy_places(panels: Panels, same: CongruentPanels, scale: float) -> list[TopLoc_Location]:
-    """
-    Where the shape of the first of identical panels stands for each of them.
-
-    Parameters
-    ----------
-    panels : Panels
-        P panels.
-    same : CongruentPanels
-        Which of them are identical, and the motions between them.
-    scale : float
-        Units of the shapes per model unit.
-
-    Returns
-    -------
-    list of TopLoc_Location
-        P places of the shape of the representative (`panel_shapes`), taken at its own origin.
-    """
-    origins = panels.origins * scale
-    # The shape of a representative is built about its rounded origin.
-    models = same.representatives[same.labels]
-    remainders = (rounded_origins(origins) - origins)[models]
-    shifts = same.translations * scale + np.einsum("pij,pj->pi", same.rotations, remainders)
-    places: list[TopLoc_Location] = []
-    for turn, shift in zip(same.rotations.tolist(), (origins + shifts).tolist(), strict=True):
-        motion = gp_Trsf()
-        motion.SetRotation(gp_Quaternion(gp_Mat(*(x for row in turn for x in row))))
-        motion.SetTranslationPart(gp_Vec(*shift))
-        places.append(TopLoc_Location(motion))
-    return places
-
-
-def _tolerances(panels: Panels) -> FloatArray:
-    """Tolerance of each panel: how far corners miss surfaces, or how large numbers round."""
-    owners, previous = panels.corner_panels, np.empty(len(panels.corners), np.int64)
-    previous[panels.next_corners] = np.arange(len(previous))
-    misses = np.zeros(len(previous))
-    for rows, corners in (
-        (panels.spheres, panels.corners),
-        (panels.inner_spheres, panels.inner_corners),
-    ):
-        misses = np.maximum(misses, np.abs(signed_distance(rows[owners], corners)))
-        for planes in (np.arange(len(previous)), previous):
-            level = dot(panels.plane_normals[planes], corners) - panels.plane_offsets[planes]
-            misses = np.maximum(misses, np.abs(level))
-    curvature = np.abs(panels.spheres[:, 0])
-    radius = np.divide(0.5, curvature, out=np.zeros_like(curvature), where=curvature > 0)
-    rounding = 8 * EPSILON * np.maximum(radius, norm(panels.origins))
-    missing = 2 * np.maximum.reduceat(misses, panels.offsets[:-1])
-    return np.maximum(CONFUSION, np.maximum(rounding, missing))
-
-
-def _layer(
-    panels: Panels, rows: FloatArray, arcs: Arcs, tolerances: FloatArray, *, pcurves: bool
-) -> _Layer:
+def _layer(panels: Panels, rows: FloatArray, arcs: Arcs, tolerances: FloatArray) -> _Layer:
     owners = panels.corner_panels
     corner_tolerances = tolerances[owners].tolist()
-    frames = _frames(rows, arcs, panels.offsets)
+    frames = surface_frames(rows, arcs, panels.offsets)
     circles = arc_circles(arcs)
     vertices = [
         make_vertex(point, tolerance)
@@ -190,9 +122,7 @@ def _layer(
         for parts in zip(curves, vertices, ends, lengths, corner_tolerances, strict=True)
     ]
     surfaces = _surfaces(rows, frames)
-    curves_2d: list[Geom2d_BSplineCurve | None] = [None] * len(edges)
-    if pcurves:
-        curves_2d = _parameter_curves(rows[owners], frames[owners], arcs, circles)
+    curves_2d = _parameter_curves(rows[owners], frames[owners], arcs, circles)
     bounds, is_inward = panels.offsets.tolist(), (rows[:, 0] > 0).tolist()
     faces: list[TopoDS_Shape] = []
     for panel, surface in enumerate(surfaces):
@@ -202,25 +132,6 @@ def _layer(
             _patch(surface, edges[ring], curves_2d[ring], tolerance, is_inward=is_inward[panel])
         )
     return _Layer(vertices, edges, faces)
-
-
-def _frames(rows: FloatArray, arcs: Arcs, offsets: IntArray) -> FloatArray:
-    """
-    Axes x, y, z (P, 3, 3) of the surfaces, in rows.
-
-    Those of a sphere point from the panel to the centre, along the first edge of the panel,
-    and across: the patch lies about u = π, v = 0. Those of a plane: along the first edge,
-    across, along N.
-    """
-    first = offsets[:-1]
-    chords = arcs.ends[first] - arcs.starts[first]
-    is_plane = rows[:, 0] == 0
-    inward = unit(rows[:, 1:4]) * np.where(rows[:, :1] < 0, -1.0, 1.0)
-    along = unit(chords - dot(chords, inward)[:, None] * inward)
-    across = np.cross(inward, along)
-    spherical = np.stack([inward, along, across], 1)
-    plane = np.stack([along, across, inward], 1)
-    return np.where(is_plane[:, None, None], plane, spherical)
 
 
 def _surfaces(rows: FloatArray, frames: FloatArray) -> list[Geom_Surface]:

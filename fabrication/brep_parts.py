@@ -25,33 +25,11 @@ from OCP.TopoDS import (
     TopoDS_Wire,
 )
 
-from ..kernel.arcs import ArcCircles, Arcs
-from ..kernel.arrays import FloatArray, norm, unit
-
-CONFUSION = 1e-7
-"""Distance below which OpenCASCADE takes points for one; meant for millimetres."""
+from ..kernel.arcs import ArcCircles, Arcs, circle_axes
+from ..kernel.arrays import FloatArray, norm
 
 BUILDER = BRep_Builder()
 """Builder of all shapes; it has no state."""
-
-
-def rounded_origins(origins: FloatArray) -> FloatArray:
-    """
-    Origins with the decimals that leave the farthest ten digits.
-
-    Parameters
-    ----------
-    origins : (n, 3) float array
-        Origins.
-
-    Returns
-    -------
-    (n, 3) float array
-        Rounded origins, short in the text of a file.
-    """
-    farthest = float(np.abs(origins).max(initial=0.0))
-    decimals = 10 - int(np.ceil(np.log10(farthest))) if farthest > 0 else 0
-    return np.round(origins, decimals)
 
 
 def placement(origin: list[float]) -> TopLoc_Location:
@@ -219,30 +197,6 @@ def arc_curves(arcs: Arcs, circles: ArcCircles) -> tuple[list[Geom_Curve], list[
             curves.append(Geom_Circle(axes, radius))
     lengths = np.where(np.isinf(circles.radii), norm(chords), circles.sweeps)
     return curves, lengths.tolist()
-
-
-def circle_axes(arcs: Arcs, circles: ArcCircles) -> tuple[FloatArray, FloatArray]:
-    """
-    Unit vectors from the centres to the starts, and along the arcs at their starts.
-
-    Parameters
-    ----------
-    arcs : Arcs
-        H arcs.
-    circles : ArcCircles
-        Their circles.
-
-    Returns
-    -------
-    x, y : (H, 3) float array
-        The vectors.
-    """
-    half = circles.sweeps[:, None] / 2
-    along = unit(arcs.ends - arcs.starts)
-    outward = np.copysign(1.0, arcs.sagittas)[:, None] * arcs.rises
-    x = np.cos(half) * outward - np.sin(half) * along
-    y = np.sin(half) * outward + np.cos(half) * along
-    return x, y
 
 
 def quintic_poles(nodes: FloatArray, steps: FloatArray) -> FloatArray:

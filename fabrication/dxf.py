@@ -115,7 +115,7 @@ def write_dxf(
     places, sheets, oversize = shelves(sizes, sheet, spacing)
     corners = _sheet_corners(sizes, sheets, oversize, sheet, spacing)
     shifts = places - boxes[:, 0] + corners[sheets, 0]
-    with _ezdxf() as library, replacing(target) as temporary:
+    with _ezdxf() as library:
         document = _new_document(library)
         space = document.modelspace()
         for low, high in corners.tolist():
@@ -125,6 +125,7 @@ def write_dxf(
         _add_labels(space, beams, contours, shifts)
         stream = io.StringIO()
         document.write(stream)
+    with replacing(target) as temporary:
         temporary.write_text(stream.getvalue(), encoding="utf-8")
     return DxfFile(target, len(corners), tuple(beams.annuli.ids[i] for i in oversize))
 

@@ -1,13 +1,31 @@
-"""Files are written whole or not at all: beside their target, then renamed over it."""
+"""
+Files are written whole or not at all: beside their target, then renamed over it.
 
+A process that is killed cannot tidy up: what it was writing stays beside the target, hidden.
+The next one that writes the same target removes it, once it is a day old: what is younger may
+still be in the making.
+"""
+
+import glob
 import os
 import shutil
 import tempfile
+import time
 from collections.abc import Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Final
 
 from ..kernel.errors import InputError
+
+_MARK: Final = "spheremesh-"
+"""In the names of temporary files and folders, which nobody else would choose."""
+
+_RANDOM: Final = "????????"
+"""What `tempfile` puts into names."""
+
+_ABANDONED: Final = 86400.0
+"""Age in seconds at which what is unfinished is nobody's."""
 
 
 def check_suffix(path: str | os.PathLike[str], *suffixes: str) -> None:
@@ -28,6 +46,28 @@ def check_suffix(path: str | os.PathLike[str], *suffixes: str) -> None:
     """
     if Path(path).suffix.lower() not in suffixes:
         raise InputError(f"cannot write {path}: end the name in {' or '.join(suffixes)}")
+
+
+def check_target(path: str | os.PathLike[str]) -> None:
+    """
+    Refuse a file that cannot be there.
+
+    Parameters
+    ----------
+    path : path
+        File to write.
+
+    Raises
+    ------
+    InputError
+        If its folder does not exist, or it is a folder itself.
+    """
+    target = Path(path)
+    folder = target.parent
+    if not folder.is_dir():
+        raise InputError(f"cannot write {target}: there is no folder {folder}; create it first")
+    if target.is_dir():
+        raise InputError(f"cannot write {target}: it is a folder; name a file in it")
 
 
 @contextmanager
@@ -51,16 +91,11 @@ def replacing(path: str | os.PathLike[str]) -> Generator[Path]:
     InputError
         If the folder does not exist or cannot be written to.
     """
+    check_target(path)
     target = Path(path)
-    folder = target.parent
-    if not folder.is_dir():
-        raise InputError(f"cannot write {target}: there is no folder {folder}; create it first")
-    if target.is_dir():
-        raise InputError(f"cannot write {target}: it is a folder; name a file in it")
+    prefix, suffix = f".{target.stem}-{_MARK}", target.suffix
     try:
-        handle, name = tempfile.mkstemp(
-            dir=folder, prefix=f".{target.stem}-", suffix=target.suffix
-        )
+        handle, name = tempfile.mkstemp(dir=target.parent, prefix=prefix, suffix=suffix)
     except OSError as error:
         raise InputError(f"cannot write {target}: {error.strerror}") from error
     os.close(handle)
@@ -73,6 +108,15 @@ def replacing(path: str | os.PathLike[str]) -> Generator[Path]:
         temporary.replace(target)
     finally:
         temporary.unlink(missing_ok=True)
+    _tidy(target.parent, prefix, suffix)
+
+
+def _tidy(folder: Path, prefix: str, suffix: str = "") -> None:
+    """Remove what killed processes have left of a target; what resists stays."""
+    with suppress(OSError):
+        for left in folder.glob(glob.escape(prefix) + _RANDOM + glob.escape(suffix)):
+            if time.time() - left.stat().st_mtime > _ABANDONED:
+                shutil.rmtree(left) if left.is_dir() else left.unlink()
 
 
 def _umask() -> int:
@@ -95,6 +139,8 @@ def replacing_all(folder: str | os.PathLike[str]) -> Generator[Path]:
     ------
     Path
         Where to write. When the block raises, nothing of it is left, nor a folder made here.
+        The files move in the order in which they were written: whoever is killed meanwhile
+        leaves whole files, and the last one is new only if all are.
 
     Raises
     ------
@@ -105,7 +151,7 @@ def replacing_all(folder: str | os.PathLike[str]) -> Generator[Path]:
     made = [path for path in (target, *target.parents) if not path.exists()]
     try:
         target.mkdir(parents=True, exist_ok=True)
-        temporary = Path(tempfile.mkdtemp(dir=target, prefix=".spheremesh-"))
+        temporary = Path(tempfile.mkdtemp(dir=target, prefix=f".{_MARK}"))
     except OSError as error:
         _remove_empty(made)
         raise InputError(
@@ -113,11 +159,13 @@ def replacing_all(folder: str | os.PathLike[str]) -> Generator[Path]:
         ) from error
     try:
         yield temporary
-        for written in sorted(temporary.iterdir()):
-            written.replace(target / written.name)
+        written = sorted(temporary.iterdir(), key=lambda path: path.stat().st_mtime_ns)
+        for each in written:
+            each.replace(target / each.name)
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
         _remove_empty(made)
+    _tidy(target, f".{_MARK}")
 
 
 def _remove_empty(folders: list[Path]) -> None:

@@ -1,7 +1,8 @@
 """
 Panels and beams as exact CAD geometry: STEP files, and objects for CadQuery.
 
-OpenCASCADE (the package OCP, which CadQuery brings) is imported when it is first needed.
+Files are written as text, without a CAD kernel. CadQuery and OpenCASCADE (the package OCP) are
+imported when objects are asked for.
 """
 
 import os
@@ -10,30 +11,29 @@ from contextlib import contextmanager
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
-from ..kernel.beams import Beams
+from ..kernel.arrays import FloatArray
+from ..kernel.beams import Beams, scale_beams
 from ..kernel.colors import BEAM, Color, mould_color, mould_name
 from ..kernel.congruent_panels import congruent_panels
 from ..kernel.errors import InputError, MissingLibraryError
 from ..kernel.panel_checks import check_writable
-from ..kernel.panels import Panels, select_panels
-from .files import check_suffix, replacing
+from ..kernel.panels import Panels
+from .beam_bodies import beam_bodies
+from .beam_numbers import beam_numbers
+from .brep_numbers import CONFUSION, copy_places, panel_tolerances, panels_in_place
+from .files import check_suffix, check_target, replacing
+from .panel_bodies import panel_bodies
+from .part21_assembly import Group, Instance, Part, StepHeader, StepSchema, assembly_lines
 from .units import millimeters_per
 
 if TYPE_CHECKING:
     import cadquery
-    from OCP.TopoDS import TopoDS_Shape
 
-    from . import xcaf
-
-StepSchema = Literal["AP214IS", "AP242DIS"]
 StepCopies = Literal["shapes", "instances"]
-
-STEP_UNITS: Final = {"mm": "MM", "cm": "CM", "m": "M", "in": "INCH", "ft": "FT"}
-"""Units that a STEP file can declare, by OpenCASCADE's names."""
 
 
 def write_step(
@@ -81,14 +81,14 @@ def write_step(
     InputError
         If there is nothing to write, two panels have one name or one is not finite, a unit,
         schema or way of copies is not known, or the folder does not exist.
-    MissingLibraryError
-        If OpenCASCADE or a library of the system that it needs is missing.
 
     Notes
     -----
     The only geometry is spheres, planes, circles and lines, and for beams cylinders and
-    ellipses. Numbers are written with 16 digits and directions with 14 decimals: an arc of
-    radius R meets its corners within ``R / 10¹⁴``.
+    ellipses. Every number is read back as it was.
+
+    Instances stand within 1e-6 mean edges of the panels that they stand for (`SAME_PANEL`):
+    0.001 mm where edges are 1 m long.
     """
     target = Path(path)
     check_suffix(target, ".step", ".stp")
@@ -97,80 +97,78 @@ def write_step(
         check_writable(panels, target)
     elif not n_beams:
         raise InputError(f"there are no panels or beams to write to {target}")
+    check_target(target)
     if schema not in get_args(StepSchema):
         raise InputError(f"unknown STEP schema {schema!r}: use AP214IS or AP242DIS")
     if copies not in get_args(StepCopies):
         raise InputError(f"copies must be shapes or instances, not {copies!r}")
-    scale = millimeters_per(units)
-    millimeters_per(step_units)
-    with _opencascade():
-        from . import xcaf
-    with replacing(target) as temporary:
+    millimeters = millimeters_per(step_units)
+    scale, confusion = millimeters_per(units) / millimeters, CONFUSION / millimeters
+    groups: list[Group] = []
+    if panels is not None and panels.n_panels:
         build = _panel_parts if copies == "shapes" else _shared_parts
-        groups: list[xcaf.Group] = []
-        if panels is not None and panels.n_panels:
-            groups.append(xcaf.Group("Panels", build(panels, scale)))
-        if beams is not None and n_beams:
-            groups.append(xcaf.Group("Beams", _beam_parts(beams, scale)))
-        system = f"spheremesh {version('spheremesh')}"
-        header = xcaf.StepHeader(schema, STEP_UNITS[step_units], title, system)
-        root = groups[0] if len(groups) == 1 else xcaf.Group("Model", groups)
-        xcaf.write_document(xcaf.assembly_document(root), temporary, header)
+        groups.append(Group("Panels", build(panels, scale, confusion)))
+    if beams is not None and n_beams:
+        groups.append(Group("Beams", _beam_parts(beams, scale, confusion)))
+    system = f"spheremesh {version('spheremesh')}"
+    header = StepHeader(schema, step_units, millimeters, confusion, title, system)
+    root = groups[0] if len(groups) == 1 else Group("Model", groups)
+    lines = assembly_lines(root, header)
+    with (
+        replacing(target) as temporary,
+        temporary.open("w", encoding="ascii", newline="\n") as file,
+    ):
+        file.writelines(lines)
     return target
 
 
-def _panel_parts(panels: Panels, scale: float) -> "list[xcaf.Part]":
+def _panel_parts(panels: Panels, scale: float, confusion: float) -> list[Part]:
     """A part per panel, where it stands."""
-    from . import brep
-
-    shapes = brep.panel_shapes(panels, scale, pcurves=False)
+    panels = panels_in_place(panels, scale)
+    tolerances = _file_tolerances(panel_tolerances(panels, confusion), confusion)
     return [
-        _placed_part(shape, name, *mould)
-        for shape, name, mould in zip(shapes, panels.ids, _moulds(panels), strict=True)
-    ]
+        Part(body, name, *mould, tolerance, (Instance(name, tuple(place)),))
+        for body, name, mould, tolerance, place in zip(
+            panel_bodies(panels), panels.ids, _moulds(panels), tolerances,
+            panels.origins.tolist(), strict=True,
+        )
+    ]  # fmt: skip
 
 
-def _shared_parts(panels: Panels, scale: float) -> "list[xcaf.Part]":
+def _shared_parts(panels: Panels, scale: float, confusion: float) -> list[Part]:
     """A part per shape, wherever it stands."""
     same = congruent_panels(panels)
-    is_model = np.zeros(panels.n_panels, bool)
-    is_model[same.representatives] = True
-    models = _panel_parts(select_panels(panels, is_model), scale)
-
-    from . import brep, xcaf
-
-    places = brep.copy_places(panels, same, scale)
+    parts = _panel_parts(panels, scale, confusion)
+    places = copy_places(panels, same, scale).tolist()
     copies = [
-        xcaf.Instance(name, place) for name, place in zip(panels.ids, places, strict=True)
+        Instance(name, tuple(place)) for name, place in zip(panels.ids, places, strict=True)
     ]
     order: list[int] = np.argsort(same.labels, kind="stable").tolist()
     ends: list[int] = np.cumsum(np.bincount(same.labels)).tolist()
+    models: list[int] = same.representatives.tolist()
     return [
-        replace(model, instances=tuple(copies[i] for i in order[start:end]))
+        replace(parts[model], instances=tuple(copies[i] for i in order[start:end]))
         for model, start, end in zip(models, [0, *ends], ends, strict=False)
     ]
 
 
-def _beam_parts(beams: Beams, scale: float) -> "list[xcaf.Part]":
+def _beam_parts(beams: Beams, scale: float, confusion: float) -> list[Part]:
     """A part per beam, where it stands."""
-    from . import beam_brep
-
-    shapes = beam_brep.beam_shapes(beams, scale, pcurves=False)
-    names = beams.annuli.ids
+    numbers = beam_numbers(scale_beams(beams, scale), confusion)
+    tolerances = _file_tolerances(numbers.tolerances, confusion)
     return [
-        _placed_part(shape, name, "Beams", BEAM)
-        for shape, name in zip(shapes, names, strict=True)
-    ]
+        Part(body, name, "Beams", BEAM, tolerance, (Instance(name, tuple(place)),))
+        for body, name, tolerance, place in zip(
+            beam_bodies(numbers), beams.annuli.ids, tolerances, numbers.places.tolist(),
+            strict=True,
+        )
+    ]  # fmt: skip
 
 
-def _placed_part(shape: "TopoDS_Shape", name: str, layer: str, color: Color) -> "xcaf.Part":
-    """A part made at its origin, and where the shape stands as its instance."""
-    from OCP.TopLoc import TopLoc_Location
-
-    from . import xcaf
-
-    place = xcaf.Instance(name, shape.Location())
-    return xcaf.Part(shape.Located(TopLoc_Location()), name, layer, color, (place,))
+def _file_tolerances(tolerances: FloatArray, confusion: float) -> list[float]:
+    """Tolerances rounded up to the next of few: parts that share one share its definition."""
+    steps = np.ceil(np.log10(tolerances / confusion))
+    return [float(f"{confusion * 10**step:.3g}") for step in steps.tolist()]
 
 
 def beams_to_cadquery(beams: Beams, units: str = "m") -> "cadquery.Assembly":
@@ -269,4 +267,6 @@ def _opencascade() -> Generator[None]:
             )
         else:
             remedy = "install the package cadquery, which brings it"
-        raise MissingLibraryError(f"STEP needs OpenCASCADE: {error}; {remedy}") from error
+        raise MissingLibraryError(
+            f"objects of CadQuery need OpenCASCADE: {error}; {remedy}"
+        ) from error

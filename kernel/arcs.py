@@ -214,6 +214,30 @@ def arc_circles(arcs: Arcs) -> ArcCircles:
     return ArcCircles(centers, axes, radii, 4 * np.arctan(np.abs(_bulges(arcs))))
 
 
+def circle_axes(arcs: Arcs, circles: ArcCircles) -> tuple[FloatArray, FloatArray]:
+    """
+    Unit vectors from the centres to the starts, and along the arcs at their starts.
+
+    Parameters
+    ----------
+    arcs : Arcs
+        H arcs.
+    circles : ArcCircles
+        Their circles.
+
+    Returns
+    -------
+    x, y : (H, 3) float array
+        The vectors.
+    """
+    half = circles.sweeps[:, None] / 2
+    along = unit(arcs.ends - arcs.starts)
+    outward = np.copysign(1.0, arcs.sagittas)[:, None] * arcs.rises
+    x = np.cos(half) * outward - np.sin(half) * along
+    y = np.sin(half) * outward + np.cos(half) * along
+    return x, y
+
+
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from .arrays import BoolArray, FloatArray, dot, norm, unit
 from .beams import Beams, inward_directions
-from .tolerances import EPSILON, STRAIGHT_RULING
+from .tolerances import STRAIGHT_RULING
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def cut_edges(
     Notes
     -----
     A plane that leans by little cuts a cylinder in an ellipse whose centre is far away, and
-    coordinates are rounded by its distance, as seen along the axis: ``8 ε R / cos²``. Where a
+    coordinates are rounded by its distance: the ends of the edge tell by how much. Where a
     straight line errs by less, it is the better edge.
     """
     low, high = levels
@@ -84,27 +84,36 @@ def cut_edges(
     first, last = corners[..., low, :], corners[..., high, :]
     flat = last - first
     flat = flat - dot(flat, axis[:, :, None])[..., None] * axis[:, :, None]
+    radius = radii[:, None, :, None]
     with np.errstate(divide="ignore", invalid="ignore"):
         bulge = dot(flat, flat) / (8 * radii[:, None])
-        rounding = 8 * EPSILON * radii[:, None] / cosine**2
-        is_line = bulge < np.maximum(STRAIGHT_RULING * beams.thickness, rounding)
         height = dot(first - centers[:, None], normal[:, :, None]) / cosine
         middles = centers[:, None] + height[..., None] * axis[:, :, None]
         reach = radii[:, None] / np.abs(cosine)
-        minor = np.cross(normal, major)
-        angles = [
-            np.arctan2(
-                dot(points - middles, minor[:, :, None]) / radii[:, None],
-                dot(points - middles, major[:, :, None]) / reach,
-            )
-            for points in (first, last)
-        ]
-    span = (angles[1] - angles[0] + np.pi) % (2 * np.pi) - np.pi
+        far = reach[..., None] * major[:, :, None]
+        near = radius * np.cross(normal, major)[:, :, None]
+        angles, misses = zip(
+            *(_ellipse_angles(points - middles, far, near) for points in (first, last)),
+            strict=True,
+        )
+        rounding = np.maximum(*misses)
+        # Where there is no ellipse at all, nothing is above it.
+        is_line = ~(bulge > np.maximum(STRAIGHT_RULING * beams.thickness, rounding))
+        span = (angles[1] - angles[0] + np.pi) % (2 * np.pi) - np.pi
     side = np.where(span < 0, -1.0, 1.0)
     lengths = np.where(is_line, norm(last - first), np.abs(span))
-    misses = np.where(is_line, bulge, rounding)
     return CutEdges(
-        is_line, misses, middles, side[..., None] * normal[:, :, None],
+        is_line, np.where(is_line, bulge, rounding), middles,
+        side[..., None] * normal[:, :, None],
         np.broadcast_to(major[:, :, None], middles.shape), reach,
         np.where(is_line, 0.0, side * angles[0] % (2 * np.pi)), lengths,
     )  # fmt: skip
+
+
+def _ellipse_angles(
+    points: FloatArray, far: FloatArray, near: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Parameters of points seen from the centre of their ellipse, and by how much it misses."""
+    angles = np.arctan2(dot(points, near) / dot(near, near), dot(points, far) / dot(far, far))
+    reached = np.cos(angles)[..., None] * far + np.sin(angles)[..., None] * near
+    return angles, norm(reached - points)

@@ -12,4 +12,4 @@ def test_killed_writers_leave_whole_files() -> None:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.endswith("always whole\n")
-    assert done.stdout.count("after 4 kills") == 2
+    assert done.stdout.count("after 4 kills") == 3

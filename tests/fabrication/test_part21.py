@@ -74,7 +74,7 @@ DEFECTS = {
     "S203": [swap(r"#(\d+)=(PLANE\('',#\d+\);)", r"#\1=\2\n#99999999=\2")],
     "S301": [swap(r"EDGE_LOOP\('',\((#\d+),(#\d+),", r"EDGE_LOOP('',(\2,\1,")],
     "S302": [
-        swap(r"FACE_BOUND\('',(#\d+),\.T\.", r"FACE_BOUND('',\1,.F."),
+        swap(r"FACE_OUTER_BOUND\('',(#\d+),\.T\.", r"FACE_OUTER_BOUND('',\1,.F."),
         swap(r"CLOSED_SHELL\('',\(#\d+,", "CLOSED_SHELL('',("),
     ],
 }  # fmt: skip

@@ -1,0 +1,82 @@
+"""Whole files or none, and what killed processes leave."""
+
+import os
+import time
+from pathlib import Path
+
+import pytest
+
+from spheremesh.fabrication.files import check_target, replacing, replacing_all
+from spheremesh.kernel.errors import InputError
+
+DAY = 86400
+
+
+def leave(path: Path, age: float) -> Path:
+    """Something of an age, as a killed process left it; a folder if it has no suffix."""
+    if path.suffix:
+        path.write_text("half")
+    else:
+        path.mkdir()
+        (path / "model.3dm").write_text("half")
+    then = time.time() - age
+    os.utime(path, (then, then))
+    return path
+
+
+def test_what_killed_processes_left_goes_after_a_day(tmp_path: Path) -> None:
+    target = tmp_path / "panels [1].step"
+    old = leave(tmp_path / ".panels [1]-spheremesh-abc_12ef.step", 2 * DAY)
+    kept = [
+        leave(tmp_path / ".panels [1]-spheremesh-abcdefgh.step", 0.5 * DAY),
+        leave(tmp_path / ".panels [1]-spheremesh-abcdefgh.stp", 2 * DAY),
+        leave(tmp_path / ".panels [1]-original.step", 2 * DAY),
+        leave(tmp_path / ".roof-spheremesh-abcdefgh.step", 2 * DAY),
+        leave(tmp_path / ".spheremesh-abcdefgh", 2 * DAY),
+    ]
+    with replacing(target) as temporary:
+        assert temporary.suffix == ".step"
+        temporary.write_text("new")
+    assert target.read_text() == "new"
+    assert not old.exists()
+    assert set(tmp_path.iterdir()) == {target, *kept}
+
+
+def test_folders_that_killed_processes_left_go_after_a_day(tmp_path: Path) -> None:
+    old = leave(tmp_path / ".spheremesh-abc_12ef", 2 * DAY)
+    kept = [
+        leave(tmp_path / ".spheremesh-abcdefgh", 0.5 * DAY),
+        leave(tmp_path / ".panels-spheremesh-abcdefgh.step", 2 * DAY),
+    ]
+    with replacing_all(tmp_path) as staging:
+        (staging / "a.txt").write_text("new")
+    assert not old.exists()
+    assert set(tmp_path.iterdir()) == {tmp_path / "a.txt", *kept}
+
+
+def test_files_of_a_folder_move_as_they_were_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A report that is written last tells, if it is new, that all files are."""
+    moved: list[str] = []
+    replace = Path.replace
+
+    def note(self: Path, target: Path) -> Path:
+        moved.append(target.name)
+        return replace(self, target)
+
+    monkeypatch.setattr(Path, "replace", note)
+    names = ["b.txt", "c.txt", "a.txt"]
+    with replacing_all(tmp_path) as staging:
+        for i, name in enumerate(names):
+            (staging / name).write_text("new")
+            os.utime(staging / name, ns=(10**9 * i, 10**9 * i))
+    assert moved == names
+
+
+def test_a_target_that_cannot_be(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="it is a folder"):
+        check_target(tmp_path)
+    with pytest.raises(InputError, match="no folder"):
+        check_target(tmp_path / "none" / "p.step")
+    check_target(tmp_path / "p.step")
