@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from ..kernel.arrays import BoolArray, FloatArray, IntArray
-from ..kernel.findings import Finding, Severity
+from ..kernel.findings import Finding, Severity, refusals
 from ..kernel.panel_checks import RejectedPanel, finite_panels
 from ..kernel.panel_facts import PanelFacts, panel_facts
 from ..kernel.panels import Panels, neighbor_ids, scale_panels
@@ -111,7 +111,7 @@ def audit_panels(
         If the units are not known.
     """
     scaled = scale_panels(panels, millimeters_per(units))
-    findings = [*_names(panels), *_refusals(rejected)]
+    findings = [*_names(panels), *refusals(rejected)]
     finite = finite_panels(panels)
     findings += [
         Finding("P002", panels.ids[i], "has numbers that are not finite")
@@ -164,11 +164,6 @@ def _names(panels: Panels) -> Iterator[Finding]:
     for name, count in Counter(panels.ids).items():
         if count > 1:
             yield Finding("P001", name, f"{count} panels have this name", float(count))
-
-
-def _refusals(rejected: Iterable[RejectedPanel]) -> Iterator[Finding]:
-    for panel in rejected:
-        yield Finding("P100", panel.id, f"cannot be made: {panel.reason}")
 
 
 def _caps(subject: PanelSubject) -> Iterator[Finding]:

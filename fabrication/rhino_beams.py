@@ -9,7 +9,8 @@ import numpy as np
 
 from ..kernel.arcs import ArcCircles, Arcs, arc_circles
 from ..kernel.arrays import FloatArray
-from ..kernel.beams import Beams, beam_lengths, node_axis_segments, section_arcs
+from ..kernel.beam_facts import beam_facts
+from ..kernel.beams import Beams, node_axis_segments, section_arcs
 from ..kernel.colors import BEAM
 from ..kernel.errors import InputError
 from ..kernel.support import node_name
@@ -133,12 +134,11 @@ def beam_text(beams: Beams, units: str) -> list[dict[str, str]]:
         the boundary), ``outer_radius`` and ``inner_radius`` (``straight`` for lines),
         ``thickness``, ``length``, ``tilt`` in degrees, ``units``.
     """
-    annuli = beams.annuli
-    radii = [arc_circles(arcs).radii.tolist() for arcs in section_arcs(beams)]
+    annuli, facts = beams.annuli, beam_facts(beams)
     rows = zip(
         annuli.ids, annuli.edge_ids.tolist(), annuli.edge_vertices.tolist(),
-        annuli.edge_faces.tolist(), *radii, beam_lengths(beams).tolist(),
-        np.degrees(annuli.tilt).tolist(), strict=True,
+        annuli.edge_faces.tolist(), facts.outer_radii.tolist(), facts.inner_radii.tolist(),
+        facts.lengths.tolist(), np.degrees(facts.tilts).tolist(), strict=True,
     )  # fmt: skip
     return [
         {

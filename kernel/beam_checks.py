@@ -1,7 +1,7 @@
 """What keeps a beam from being made: planes that lie flat, ends that lean or cross."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -10,6 +10,12 @@ from .tolerances import AXIS_LEAN, DEGENERATE
 
 if TYPE_CHECKING:
     from .annuli import Annuli
+
+NO_ANNULUS: Final = "B100"
+"""Code of a beam whose edge has no annulus."""
+
+NO_CUT: Final = "B101"
+"""Code of a beam whose annulus cannot be cut at the nodes."""
 
 
 @dataclass(frozen=True)
@@ -25,11 +31,14 @@ class RejectedBeam:
         Its edge.
     reason : str
         What is wrong, for a person.
+    code : str
+        Number of the finding that it is: `NO_ANNULUS` or `NO_CUT`.
     """
 
     id: str
     edge_id: int
     reason: str
+    code: str
 
 
 def standing_reasons(annuli: "Annuli", is_real: BoolArray, max_tilt: float) -> dict[int, str]:

@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 Severity = Literal["error", "note"]
 
@@ -32,6 +32,53 @@ class Finding:
     message: str
     size: float | None = None
     severity: Severity = "error"
+
+
+class Rejected(Protocol):
+    """A part that cannot be made: its id, why, and the code of the finding that it is."""
+
+    @property
+    def id(self) -> str: ...
+    @property
+    def reason(self) -> str: ...
+    @property
+    def code(self) -> str: ...
+
+
+def rejected_report(rejected: Iterable[Rejected]) -> list[dict[str, str]]:
+    """
+    Parts that cannot be made as plain values.
+
+    Parameters
+    ----------
+    rejected : iterable of Rejected
+        Panels or beams.
+
+    Returns
+    -------
+    list of dict
+        ``id``, ``code`` and ``reason`` of each.
+    """
+    return [{"id": part.id, "code": part.code, "reason": part.reason} for part in rejected]
+
+
+def refusals(rejected: Iterable[Rejected]) -> list[Finding]:
+    """
+    Parts that cannot be made as findings.
+
+    Parameters
+    ----------
+    rejected : iterable of Rejected
+        Panels or beams.
+
+    Returns
+    -------
+    list of Finding
+        An error for each.
+    """
+    return [
+        Finding(part.code, part.id, f"cannot be made: {part.reason}") for part in rejected
+    ]
 
 
 def findings_report(findings: Sequence[Finding]) -> dict[str, Any]:
