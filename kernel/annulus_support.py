@@ -116,7 +116,8 @@ def annulus_support(
         annuli = _with_power(annuli, float(kappa or 0), stands)
     reasons = inner_reasons(annuli, mean_edge_length(sphere_mesh.mesh)) | reasons
     rejected = tuple(
-        RejectedBeam(annuli.ids[row], row, reason, NO_ANNULUS) for row, reason in sorted(reasons.items())
+        RejectedBeam(annuli.ids[row], row, reason, NO_ANNULUS)
+        for row, reason in sorted(reasons.items())
     )
     keep = np.ones(annuli.n_annuli, bool)
     keep[list(reasons)] = False
@@ -209,7 +210,8 @@ def _panel_ids_beside(
 ) -> tuple[tuple[str | None, str | None], ...]:
     """Names of the panels beside edges."""
     names = (*panel_ids(n_faces), None)  # -1, beyond the boundary, is the last
-    return tuple((names[left], names[right]) for left, right in edge_faces.tolist())
+    sides: list[list[int]] = edge_faces.tolist()
+    return tuple((names[left], names[right]) for left, right in sides)
 
 
 def _great_spheres(

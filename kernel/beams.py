@@ -228,8 +228,7 @@ def scale_beams(beams: Beams, factor: float) -> Beams:
         thickness=beams.thickness * factor,
         node_gap=beams.node_gap * factor,
         node_radius=beams.node_radius * factor,
-        marks=marks
-        and DrillMarks(marks.centers * factor, marks.fits, marks.diameter * factor),
+        marks=marks and DrillMarks(marks.centers * factor, marks.fits, marks.diameter * factor),
     )
 
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .arrays import BoolArray, FloatArray, dot, norm
+from .arrays import FloatArray, dot, norm
 from .beams import Beams, DrillMarks, cut_corners, inward_directions
 from .errors import InputError
 from .findings import Finding
@@ -74,9 +74,7 @@ def drill_beams(
     fits = np.ones(beams.n_beams, bool)
     fits[list(reasons)] = False
     findings = tuple(
-        Finding(
-            NO_MARKS, annuli.ids[row], f"no drilling marks: {reason}", severity="note"
-        )
+        Finding(NO_MARKS, annuli.ids[row], f"no drilling marks: {reason}", severity="note")
         for row, reason in sorted(reasons.items())
     )
     return replace(beams, marks=DrillMarks(centers, fits, float(diameter))), findings

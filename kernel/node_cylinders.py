@@ -26,6 +26,8 @@ class NodeCylinders:
         Unit vectors along the node axes, to the inner side.
     heights : (N,) float array
         Heights, in model units: from the outermost to the innermost corner of the beams.
+    beam_ids : tuple of tuple of str
+        Names of the beams that meet there.
     radius : float
         Radius of all, in model units.
     """
@@ -35,6 +37,7 @@ class NodeCylinders:
     origins: FloatArray
     directions: FloatArray
     heights: FloatArray
+    beam_ids: tuple[tuple[str, ...], ...]
     radius: float
 
     @property
@@ -90,7 +93,12 @@ def node_cylinders(beams: Beams) -> NodeCylinders:
     low, high = np.full(count, np.inf), np.full(count, -np.inf)
     np.minimum.at(low, groups, levels.min(axis=1))
     np.maximum.at(high, groups, levels.max(axis=1))
+    members: list[list[str]] = [[] for _ in range(count)]
+    nodes_of_ends: list[int] = groups.tolist()
+    for end, node in enumerate(nodes_of_ends):
+        members[node].append(annuli.ids[end // 2])
     return NodeCylinders(
         tuple(node_name(vertex) for vertex in vertices.tolist()), vertices,
-        origins[first] + middles + low[:, None] * directions, directions, high - low, radius,
+        origins[first] + middles + low[:, None] * directions, directions, high - low,
+        tuple(map(tuple, members)), radius,
     )  # fmt: skip

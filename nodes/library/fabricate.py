@@ -9,6 +9,7 @@ from ...kernel import cutting
 from ...kernel.arrays import IntArray
 from ...kernel.beams import Beams
 from ...kernel.errors import name_ids
+from ...kernel.findings import rejected_report
 from ...kernel.mesh import Mesh
 from ...kernel.panels import Panels
 from ...kernel.sphere_mesh import SphereMesh
@@ -68,8 +69,8 @@ def panels(
     report : mapping
         ``edge_gap`` (max, mean, relative_to_edge, over so many edges) between the arcs of
         neighbouring panels, at the ends and in the middle, before the joint; ``thickness``
-        (min, mean, max); ``written`` and ``rejected`` (id and reason of each panel that cannot
-        be made).
+        (min, mean, max); ``written`` and ``rejected`` (id, code and reason of each panel that
+        cannot be made).
     """
     made, rejected = cutting.cut_panels(
         sphere_mesh, edges, thickness, joint_gap, labels, side, layer
@@ -83,7 +84,7 @@ def panels(
         "edge_gap": cutting.gap_report(sphere_mesh, edges, made.face_ids),
         "thickness": cutting.thickness_report(made),
         "written": made.n_panels,
-        "rejected": [{"id": panel.id, "reason": panel.reason} for panel in rejected],
+        "rejected": rejected_report(rejected),
     }
     return PanelSet(made, report)
 
@@ -219,25 +220,33 @@ def write_dxf(
 
 
 @node
-def write_schedule(panels: Panels, path: WritePath, units: Units = "m") -> str:
+def write_schedule(
+    panels: Panels | None = None,
+    path: WritePath = "schedule.csv",
+    units: Units = "m",
+    beams: Beams | None = None,
+) -> str:
     """
-    Write the list of panels with their moulds, sizes, edges and neighbours, in millimetres.
+    Write the list of panels or beams with sizes, edges and neighbours, in millimetres.
 
     Parameters
     ----------
-    panels : Panels
-        The panels.
+    panels : Panels, optional
+        The panels; these or beams are needed.
     path : path
-        Ends in .csv, .json or .xlsx (with the extra ``excel``).
+        Ends in .csv (panels or beams), or in .json or .xlsx (both; .xlsx with the extra
+        ``excel``).
     units : str
         Model units.
+    beams : Beams, optional
+        The beams.
 
     Returns
     -------
     str
         The path.
     """
-    return str(schedule.write_schedule(panels, path, units))
+    return str(schedule.write_schedule(panels, path, units, beams))
 
 
 @node
