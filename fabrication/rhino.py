@@ -144,7 +144,8 @@ def write_3dm(
         What the file holds of the panels.
     beams : Beams, optional
         Beams, written as capped extrusions of their flat contours on the layer ``Beams``, with
-        the node axes as lines on the layer ``Axes``.
+        the node axes as lines on the layer ``Axes``, node cylinders on the layer ``Nodes`` and
+        drilling marks on the layer ``Drilling``.
 
     Returns
     -------

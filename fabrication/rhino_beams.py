@@ -1,8 +1,9 @@
 """
-Beams for a Rhino model: capped extrusions of their flat contours, and the node axes as lines.
+Beams for a Rhino model: capped extrusions of their flat contours, drilling marks, and nodes.
 
 An extrusion is what a flat piece is before its ends are mitred: the contour in the middle of
-the thickness, whose ends lie on the node axes. The mitres are in the STEP file.
+the thickness, whose ends lie on the node axes. The mitres are in the STEP file. Nodes are lines
+along their axes, and cylinders where beams end square before them.
 """
 
 import numpy as np
@@ -10,18 +11,20 @@ import numpy as np
 from ..kernel.arcs import ArcCircles, Arcs, arc_circles
 from ..kernel.arrays import FloatArray
 from ..kernel.beam_facts import beam_facts
-from ..kernel.beams import Beams, node_axis_segments, section_arcs
-from ..kernel.colors import BEAM
+from ..kernel.beams import Beams, DrillMarks, node_axis_segments, section_arcs
+from ..kernel.colors import AXIS, BEAM, NODE
 from ..kernel.errors import InputError
+from ..kernel.node_cylinders import node_cylinders
 from ..kernel.support import node_name
 from .rhino_model import RhinoModel, Untyped, add_layer, object_attributes
-
-_BLACK = (0, 0, 0)
 
 
 def add_beams(model: RhinoModel, beams: Beams, units: str) -> None:
     """
-    Add beams on the layer ``Beams`` and the node axes on the layer ``Axes``.
+    Add beams and their nodes.
+
+    Beams lie on the layer ``Beams``, the node axes on the layer ``Axes``; where there are any,
+    node cylinders on the layer ``Nodes`` and drilling marks on the layer ``Drilling``.
 
     Parameters
     ----------
@@ -39,9 +42,19 @@ def add_beams(model: RhinoModel, beams: Beams, units: str) -> None:
         for key, value in text.items():
             attributes.SetUserString(key, value)
         model.file.Objects.AddExtrusion(solid, attributes)
-    place = add_layer(model, "Axes", _BLACK)
+    place = add_layer(model, "Axes", AXIS)
     for name, line in axis_lines(model.library, beams):
         model.file.Objects.AddCurve(line, object_attributes(model, name, "axis", place))
+    if beams.node_radius > 0:
+        place = add_layer(model, "Nodes", NODE)
+        for name, solid in cylinder_extrusions(model.library, beams):
+            attributes = object_attributes(model, name, "node", place)
+            model.file.Objects.AddExtrusion(solid, attributes)
+    if beams.marks is not None:
+        place = add_layer(model, "Drilling", AXIS)
+        for name, number, circle in mark_circles(model.library, beams, beams.marks):
+            attributes = object_attributes(model, name, f"mark {number}", place)
+            model.file.Objects.AddCurve(circle, attributes)
 
 
 def beam_extrusions(library: Untyped, beams: Beams) -> list[Untyped]:
@@ -182,3 +195,78 @@ def axis_lines(library: Untyped, beams: Beams) -> list[tuple[str, Untyped]]:
         (node_name(vertex), library.LineCurve(library.Point3d(*a), library.Point3d(*b)))
         for vertex, (a, b) in zip(vertices, segments.tolist(), strict=True)
     ]
+
+
+def cylinder_extrusions(library: Untyped, beams: Beams) -> list[tuple[str, Untyped]]:
+    """
+    A capped extrusion per node cylinder.
+
+    Parameters
+    ----------
+    library : module
+        The module rhino3dm.
+    beams : Beams
+        The beams.
+
+    Returns
+    -------
+    list of (str, rhino3dm.Extrusion)
+        Name and solid of each node that carries beams.
+
+    Raises
+    ------
+    InputError
+        If openNURBS finds one invalid; the message names the nodes.
+    """
+    found = node_cylinders(beams)
+    solids: list[Untyped] = []
+    for origin, direction, height in zip(
+        found.origins.tolist(), found.directions.tolist(), found.heights.tolist(), strict=True
+    ):
+        circle = library.Circle(found.radius)
+        circle.Plane = library.Plane(library.Point3d(*origin), library.Vector3d(*direction))
+        cylinder = library.Cylinder(circle, height)
+        solids.append(library.Extrusion.CreateCylinderExtrusion(cylinder, True, True))  # noqa: FBT003
+    refused = [
+        name
+        for name, solid in zip(found.ids, solids, strict=True)
+        if solid is None or not (solid.IsValid and solid.IsSolid)
+    ]
+    if refused:
+        shown = ", ".join(refused[:8])
+        raise InputError(f"openNURBS refuses {len(refused)} nodes: {shown}; use mitred beams")
+    return list(zip(found.ids, solids, strict=True))
+
+
+def mark_circles(
+    library: Untyped, beams: Beams, marks: DrillMarks
+) -> list[tuple[str, int, Untyped]]:
+    """
+    Drilling marks as circles on the sides of the beams to which their normals point.
+
+    Parameters
+    ----------
+    library : module
+        The module rhino3dm.
+    beams : Beams
+        The beams.
+    marks : DrillMarks
+        Their marks.
+
+    Returns
+    -------
+    list of (str, int, rhino3dm.ArcCurve)
+        Name of the beam, number of the hole in it, and circle.
+    """
+    annuli = beams.annuli
+    lifts = annuli.origins + annuli.frames[:, 2] * beams.thickness / 2
+    centers = marks.centers.reshape(beams.n_beams, -1, 3) + lifts[:, None]
+    result: list[tuple[str, int, Untyped]] = []
+    for i in np.flatnonzero(marks.fits).tolist():
+        x, y, _ = (library.Vector3d(*axis) for axis in annuli.frames[i].tolist())
+        for number, center in enumerate(centers[i].tolist()):
+            circle = library.Circle(marks.diameter / 2)
+            circle.Plane = library.Plane(library.Point3d(*center), x, y)
+            curve = library.ArcCurve.CreateFromCircle(circle)
+            result.append((annuli.ids[i], number, curve))
+    return result

@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING, Final, Literal, get_args
 
 import numpy as np
 
-from ..kernel.beams import Beams
-from ..kernel.colors import BEAM, Color, mould_color, mould_name
+from ..kernel.beams import Beams, node_axis_segments
+from ..kernel.colors import AXIS, BEAM, NODE, Color, mould_color, mould_name
 from ..kernel.congruent_panels import congruent_panels
 from ..kernel.errors import InputError, MissingLibraryError
+from ..kernel.node_cylinders import node_cylinders
 from ..kernel.panel_checks import check_writable
 from ..kernel.panels import Panels, select_panels
 from .files import check_suffix, replacing
@@ -73,8 +74,10 @@ def write_step(
     -------
     Path
         The file. It holds one assembly ``Panels`` with a component per panel, named by its id,
-        on the layer and in the colour of its mould. Beams lie on the layer ``Beams``, and the
-        assembly is called ``Beams``, or ``Model`` with both.
+        on the layer and in the colour of its mould. With beams, it is part of an assembly
+        ``Model``, together with an assembly ``Beams``, an assembly ``Nodes`` of the node
+        cylinders if beams have a node radius, and a part ``Axes`` of the node axes as lines:
+        each on the layer of that name.
 
     Raises
     ------
@@ -87,8 +90,9 @@ def write_step(
     Notes
     -----
     The only geometry is spheres, planes, circles and lines, and for beams cylinders and
-    ellipses. Numbers are written with 16 digits and directions with 14 decimals: an arc of
-    radius R meets its corners within ``R / 10¹⁴``.
+    ellipses. Names of curves get lost in STEP, so the axes are one part of many lines; a Rhino
+    file has them by name. Numbers are written with 16 digits and directions with 14 decimals:
+    an arc of radius R meets its corners within ``R / 10¹⁴``.
     """
     target = Path(path)
     check_suffix(target, ".step", ".stp")
@@ -107,14 +111,13 @@ def write_step(
         from . import xcaf
     with replacing(target) as temporary:
         build = _panel_parts if copies == "shapes" else _shared_parts
-        groups: list[xcaf.Group] = []
-        if panels is not None and panels.n_panels:
-            groups.append(xcaf.Group("Panels", build(panels, scale)))
+        has_panels = panels is not None and panels.n_panels > 0
+        root = xcaf.Group("Panels", build(panels, scale) if has_panels else [])
         if beams is not None and n_beams:
-            groups.append(xcaf.Group("Beams", _beam_parts(beams, scale)))
+            support = _support_parts(beams, scale)
+            root = xcaf.Group("Model", [root, *support] if has_panels else support)
         system = f"spheremesh {version('spheremesh')}"
         header = xcaf.StepHeader(schema, STEP_UNITS[step_units], title, system)
-        root = groups[0] if len(groups) == 1 else xcaf.Group("Model", groups)
         xcaf.write_document(xcaf.assembly_document(root), temporary, header)
     return target
 
@@ -161,6 +164,24 @@ def _beam_parts(beams: Beams, scale: float) -> "list[xcaf.Part]":
         _placed_part(shape, name, "Beams", BEAM)
         for shape, name in zip(shapes, names, strict=True)
     ]
+
+
+def _support_parts(beams: Beams, scale: float) -> "list[xcaf.Group | xcaf.Part]":
+    """Beams, node cylinders where they have a radius, and node axes."""
+    from . import node_brep, xcaf
+
+    groups: list[xcaf.Group | xcaf.Part] = [xcaf.Group("Beams", _beam_parts(beams, scale))]
+    cylinders = node_cylinders(beams)
+    if cylinders.n_nodes:
+        shapes = node_brep.cylinder_shapes(cylinders, scale)
+        nodes = [
+            _placed_part(shape, name, "Nodes", NODE)
+            for shape, name in zip(shapes, cylinders.ids, strict=True)
+        ]
+        groups.append(xcaf.Group("Nodes", nodes))
+    _, segments = node_axis_segments(beams)
+    axes = node_brep.axis_shape(segments, scale)
+    return [*groups, _placed_part(axes, "Axes", "Axes", AXIS)]
 
 
 def _placed_part(shape: "TopoDS_Shape", name: str, layer: str, color: Color) -> "xcaf.Part":

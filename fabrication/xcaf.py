@@ -26,6 +26,7 @@ from OCP.TDataStd import TDataStd_Name
 from OCP.TDF import TDF_Label
 from OCP.TDocStd import TDocStd_Document
 from OCP.TopAbs import TopAbs_ShapeEnum
+from OCP.TopExp import TopExp_Explorer
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shape, TopoDS_Shell
 from OCP.XCAFApp import XCAFApp_Application
@@ -171,7 +172,7 @@ class _Assembler:
         TDataStd_Name.Set_s(definition, _text(part.name))
         self._layers.SetLayer(definition, self._layer_labels[part.layer])
         self._colors.SetColor(
-            definition, self._color_labels[part.color], XCAFDoc_ColorType.XCAFDoc_ColorSurf
+            definition, self._color_labels[part.color], _color_type(part.shape)
         )
         return definition
 
@@ -180,6 +181,13 @@ class _Assembler:
     ) -> None:
         component = self.shapes.AddComponent(assembly, definition, place)
         TDataStd_Name.Set_s(component, _text(name))
+
+
+def _color_type(shape: TopoDS_Shape) -> XCAFDoc_ColorType:
+    """Of faces; or of curves, where a shape has no faces."""
+    has_faces = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_FACE).More()
+    kinds = XCAFDoc_ColorType
+    return kinds.XCAFDoc_ColorSurf if has_faces else kinds.XCAFDoc_ColorCurv
 
 
 def _definition(shape: TopoDS_Shape) -> TopoDS_Shape:

@@ -11,6 +11,12 @@ UNLABELLED: Final[Color] = (178, 182, 187)
 BEAM: Final[Color] = (112, 92, 74)
 """Brown of beams, which no mould has."""
 
+NODE: Final[Color] = (84, 88, 94)
+"""Dark grey of node cylinders."""
+
+AXIS: Final[Color] = (0, 0, 0)
+"""Black of lines."""
+
 _HUES: Final = (4.45, 1.1)  # radians: from blue over green to sand
 _LIGHTNESSES: Final = (0.50, 0.87)
 _CHROMA: Final = 0.11

@@ -116,3 +116,24 @@ def _end_margin(beams: Beams, centers: FloatArray) -> FloatArray:
     cuts = annuli.corners[:, :, 0] + beams.insets.max(axis=2)[..., None] * across
     points = centers.reshape(len(centers), 1, -1, 3)
     return dot(points - cuts[:, :, None], across[:, :, None]).min(axis=(1, 2))
+
+
+def mark_centers(beams: Beams, marks: DrillMarks) -> FloatArray:
+    """
+    Centres of drilling marks in the planes of their contours.
+
+    Parameters
+    ----------
+    beams : Beams
+        B beams.
+    marks : DrillMarks
+        Their marks.
+
+    Returns
+    -------
+    (B, 2 n, 2) float array
+        Along the edge and to the outer side, as in `kernel.contours.Contours`.
+    """
+    centers = marks.centers.reshape(beams.n_beams, -1, 3)
+    axes = beams.annuli.frames[:, None, :2]
+    return dot(centers[:, :, None], axes)

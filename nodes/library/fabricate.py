@@ -118,7 +118,7 @@ def write_step(
         A shape of its own for every panel, or one shape for identical panels: smaller files
         where panels repeat.
     beams : Beams, optional
-        The beams, with mitred ends.
+        The beams, with their node cylinders if they have any, and the node axes.
 
     Returns
     -------
@@ -155,7 +155,8 @@ def write_3dm(
     version : int
         Rhino version of the file.
     beams : Beams, optional
-        The beams, as extrusions of their flat contours, and the node axes.
+        The beams, as extrusions of their flat contours, with their drilling marks, node
+        cylinders and node axes.
     reference : Mesh or SphereMesh, optional
         The design mesh, for a layer of its own.
     shape : {"panels", "blocks", "shell"}
@@ -210,7 +211,8 @@ def write_dxf(
     Returns
     -------
     str
-        The path. Layers: CUT, ENGRAVE (ids, nodes, bevels of the ends in degrees) and SHEET.
+        The path. Layers: CUT, ENGRAVE (ids, nodes, bevels of the ends in degrees), DRILL
+        (drilling marks) and SHEET.
     """
     file = dxf.write_dxf(beams, path, units, sheet, spacing)
     if file.oversize:
