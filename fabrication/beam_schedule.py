@@ -84,8 +84,8 @@ def _holes(beams: Beams) -> list[int]:
     """Number of drilling marks of each beam."""
     if beams.marks is None:
         return [0] * beams.n_beams
-    _, ends, count, _ = beams.marks.centers.shape
-    return [ends * count if fits else 0 for fits in beams.marks.fits.tolist()]
+    count = beams.marks.holes.shape[1]
+    return [count if fits else 0 for fits in beams.marks.fits.tolist()]
 
 
 def node_rows(beams: Beams, units: str) -> list[dict[str, Any]]:

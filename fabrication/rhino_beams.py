@@ -260,7 +260,7 @@ def mark_circles(
     """
     annuli = beams.annuli
     lifts = annuli.origins + annuli.frames[:, 2] * beams.thickness / 2
-    centers = marks.centers.reshape(beams.n_beams, -1, 3) + lifts[:, None]
+    centers = marks.holes + lifts[:, None]
     result: list[tuple[str, int, Untyped]] = []
     for i in np.flatnonzero(marks.fits).tolist():
         x, y, _ = (library.Vector3d(*axis) for axis in annuli.frames[i].tolist())

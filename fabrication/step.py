@@ -111,11 +111,11 @@ def write_step(
         from . import xcaf
     with replacing(target) as temporary:
         build = _panel_parts if copies == "shapes" else _shared_parts
-        has_panels = panels is not None and panels.n_panels > 0
-        root = xcaf.Group("Panels", build(panels, scale) if has_panels else [])
+        parts = build(panels, scale) if panels is not None and panels.n_panels else []
+        root = xcaf.Group("Panels", parts)
         if beams is not None and n_beams:
             support = _support_parts(beams, scale)
-            root = xcaf.Group("Model", [root, *support] if has_panels else support)
+            root = xcaf.Group("Model", [root, *support] if parts else support)
         system = f"spheremesh {version('spheremesh')}"
         header = xcaf.StepHeader(schema, STEP_UNITS[step_units], title, system)
         xcaf.write_document(xcaf.assembly_document(root), temporary, header)

@@ -38,6 +38,19 @@ class DrillMarks:
     fits: BoolArray
     diameter: float
 
+    @property
+    def holes(self) -> FloatArray:
+        """
+        Centres of all holes of each beam.
+
+        Returns
+        -------
+        (B, 2 n, 3) float array
+            Those of the first end first; local.
+        """
+        n_beams, n_ends, count, _ = self.centers.shape
+        return self.centers.reshape(n_beams, n_ends * count, 3)
+
 
 @dataclass(frozen=True)
 class Beams:

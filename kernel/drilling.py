@@ -62,22 +62,22 @@ def drill_beams(
     shares = (np.arange(count)[:, None] + 0.5) / count
     outer, inner = bounds[:, :, 0], bounds[:, :, 1]
     centers = outer + shares * (inner - outer)
+    marks = DrillMarks(centers, np.ones(beams.n_beams, bool), float(diameter))
     reasons: dict[int, str] = {}
     for is_bad, reason in (
         (~exists, "their line misses an arc of the beam"),
-        (_pitch(centers) < diameter, "they touch each other"),
-        (_arc_margin(beams, centers) < diameter / 2, "they break through an arc"),
-        (_end_margin(beams, centers) < diameter / 2, "the beam is too short for them"),
+        (_pitch(marks.holes) < diameter, "they touch each other"),
+        (_arc_margin(beams, marks.holes) < diameter / 2, "they break through an arc"),
+        (_end_margin(beams, marks.holes) < diameter / 2, "the beam is too short for them"),
     ):
         for row in np.flatnonzero(is_bad).tolist():
             reasons.setdefault(row, reason)
-    fits = np.ones(beams.n_beams, bool)
-    fits[list(reasons)] = False
+    marks.fits[list(reasons)] = False
     findings = tuple(
         Finding(NO_MARKS, annuli.ids[row], f"no drilling marks: {reason}", severity="note")
         for row, reason in sorted(reasons.items())
     )
-    return replace(beams, marks=DrillMarks(centers, fits, float(diameter))), findings
+    return replace(beams, marks=marks), findings
 
 
 def _check_options(count: int, diameter: float, inset: float) -> None:
@@ -92,30 +92,28 @@ def _check_options(count: int, diameter: float, inset: float) -> None:
         )
 
 
-def _pitch(centers: FloatArray) -> FloatArray:
+def _pitch(holes: FloatArray) -> FloatArray:
     """Least distance (B,) of two centres of a beam."""
-    points = centers.reshape(len(centers), -1, 3)
-    apart = norm(points[:, :, None] - points[:, None])
-    own = np.arange(points.shape[1])
+    apart = norm(holes[:, :, None] - holes[:, None])
+    own = np.arange(holes.shape[1])
     apart[:, own, own] = np.inf
     return apart.min(axis=(1, 2))
 
 
-def _arc_margin(beams: Beams, centers: FloatArray) -> FloatArray:
+def _arc_margin(beams: Beams, holes: FloatArray) -> FloatArray:
     """Least distance (B,) of the centres from the arcs; negative outside of the beam."""
     annuli = beams.annuli
-    outer = -signed_distance(annuli.outer[:, None, None], centers)
-    inner = signed_distance(annuli.inner[:, None, None], centers)
-    return np.minimum(outer, inner).min(axis=(1, 2))
+    outer = -signed_distance(annuli.outer[:, None], holes)
+    inner = signed_distance(annuli.inner[:, None], holes)
+    return np.minimum(outer, inner).min(axis=1)
 
 
-def _end_margin(beams: Beams, centers: FloatArray) -> FloatArray:
+def _end_margin(beams: Beams, holes: FloatArray) -> FloatArray:
     """Least distance (B,) of the centres from the cuts of the ends, at any level."""
     annuli = beams.annuli
     across = inward_directions(annuli)
     cuts = annuli.corners[:, :, 0] + beams.insets.max(axis=2)[..., None] * across
-    points = centers.reshape(len(centers), 1, -1, 3)
-    return dot(points - cuts[:, :, None], across[:, :, None]).min(axis=(1, 2))
+    return dot(holes[:, None] - cuts[:, :, None], across[:, :, None]).min(axis=(1, 2))
 
 
 def mark_centers(beams: Beams, marks: DrillMarks) -> FloatArray:
@@ -134,6 +132,4 @@ def mark_centers(beams: Beams, marks: DrillMarks) -> FloatArray:
     (B, 2 n, 2) float array
         Along the edge and to the outer side, as in `kernel.contours.Contours`.
     """
-    centers = marks.centers.reshape(beams.n_beams, -1, 3)
-    axes = beams.annuli.frames[:, None, :2]
-    return dot(centers[:, :, None], axes)
+    return dot(marks.holes[:, :, None], beams.annuli.frames[:, None, :2])
