@@ -9,18 +9,21 @@ from typing import Any
 import numpy as np
 import pytest
 import rhino3dm
+from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
+from OCP.GeomAbs import GeomAbs_SurfaceType
 from OCP.GProp import GProp_GProps
 from OCP.STEPControl import STEPControl_Reader
 from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS_Shape
+from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication import xcaf
 from spheremesh.fabrication.beam_brep import beam_shapes
+from spheremesh.fabrication.part21 import check_part21
 from spheremesh.fabrication.rhino import write_3dm
 from spheremesh.fabrication.step import beams_to_cadquery, write_step
 from spheremesh.kernel import beam_cutting
@@ -28,12 +31,14 @@ from spheremesh.kernel.annuli import Annuli
 from spheremesh.kernel.annulus_support import annulus_support
 from spheremesh.kernel.arrays import FloatArray, dot, norm
 from spheremesh.kernel.beam_cutting import cut_beams
-from spheremesh.kernel.beams import Beams, beam_volumes, select_beams
+from spheremesh.kernel.beams import Beams, beam_volumes, node_axis_segments, select_beams
 from spheremesh.kernel.central import central_spheres
 from spheremesh.kernel.cutting import cut_panels
+from spheremesh.kernel.drilling import drill_beams
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.fit import face_planes
 from spheremesh.kernel.mesh import mean_edge_length
+from spheremesh.kernel.node_cylinders import node_cylinders
 from spheremesh.kernel.surfaces import roof_net, torus_net, vase_net
 
 
@@ -129,10 +134,13 @@ def read_solids(path: Path) -> list[TopoDS_Shape]:
 def test_round_trip(tmp_path: Path, case: str) -> None:
     beams = CASES[case]
     path = write_step(None, tmp_path / "b.step", beams=beams)
-    solids = read_solids(path)
-    assert len(solids) == beams.n_beams
+    solids, nodes = read_solids(path), node_cylinders(beams)
+    assert len(solids) == beams.n_beams + nodes.n_nodes
     assert all(BRepCheck_Analyzer(solid).IsValid() for solid in solids)
-    np.testing.assert_allclose(measure(solids), 1e9 * beam_volumes(beams), rtol=1e-8)
+    cylinders = np.pi * nodes.radius**2 * nodes.heights
+    volumes = np.concatenate([beam_volumes(beams), cylinders])
+    np.testing.assert_allclose(measure(solids), 1e9 * volumes, rtol=1e-8)
+    assert check_part21(path) == ()
     text = path.read_text()
     for name in beams.annuli.ids:
         assert f"PRODUCT('{name}'" in text
@@ -145,7 +153,63 @@ def test_panels_and_beams_in_one_file(tmp_path: Path) -> None:
     path = write_step(panels, tmp_path / "m.step", beams=beams)
     assert len(read_solids(path)) == panels.n_panels + beams.n_beams
     names = set(re.findall(r"PRODUCT\('(\w+)'", path.read_text()))
-    assert names == {"Model", "Panels", "Beams", *panels.ids, *beams.annuli.ids}
+    assert names == {"Model", "Panels", "Beams", "Axes", *panels.ids, *beams.annuli.ids}
+
+
+def read_shapes(path: Path, kind: TopAbs_ShapeEnum) -> list[TopoDS_Shape]:
+    """Shapes of a kind that are no part of a face."""
+    reader = STEPControl_Reader()
+    with xcaf._quiet():
+        reader.ReadFile(str(path))
+        reader.TransferRoots()
+    found = TopExp_Explorer(reader.OneShape(), kind, TopAbs_ShapeEnum.TopAbs_FACE)
+    shapes: list[TopoDS_Shape] = []
+    while found.More():
+        shapes.append(found.Current())
+        found.Next()
+    return shapes
+
+
+@pytest.mark.parametrize("case", ["mitred", "square"])
+def test_node_axes_in_step(tmp_path: Path, case: str) -> None:
+    beams = CASES[case]
+    path = write_step(None, tmp_path / "a.step", beams=beams)
+    edges = read_shapes(path, TopAbs_ShapeEnum.TopAbs_EDGE)
+    _, segments = node_axis_segments(beams)
+    assert len(edges) == len(segments)
+    for edge, (start, end) in zip(edges, 1000 * segments, strict=True):
+        curve = BRepAdaptor_Curve(TopoDS.Edge_s(edge))
+        ends = [curve.Value(t) for t in (curve.FirstParameter(), curve.LastParameter())]
+        found = np.array([[p.X(), p.Y(), p.Z()] for p in ends])
+        assert np.abs(found - [start, end]).max() < 1e-8
+    assert "PRESENTATION_LAYER_ASSIGNMENT('Axes'" in path.read_text()
+
+
+def test_node_cylinders_in_step_stand_on_their_axes(tmp_path: Path) -> None:
+    beams = CASES["square"]
+    path = write_step(None, tmp_path / "n.step", beams=beams)
+    nodes = node_cylinders(beams)
+    cylinders = read_solids(path)[beams.n_beams :]
+    for i, solid in enumerate(cylinders):
+        faces = TopExp_Explorer(solid, TopAbs_ShapeEnum.TopAbs_FACE)
+        surfaces: list[BRepAdaptor_Surface] = []
+        while faces.More():
+            surfaces.append(BRepAdaptor_Surface(TopoDS.Face_s(faces.Current())))
+            faces.Next()
+        round_ = next(
+            s for s in surfaces if s.GetType() == GeomAbs_SurfaceType.GeomAbs_Cylinder
+        )
+        assert round_.Cylinder().Radius() == pytest.approx(1000 * nodes.radius, rel=1e-12)
+        axis = round_.Cylinder().Axis()
+        along, place = axis.Direction(), axis.Location()
+        direction = np.array([along.X(), along.Y(), along.Z()])
+        off = np.array([place.X(), place.Y(), place.Z()]) - 1000 * nodes.origins[i]
+        assert norm(np.cross(direction, nodes.directions[i])) < 1e-12
+        assert norm(np.cross(off, direction)) < 1e-8
+    text = path.read_text()
+    assert "PRESENTATION_LAYER_ASSIGNMENT('Nodes'" in text
+    for name in nodes.ids:
+        assert f"PRODUCT('{name}'" in text
 
 
 def test_panels_without_any_beam(tmp_path: Path) -> None:
@@ -240,6 +304,7 @@ def test_axes_layers_and_text_in_rhino(tmp_path: Path) -> None:
         assert norm(start - TORUS.mesh.vertices[vertex]) < 1e-12
         length = norm(point(item.Geometry.PointAtEnd) - start)
         assert abs(length - beams.annuli.depth) < 1e-12
+    assert on_layer(model, "Nodes") == on_layer(model, "Drilling") == []
     item = on_layer(model, "Beams")[4]
     text = dict(item.Attributes.GetUserStrings())
     assert text["id"] == beams.annuli.ids[4] == item.Attributes.Name
@@ -250,3 +315,41 @@ def test_axes_layers_and_text_in_rhino(tmp_path: Path) -> None:
     )
     ids = {str(item.Attributes.Id) for item in again.Objects}
     assert ids <= {str(item.Attributes.Id) for item in model.Objects}
+
+
+def test_node_cylinders_in_rhino(tmp_path: Path) -> None:
+    beams = CASES["square"]
+    nodes = node_cylinders(beams)
+    model = rhino3dm.File3dm.Read(str(write_3dm(None, tmp_path / "n.3dm", beams=beams).path))
+    objects = on_layer(model, "Nodes")
+    assert [item.Attributes.Name for item in objects] == list(nodes.ids)
+    assert len({str(item.Attributes.Id) for item in model.Objects}) == len(model.Objects)
+    for i, item in enumerate(objects):
+        solid = item.Geometry
+        assert solid.IsValid
+        assert solid.IsSolid
+        ends = np.array([point(solid.PathStart), point(solid.PathEnd)])
+        tip = nodes.origins[i] + nodes.heights[i] * nodes.directions[i]
+        assert np.abs(np.sort(ends, 0) - np.sort([nodes.origins[i], tip], 0)).max() < 1e-12
+        rim = point(solid.Profile3d(0, 0.0).PointAtStart)
+        assert norm(rim - ends[0]) == pytest.approx(nodes.radius, rel=1e-9)
+
+
+def test_drilling_marks_in_rhino(tmp_path: Path) -> None:
+    size = mean_edge_length(TORUS.mesh)
+    beams, refused = drill_beams(CASES["mitred"], 2, 0.04 * size, 0.35 * size)
+    assert 0 < len(refused) < beams.n_beams
+    marks = beams.marks
+    assert marks is not None
+    model = rhino3dm.File3dm.Read(str(write_3dm(None, tmp_path / "d.3dm", beams=beams).path))
+    objects = on_layer(model, "Drilling")
+    expected = [name for name, fits in zip(beams.annuli.ids, marks.fits, strict=True) if fits]
+    assert [item.Attributes.Name for item in objects] == [n for n in expected for _ in range(4)]
+    lifts = beams.annuli.origins + beams.annuli.frames[:, 2] * beams.thickness / 2
+    centers = (marks.holes + lifts[:, None])[marks.fits].reshape(-1, 3)
+    for item, center in zip(objects, centers, strict=True):
+        circle = item.Geometry
+        assert circle.IsCompleteCircle
+        assert circle.Radius == pytest.approx(0.02 * size, rel=1e-12)
+        assert norm(point(circle.Arc.Center) - center) < 1e-12
+        assert circle.AngleDegrees == pytest.approx(360)
