@@ -249,7 +249,46 @@ def test_support_writes_beams_and_says_how_straight_they_are(
     assert "PRODUCT('B0000'" in text
     assert "PRODUCT('P0000'" in text
     steps = json.loads((out / "graph.json").read_text(encoding="utf-8"))["steps"]
-    assert {"angles", "optimum", "nodes", "annuli", "beams", "drawing"} <= set(steps)
+    assert {"angles", "optimum", "nodes", "annuli", "beams", "drawing", "beam_table"} <= set(
+        steps
+    )
+    rows = (out / "beams.csv").read_text(encoding="utf-8-sig").splitlines()
+    assert len(rows) == report["beams"]["written"] + 1
+    listed = json.loads((out / "schedule.json").read_text(encoding="utf-8"))
+    assert len(listed["beams"]) == report["beams"]["written"]
+    assert len(listed["panels"]) == report["panels"]["written"]
+
+
+def test_rejected_beams_are_told_with_their_codes(vase: Path, tmp_path: Path) -> None:
+    """Nodes as large as the shortest beams: what cannot be cut is listed, and nothing lost."""
+    out = tmp_path / "out"
+    options = ("--support", "--depth", "0.1", "--node-radius", "0.26", "--strict")
+    result = panel(vase, out, *options)
+    assert result.exit_code == 5, result.stderr
+    report = json.loads((out / "report.json").read_text(encoding="utf-8"))
+    rejected = report["beams"]["rejected"]
+    assert rejected
+    assert {part["code"] for part in rejected} <= {"B100", "B101"}
+    for part in rejected:
+        assert f"rejected {part['code']}: {part['id']}: {part['reason']}" in result.stderr
+    assert sum(line.startswith("error B") for line in result.stderr.splitlines()) == 0
+    found = {error["id"] for error in report["audit"]["errors"]}
+    assert found == {part["id"] for part in rejected}
+    written = json.loads((out / "schedule.json").read_text(encoding="utf-8"))
+    ids = {row["id"] for row in written["beams"]}
+    assert len(ids) == report["beams"]["written"]
+    assert not ids & found
+    assert {name for row in written["nodes"] for name in row["beams"]} == ids
+    text = (out / "panels.step").read_text(encoding="utf-8")
+    assert all(f"PRODUCT('{row['id']}'" in text for row in written["nodes"])
+
+
+def test_no_beam_at_all_is_an_error_that_says_why(vase: Path, tmp_path: Path) -> None:
+    result = panel(vase, tmp_path / "out", "--support", "--node-radius", "5")
+    assert result.exit_code == 3
+    assert "beams can be made" in result.stderr
+    assert "make the beams thinner or the node smaller" in result.stderr
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_tolerance_brings_vertices_onto_common_spheres(tmp_path: Path) -> None:
