@@ -30,7 +30,7 @@ for target in (0.0, 30.0, 60.0):
 cut = panels(facade, edges="intersection", thickness=0.01)
 print(f"{cut.report['written']} panels; {render(cut.panels, 'facade.png')}")
 
-# The frame: flat beams in the planes of the arcs, square cut before round nodes, two bolts an end.
+# The frame: flat beams in the planes of the arcs, cut square before round nodes, and bolted.
 annuli = annulus_support(facade, depth=0.06)
 frame = beams(annuli.annuli, thickness=0.008, node_radius=0.012, node_gap=0.001)
 bolted = drilling_marks(frame.beams, count=2, diameter=0.006, inset=0.012)
