@@ -83,6 +83,18 @@ def test_tilts_twists_and_mismatches_are_notes() -> None:
         np.testing.assert_allclose(list(found.values()), sizes[worse], rtol=1e-9)  # pyright: ignore
 
 
+def test_the_sharpest_bevel_counts() -> None:
+    """On the rim of a roof, one side of a beam is cut square or beyond."""
+    roof = face_planes(roof_net(6, 5, 40.0))
+    beams = cut_beams(annulus_support(roof, depth=0.5).annuli, 0.05)[0]
+    bevels = np.degrees(beam_facts(beams).bevels)
+    sharpest = bevels.min(axis=(1, 2))
+    assert (bevels.max(axis=(1, 2)) > 80).sum() > 10
+    found = of("B206", audit_beams(beams, limits=AuditLimits(corner_deg=50)))
+    assert list(found) == [beams.annuli.ids[i] for i in np.flatnonzero(sharpest < 50)]
+    np.testing.assert_allclose(list(found.values()), sharpest[sharpest < 50], rtol=1e-9)  # pyright: ignore
+
+
 def test_shallow_short_sharp_and_long_beams_are_notes() -> None:
     beams = cut_beams(ANNULI, 0.3, 0.01)[0]
     findings = audit_beams(beams)
@@ -137,3 +149,19 @@ def test_no_beams_are_audited_too() -> None:
     report = findings_report(findings)
     assert json.loads(json.dumps(report, allow_nan=False)) == report
     assert audit_beams(select_beams(sound(), np.zeros(192, bool))) == ()
+
+
+def test_the_worse_end_counts() -> None:
+    beams, turn = sound(), np.radians(2)
+    axes, normal = ANNULI.node_axes.copy(), ANNULI.frames[3, 2]
+    axes[3, 1] = np.cos(turn) * axes[3, 1] + np.sin(turn) * normal
+    (found,) = audit_beams(replace(beams, annuli=replace(ANNULI, node_axes=axes)))
+    assert (found.code, found.id) == ("B202", "B0003")
+    assert found.size == pytest.approx(2, rel=1e-9)
+    corners = ANNULI.corners.copy()
+    corners[5, 0] += 0.02 * ANNULI.frames[5, 2]
+    apart = audit_beams(replace(beams, annuli=replace(ANNULI, corners=corners)))
+    sizes = of("B203", apart)
+    # Of four ends at a node, one is 20 mm off: 15 mm from their mean, the others 5.
+    assert sizes["B0005"] == pytest.approx(15, rel=1e-9)
+    assert all(size == pytest.approx(5) for name, size in sizes.items() if name != "B0005")
