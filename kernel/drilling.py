@@ -94,10 +94,8 @@ def _check_options(count: int, diameter: float, inset: float) -> None:
 
 def _pitch(holes: FloatArray) -> FloatArray:
     """Least distance (B,) of two centres of a beam."""
-    apart = norm(holes[:, :, None] - holes[:, None])
-    own = np.arange(holes.shape[1])
-    apart[:, own, own] = np.inf
-    return apart.min(axis=(1, 2))
+    itself = np.diag(np.full(holes.shape[1], np.inf))
+    return (norm(holes[:, :, None] - holes[:, None]) + itself).min(axis=(1, 2))
 
 
 def _arc_margin(beams: Beams, holes: FloatArray) -> FloatArray:

@@ -221,14 +221,18 @@ def test_panels_without_any_beam(tmp_path: Path) -> None:
     assert on_layer(model, "Beams") == on_layer(model, "Axes") == []
 
 
-def test_far_from_the_origin_no_digit_is_lost(tmp_path: Path) -> None:
+@pytest.mark.parametrize("ends", [{"node_gap": 0.02}, {"node_radius": 0.1}])
+def test_far_from_the_origin_no_digit_is_lost(tmp_path: Path, ends: dict[str, float]) -> None:
     mesh = TORUS.mesh
     moved = Mesh(mesh.vertices + np.array([5e5, -3e5, 2e5]), mesh.faces)
-    beams = make(SphereMesh.from_local(moved, TORUS.local_spheres), node_gap=0.02)
+    beams = make(SphereMesh.from_local(moved, TORUS.local_spheres), **ends)
     solids = read_solids(write_step(None, tmp_path / "far.step", beams=beams))
     local = [solid.Located(TopLoc_Location()) for solid in solids]
     assert all(BRepCheck_Analyzer(solid).IsValid() for solid in local)
-    np.testing.assert_allclose(measure(local), 1e9 * beam_volumes(beams), rtol=1e-8)
+    nodes = node_cylinders(beams)
+    cylinders = np.pi * nodes.radius**2 * nodes.heights
+    volumes = np.concatenate([beam_volumes(beams), cylinders])
+    np.testing.assert_allclose(measure(local), 1e9 * volumes, rtol=1e-8)
 
 
 def test_objects_of_cadquery() -> None:
