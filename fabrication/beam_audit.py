@@ -16,6 +16,7 @@ from ..kernel.beam_facts import BeamFacts, beam_facts
 from ..kernel.beams import Beams, scale_beams
 from ..kernel.drilling import NO_MARKS
 from ..kernel.findings import Finding, findings_where, refusals, rejected_report, repeated_names
+from ..kernel.tolerances import OVERLAP
 from .audit import AuditLimits
 from .units import millimeters_per
 
@@ -67,10 +68,11 @@ def audit_beams(
     -------
     tuple of Finding
         By code, then in the order of the beams. Errors: B001 name used twice, B002 numbers that
-        are not finite, B100 edge without an annulus, B101 cannot be cut at a node. Notes: B201
-        tilted against the surface, B202 twisted against a node axis, B203 ends at a node lie
-        apart, B204 shallow, B205 short, B206 sharp bevel, B207 too long a piece, B208 drilling
-        marks do not fit. Of each code a beam has one finding, the worst.
+        are not finite, B100 edge without an annulus, B101 cannot be cut at a node, B102 runs
+        into a neighbour. Notes: B201 tilted against the surface, B202 twisted against a node
+        axis, B203 ends at a node lie apart, B204 shallow, B205 short, B206 sharp bevel, B207
+        too long a piece, B208 drilling marks do not fit. Of each code a beam has one finding,
+        the worst.
 
     Raises
     ------
@@ -106,9 +108,17 @@ def check_beams(subject: BeamSubject) -> list[Finding]:
     Returns
     -------
     list of Finding
-        The findings B201 to B208, see `audit_beams`.
+        The findings B102 to B208, see `audit_beams`.
     """
     return [finding for check in BEAM_CHECKS for finding in check(subject)]
+
+
+def _overlaps(subject: BeamSubject) -> list[Finding]:
+    depths = -subject.facts.clearances.min(axis=1)
+    is_found = depths > OVERLAP * subject.beams.thickness
+    message = "runs into a neighbour by {0:.3g} mm: larger nodes or thinner beams"
+    ids = subject.beams.annuli.ids
+    return findings_where(ids, "B102", depths, is_found, message, "error")
 
 
 def _tilts(subject: BeamSubject) -> list[Finding]:
@@ -166,7 +176,7 @@ def _marks(subject: BeamSubject) -> list[Finding]:
 
 
 BEAM_CHECKS: Final[tuple[BeamCheck, ...]] = (
-    _tilts, _twists, _mismatches, _depths, _lengths, _bevels, _large_pieces, _marks,
+    _overlaps, _tilts, _twists, _mismatches, _depths, _lengths, _bevels, _large_pieces, _marks,
 )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from .annuli import axis_angles, corner_mismatch, end_depths
 from .arcs import Arcs, arc_circles, arc_lengths, arc_reaches
 from .arrays import FloatArray, norm
+from .beam_cutting import mitre_angles
 from .beams import Beams, beam_lengths, beam_volumes, level_arcs, section_arcs
 from .contours import beam_contours
 
@@ -46,6 +47,10 @@ class BeamFacts:
         Angles between the planes and the node axes at both ends, in radians.
     mismatches : (B, 2) float array
         How far the corners of each end are from the mean of those at the node.
+    clearances : (B, 2) float array
+        Gaps to neighbours that are cut alike: twice the distances of the ends from the half
+        planes through the node axes that bisect the angles to their neighbours. Negative where
+        beams run into each other.
     ends : (B, 2, 3) float array
         Outer corners on the node axes.
     """
@@ -65,6 +70,7 @@ class BeamFacts:
     tilts: FloatArray
     twists: FloatArray
     mismatches: FloatArray
+    clearances: FloatArray
     ends: FloatArray
 
 
@@ -100,8 +106,17 @@ def beam_facts(beams: Beams) -> BeamFacts:
         tilts=annuli.tilt,
         twists=axis_angles(annuli),
         mismatches=corner_mismatch(annuli),
+        clearances=_clearances(beams),
         ends=annuli.corners[:, :, 0] + annuli.origins[:, None],
     )
+
+
+def _clearances(beams: Beams) -> FloatArray:
+    """Twice the distances (B, 2) from the bisecting half planes, the smaller of both sides."""
+    half_angles = mitre_angles(beams.annuli)
+    reach = beams.insets[..., ::2] * np.sin(half_angles)
+    side = beams.thickness / 2 * np.cos(half_angles)
+    return 2 * (reach - side).min(axis=2)
 
 
 def _rectangle_sizes(beams: Beams) -> FloatArray:

@@ -203,3 +203,6 @@ FOLD_STEP: Final = 1e-3
 
 LATTICE_TIE: Final = 1e-7
 """A vertex this close to a line of a map, in steps of the map, is moved off it."""
+
+OVERLAP: Final = 1e-6
+"""Beams that run into each other by less, in thicknesses, touch (rounding of mitres)."""

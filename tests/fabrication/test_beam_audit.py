@@ -165,3 +165,17 @@ def test_the_worse_end_counts() -> None:
     # Of four ends at a node, one is 20 mm off: 15 mm from their mean, the others 5.
     assert sizes["B0005"] == pytest.approx(15, rel=1e-9)
     assert all(size == pytest.approx(5) for name, size in sizes.items() if name != "B0005")
+
+
+def test_beams_that_run_into_each_other_are_errors() -> None:
+    """Four beams of 50 mm thickness a node, some at less than right angles."""
+    assert audit_beams(cut_beams(ANNULI, 0.05, node_radius=0.05)[0]) == ()
+    some = audit_beams(cut_beams(ANNULI, 0.05, node_radius=0.026)[0])
+    assert 0 < len(some) < len(ANNULI.ids)
+    beams = cut_beams(ANNULI, 0.05, node_radius=0.015)[0]
+    findings = audit_beams(beams)
+    assert {(f.code, f.severity) for f in findings} == {("B102", "error")}
+    assert {f.id for f in findings} == set(ANNULI.ids)
+    expected = -1000 * beam_facts(beams).clearances.min(axis=1)
+    np.testing.assert_allclose([f.size for f in findings], expected, rtol=1e-9)  # pyright: ignore
+    assert audit_beams(cut_beams(ANNULI, 0.05)[0]) == ()

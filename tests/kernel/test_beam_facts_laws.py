@@ -18,6 +18,7 @@ from spheremesh.kernel.beams import (
     beam_volumes,
     cut_corners,
     insets_at,
+    inward_directions,
     scale_beams,
     select_beams,
     side_arcs,
@@ -25,7 +26,7 @@ from spheremesh.kernel.beams import (
 from spheremesh.kernel.central import central_spheres
 from spheremesh.kernel.fit import face_planes
 from spheremesh.kernel.mesh import mean_edge_length
-from spheremesh.kernel.surfaces import roof_net, torus_net
+from spheremesh.kernel.surfaces import roof_net, torus_net, vase_net
 
 
 def made(sphere_mesh: SphereMesh, **ends: float) -> Beams:
@@ -237,6 +238,37 @@ def test_twist_and_mismatch_tell_torsion() -> None:
     assert facts.twists.max() > 1e-3
     assert facts.mismatches.max() > 1e-6
     assert beam_facts(BEAMS).twists.max() < 1e-9
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.03])
+def test_law_e6_mitres_leave_the_gap_between_neighbours(gap: float) -> None:
+    vase = central_spheres(vase_net(9, 6, 1.0, 3.0, 0.3))
+    for sphere_mesh in (TORUS, vase, face_planes(roof_net(6, 5, 40.0))):
+        beams = made(sphere_mesh, node_gap=gap)
+        clearances = beam_facts(beams).clearances
+        np.testing.assert_allclose(clearances, beams.node_gap, atol=1e-12)
+
+
+@pytest.mark.parametrize("radius", [0.005, 0.02, 0.03, 0.06])
+def test_law_e6_beams_that_lack_clearance_run_into_each_other(radius: float) -> None:
+    """Corners of square cut ends against the bodies of the others at their nodes."""
+    beams = made(face_planes(torus_net(9, 6, 3.0, 1.0)), node_radius=radius)
+    annuli, half = beams.annuli, beams.thickness / 2
+    clearances = beam_facts(beams).clearances
+    assert radius != 0.03 or 0 < (clearances < 0).sum() < clearances.size
+    corners = beams.corners[:, :, 0, ::2] + annuli.origins[:, None, None]
+    inward = inward_directions(annuli)
+    tops = annuli.corners[:, :, 0] + annuli.origins[:, None]
+    hits = np.zeros((beams.n_beams, 2), bool)
+    for i, nodes in enumerate(annuli.edge_vertices.tolist()):
+        for end, node in enumerate(nodes):
+            for j, other in np.argwhere(annuli.edge_vertices == node).tolist():
+                points = corners[i, end] - tops[j, other]
+                depth = points @ inward[j, other] - beams.insets[j, other, 1]
+                across = np.abs(points @ annuli.frames[j, 2])
+                inside = ((depth > 0) & (across < half)).any()
+                hits[i, end] |= bool(inside and j != i)
+    assert (hits == (clearances < 0)).all()
 
 
 def test_no_beams_have_no_measures() -> None:
