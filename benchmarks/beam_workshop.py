@@ -101,10 +101,11 @@ def report_files(made: Beams, folder: Path) -> None:
 def report(name: str, sphere_mesh: SphereMesh) -> None:
     """Print the figures of one sphere mesh."""
     size = mean_edge_length(sphere_mesh.mesh)
-    annuli = annulus_support(sphere_mesh, depth=0.3 * size).annuli
-    cut = beams(annuli, 0.05 * size, node_gap=0.01 * size, node_radius=0.1 * size)
+    found = annulus_support(sphere_mesh, depth=0.3 * size)
+    cut = beams(found.annuli, 0.05 * size, node_gap=0.01 * size, node_radius=0.1 * size)
     made, count = cut.beams, cut.beams.n_beams
-    print(f"{name}: {count} beams, {len(cut.report['rejected'])} rejected")
+    refusals = [len(each.report["rejected"]) for each in (found, cut)]
+    print(f"{name}: {count} beams, {refusals[0]} without annulus, {refusals[1]} without cut")
     (made, refused), marking = timed(lambda: drill_beams(made, 2, 0.03 * size, 0.05 * size))
     _, measuring = timed(lambda: beam_facts(made))
     findings, auditing = timed(lambda: audit_beams(made))
