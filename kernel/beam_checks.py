@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from .arrays import BoolArray, dot, norm
-from .errors import InputError
+from .errors import InputError, name_ids
 from .tolerances import AXIS_LEAN, DEGENERATE
 
 if TYPE_CHECKING:
@@ -163,11 +163,17 @@ def check_writable_beams(beams: "Beams", target: object) -> None:
     InputError
         If there is no beam, two have the same name, or one has numbers that are not finite.
     """
-    if beams.n_beams == 0:
+    ids = beams.annuli.ids
+    if not ids:
         raise InputError(f"there are no beams to write to {target}")
-    for name, count in Counter(beams.annuli.ids).items():
+    for name, count in Counter(ids).items():
         if count > 1:
-            raise InputError(f"{count} beams are called {name!r}: give each a name of its own")
-    broken = [beams.annuli.ids[i] for i in np.flatnonzero(~finite_beams(beams))]
+            rows = [i for i, other in enumerate(ids) if other == name]
+            edges = name_ids(beams.annuli.edge_ids[rows].tolist())
+            raise InputError(
+                f"{count} beams are called {name!r} (edges {edges}): give each a name of its "
+                "own"
+            )
+    broken = [ids[i] for i in np.flatnonzero(~finite_beams(beams))]
     if broken:
         raise InputError(f"beam {broken[0]} ({len(broken)} in all) is not finite")
