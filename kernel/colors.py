@@ -14,8 +14,8 @@ BEAM: Final[Color] = (112, 92, 74)
 NODE: Final[Color] = (84, 88, 94)
 """Dark grey of node cylinders."""
 
-AXIS: Final[Color] = (0, 0, 0)
-"""Black of lines."""
+AXIS: Final[Color] = (24, 24, 24)
+"""Nearly black, of lines."""
 
 _HUES: Final = (4.45, 1.1)  # radians: from blue over green to sand
 _LIGHTNESSES: Final = (0.50, 0.87)

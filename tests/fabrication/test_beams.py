@@ -159,9 +159,8 @@ def test_panels_and_beams_in_one_file(tmp_path: Path) -> None:
 def read_shapes(path: Path, kind: TopAbs_ShapeEnum) -> list[TopoDS_Shape]:
     """Shapes of a kind that are no part of a face."""
     reader = STEPControl_Reader()
-    with xcaf._quiet():
-        reader.ReadFile(str(path))
-        reader.TransferRoots()
+    reader.ReadFile(str(path))
+    reader.TransferRoots()
     found = TopExp_Explorer(reader.OneShape(), kind, TopAbs_ShapeEnum.TopAbs_FACE)
     shapes: list[TopoDS_Shape] = []
     while found.More():
