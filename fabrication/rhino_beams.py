@@ -14,7 +14,7 @@ from ..kernel.beam_facts import beam_facts
 from ..kernel.beams import Beams, DrillMarks, node_axis_segments, section_arcs
 from ..kernel.colors import AXIS, BEAM, NODE
 from ..kernel.errors import InputError
-from ..kernel.node_cylinders import node_cylinders
+from ..kernel.node_cylinders import NodeCylinders, node_cylinders
 from ..kernel.support import node_name
 from .rhino_model import RhinoModel, Untyped, add_layer, object_attributes
 
@@ -45,9 +45,11 @@ def add_beams(model: RhinoModel, beams: Beams, units: str) -> None:
     place = add_layer(model, "Axes", AXIS)
     for name, line in axis_lines(model.library, beams):
         model.file.Objects.AddCurve(line, object_attributes(model, name, "axis", place))
-    if beams.node_radius > 0:
+    cylinders = node_cylinders(beams)
+    if cylinders.n_nodes:
         place = add_layer(model, "Nodes", NODE)
-        for name, solid in cylinder_extrusions(model.library, beams):
+        solids = cylinder_extrusions(model.library, cylinders)
+        for name, solid in zip(cylinders.ids, solids, strict=True):
             attributes = object_attributes(model, name, "node", place)
             model.file.Objects.AddExtrusion(solid, attributes)
     if beams.marks is not None:
@@ -197,7 +199,7 @@ def axis_lines(library: Untyped, beams: Beams) -> list[tuple[str, Untyped]]:
     ]
 
 
-def cylinder_extrusions(library: Untyped, beams: Beams) -> list[tuple[str, Untyped]]:
+def cylinder_extrusions(library: Untyped, cylinders: NodeCylinders) -> list[Untyped]:
     """
     A capped extrusion per node cylinder.
 
@@ -205,37 +207,37 @@ def cylinder_extrusions(library: Untyped, beams: Beams) -> list[tuple[str, Untyp
     ----------
     library : module
         The module rhino3dm.
-    beams : Beams
-        The beams.
+    cylinders : NodeCylinders
+        N cylinders.
 
     Returns
     -------
-    list of (str, rhino3dm.Extrusion)
-        Name and solid of each node that carries beams.
+    list of rhino3dm.Extrusion
+        N solids, in model coordinates.
 
     Raises
     ------
     InputError
         If openNURBS finds one invalid; the message names the nodes.
     """
-    found = node_cylinders(beams)
     solids: list[Untyped] = []
     for origin, direction, height in zip(
-        found.origins.tolist(), found.directions.tolist(), found.heights.tolist(), strict=True
-    ):
-        circle = library.Circle(found.radius)
+        cylinders.origins.tolist(), cylinders.directions.tolist(), cylinders.heights.tolist(),
+        strict=True,
+    ):  # fmt: skip
+        circle = library.Circle(cylinders.radius)
         circle.Plane = library.Plane(library.Point3d(*origin), library.Vector3d(*direction))
         cylinder = library.Cylinder(circle, height)
         solids.append(library.Extrusion.CreateCylinderExtrusion(cylinder, True, True))  # noqa: FBT003
     refused = [
         name
-        for name, solid in zip(found.ids, solids, strict=True)
+        for name, solid in zip(cylinders.ids, solids, strict=True)
         if solid is None or not (solid.IsValid and solid.IsSolid)
     ]
     if refused:
         shown = ", ".join(refused[:8])
         raise InputError(f"openNURBS refuses {len(refused)} nodes: {shown}; use mitred beams")
-    return list(zip(found.ids, solids, strict=True))
+    return solids
 
 
 def mark_circles(
