@@ -94,7 +94,7 @@ def _check_options(count: int, diameter: float, inset: float) -> None:
 
 def _pitch(holes: FloatArray) -> FloatArray:
     """Least distance (B,) of two centres of a beam."""
-    itself = np.diag(np.full(holes.shape[1], np.inf))
+    itself: FloatArray = np.where(np.eye(holes.shape[1], dtype=bool), np.inf, 0.0)
     return (norm(holes[:, :, None] - holes[:, None]) + itself).min(axis=(1, 2))
 
 
