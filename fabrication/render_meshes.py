@@ -5,7 +5,7 @@ They are written into the streams of the Breps: the setters of rhino3dm crash it
 of `ON_Mesh` 3.8 (`opennurbs_mesh.cpp`): ii counts of vertices and faces, domains that are not
 set, three empty boxes of floats, i -1, flags, faces of four indices each (a triangle repeats
 its last), buffers of float32 vertices and normals, empty buffers, the tag of no texture
-mapping, and a chunk with the vertices as float64.
+mapping, and a chunk with the vertices as float64, if that is needed.
 """
 
 from dataclasses import dataclass
@@ -14,10 +14,22 @@ from typing import Final
 
 import numpy as np
 
-from ..kernel.arrays import FloatArray, IntArray
+from ..kernel.arrays import FloatArray, IntArray, norm
 from ..kernel.panels import Panels
 from ..kernel.tessellation import tessellate
-from .chunks import ANONYMOUS, Buffer, Chunk, Slot, assemble, class_object, doubles, fill, ints
+from ..kernel.tolerances import SINGLE_EPSILON, SINGLE_IS_ENOUGH
+from .chunks import (
+    ANONYMOUS,
+    Buffer,
+    Chunk,
+    Piece,
+    Slot,
+    assemble,
+    class_object,
+    doubles,
+    fill,
+    ints,
+)
 
 MESH: Final = bytes.fromhex("e4d4d74e47e9d311bfe50010830122f0")
 MESH_VERSION: Final = b"\x38"
@@ -44,6 +56,9 @@ class RenderMeshes:
         Vertices on the spheres, in model coordinates.
     normals : (N, 3) float array
         Exact unit normals there.
+    has_doubles : bool
+        Whether vertices are written as float64 too: where the model lies so far from the
+        origin that float32 would show.
     """
 
     kinds: IntArray
@@ -51,6 +66,7 @@ class RenderMeshes:
     starts: IntArray
     points: FloatArray
     normals: FloatArray
+    has_doubles: bool
 
 
 def panel_meshes(panels: Panels, tolerance: float) -> RenderMeshes:
@@ -81,13 +97,24 @@ def panel_meshes(panels: Panels, tolerance: float) -> RenderMeshes:
         starts.append(int(own.min()))
         kinds.append(known.setdefault((own - starts[-1]).tobytes(), len(known)))
     shapes = tuple(np.frombuffer(each, np.int64).reshape(-1, 3) for each in known)
+    points = pieces.points + pieces.origin
     return RenderMeshes(
         np.array(kinds, np.int64),
         shapes,
         np.array(starts, np.int64),
-        pieces.points + pieces.origin,
+        points,
         pieces.normals,
+        _needs_doubles(panels, points, tolerance),
     )
+
+
+def _needs_doubles(panels: Panels, points: FloatArray, tolerance: float) -> bool:
+    """Whether rounding to float32 adds much to what triangles miss of the smallest panel."""
+    if panels.n_panels == 0:
+        return False
+    sizes = np.maximum.reduceat(norm(panels.corners), panels.offsets[:-1])
+    rounding = SINGLE_EPSILON * float(np.abs(points).max())
+    return rounding > SINGLE_IS_ENOUGH * tolerance * float(sizes.min())
 
 
 def mesh_numbers(meshes: RenderMeshes, panels: IntArray) -> dict[str, FloatArray]:
@@ -111,32 +138,38 @@ def mesh_numbers(meshes: RenderMeshes, panels: IntArray) -> dict[str, FloatArray
     return {"points": meshes.points[ids], "normals": meshes.normals[ids]}
 
 
-def mesh_object(triangles: IntArray) -> Chunk:
+def mesh_object(meshes: RenderMeshes, kind: int) -> Chunk:
     """
     An `ON_Mesh` whose vertices and normals are still to be filled in.
 
     Parameters
     ----------
-    triangles : (T, 3) int array
-        Vertices of each triangle, all used.
+    meshes : RenderMeshes
+        The triangles.
+    kind : int
+        Which of the triangulations; it uses all of its vertices.
 
     Returns
     -------
     Chunk
         The object, with slots ``points`` and ``normals``.
     """
+    triangles = meshes.triangles[kind]
     count = _n_points(triangles)
     size = 1 if count < 1 << 8 else 2 if count < 1 << 16 else 4
     faces = triangles[:, [0, 1, 2, 2]].astype(f"<u{size}").tobytes()
     floats = (Buffer(Slot(name, 0, 3 * count, "<f4")) for name in ("points", "normals"))
-    precise = (ints(1, 0, count), Buffer(Slot("points", 0, 3 * count)))
+    doubles_too: tuple[Piece, ...] = (b"\0",)
+    if meshes.has_doubles:
+        precise = (ints(1, 0, count), Buffer(Slot("points", 0, 3 * count)))
+        doubles_too = (b"\1", Chunk(ANONYMOUS, precise))
     return class_object(
         MESH, MESH_VERSION, ints(count, len(triangles)), UNSET_DOMAINS, _EMPTY_BOXES, ints(-1),
         bytes(5), ints(size), faces, *floats,
         ints(0, 0, 0) + bytes(4 + 16) + ints(0),  # no textures, curvatures, colours, parameters
         Chunk(ANONYMOUS, (ints(1, 1) + bytes(16 + 4) + _IDENTITY + ints(0),)),
-        bytes(3) + b"\0\1",  # manifold, oriented, solid: not known; no ngons; float64 vertices
-        Chunk(ANONYMOUS, precise), UNSET_DOMAINS[:48],
+        bytes(3) + b"\0",  # manifold, oriented, solid: not known; no ngons
+        *doubles_too, UNSET_DOMAINS[:48],
     )  # fmt: skip
 
 
@@ -159,9 +192,9 @@ def mesh_streams(meshes: RenderMeshes) -> list[bytes]:
         P objects, in model coordinates.
     """
     result = [b""] * len(meshes.kinds)
-    for kind, triangles in enumerate(meshes.triangles):
+    for kind in range(len(meshes.triangles)):
         members = np.flatnonzero(meshes.kinds == kind)
-        filled = fill(assemble(mesh_object(triangles)), mesh_numbers(meshes, members))
+        filled = fill(assemble(mesh_object(meshes, kind)), mesh_numbers(meshes, members))
         for panel, stream in zip(members, filled, strict=True):
             result[panel] = stream
     return result

@@ -53,7 +53,7 @@ VERSIONS: Final = (6, 7, 8)
 Layer: TypeAlias = Literal["Edges", "Centres"]
 Shape: TypeAlias = Literal["panels", "blocks", "shell"]
 
-_MESH_TOLERANCE = 0.002
+MESH_TOLERANCE: Final = 0.004
 """Largest distance of a render mesh from its sphere, relative to the radius of the panel."""
 
 _BLACK = (0, 0, 0)
@@ -201,7 +201,7 @@ class _Sound(NamedTuple):
 
 
 def _streams(panels: Panels, *, render_meshes: bool) -> list[bytes]:
-    meshes = panel_meshes(panels, _MESH_TOLERANCE) if render_meshes else None
+    meshes = panel_meshes(panels, MESH_TOLERANCE) if render_meshes else None
     return brep_streams(panels, meshes)
 
 
@@ -328,7 +328,7 @@ def _add_blocks(
 def _add_shell(model: RhinoModel, sound: _Sound, place: Place, largest_gap: float) -> int:
     """All panels as one Brep; the number of edges that it leaves open."""
     panels = sound.panels
-    meshes = panel_meshes(panels, _MESH_TOLERANCE) if sound.render_meshes else None
+    meshes = panel_meshes(panels, MESH_TOLERANCE) if sound.render_meshes else None
     shell = join_panels(panels, largest_gap, meshes)
     brep = model.decode(shell.stream)
     if brep is None or not brep.IsValid:

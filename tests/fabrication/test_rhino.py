@@ -278,7 +278,8 @@ def test_render_meshes_lie_on_the_spheres(model: Any, panels: Panels) -> None:  
         points = np.array([(p.X, p.Y, p.Z) for p in map(mesh.Vertices.Point3dAt, range(count))])
         vectors = np.array([(n.X, n.Y, n.Z) for n in mesh.Normals])
         row, local = panels.spheres[i], points - panels.origins[i]
-        assert np.abs(signed_distance(row, local)).max() < 1e-12
+        # The roof spans 80, and the vertices are float32.
+        assert np.abs(signed_distance(row, local)).max() < 4e-6
         assert np.abs(vectors - normals(row, local)).max() < 1e-6
         faces = np.array([mesh.Faces[j][:3] for j in range(mesh.Faces.Count)])
         a, b, c = local[faces].transpose(1, 0, 2)
