@@ -15,6 +15,7 @@ from typing import Any, Final, NamedTuple, TypeAlias
 import numpy as np
 
 from ..kernel.arrays import FloatArray
+from ..kernel.beam_checks import check_writable_beams
 from ..kernel.beams import Beams, scale_beams
 from ..kernel.contours import Contours, beam_contours, contour_boxes, shelves
 from ..kernel.errors import InputError, MissingLibraryError
@@ -105,8 +106,7 @@ def write_dxf(
     target = Path(path)
     check_suffix(target, ".dxf")
     scale = millimeters_per(units)
-    if beams.n_beams == 0:
-        raise InputError(f"there are no beams to write to {target}")
+    check_writable_beams(beams, target)
     if not (np.isfinite([*sheet, spacing]).all() and min(sheet) > 0 and spacing >= 0):
         raise InputError(f"sheet {sheet} and spacing {spacing} must be lengths in millimetres")
     contours = beam_contours(scale_beams(beams, scale))

@@ -15,19 +15,21 @@ from typing import Final, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
+from ..kernel.beam_checks import check_writable_beams
 from ..kernel.beams import Beams
-from ..kernel.colors import UNLABELLED, mould_color
+from ..kernel.colors import UNLABELLED, mould_color, mould_name
 from ..kernel.congruent_panels import congruent_panels
 from ..kernel.errors import InputError
 from ..kernel.mesh import Mesh
-from ..kernel.panel_checks import RejectedPanel
+from ..kernel.panel_checks import RejectedPanel, check_writable
+from ..kernel.panel_facts import panel_radii
 from ..kernel.panels import Panels, select_panels
 from .brep_audit import verify_breps
 from .brep_layout import read_brep_streams
 from .brep_shell import join_panels
 from .files import check_suffix, replacing
 from .opennurbs import brep_streams, edge_streams
-from .panel_text import centers_and_radii, mould_number, panel_text
+from .panel_text import panel_text
 from .render_meshes import panel_meshes
 from .rhino_beams import add_beams
 from .rhino_blocks import add_definition, add_instance
@@ -59,6 +61,7 @@ MESH_TOLERANCE: Final = 0.004
 _BLACK = (0, 0, 0)
 _NOTE = (
     "bulge: out for domes, in for dishes, seen along the panel's outward normal. "
+    "radius: of the mould, which the outer face differs from by the side of the thickness. "
     "neighbors: beyond each edge in order, - where there is no panel."
 )
 
@@ -155,8 +158,9 @@ def write_3dm(
     Raises
     ------
     InputError
-        If there are neither panels nor beams, units or version are not known, the file cannot
-        be written, no panel is exact, or panels that are to be joined leave gaps.
+        If there are neither panels nor beams, two of them have the same name or one is not
+        finite, units or version are not known, the file cannot be written, no panel is exact,
+        or panels that are to be joined leave gaps.
 
     Notes
     -----
@@ -171,8 +175,7 @@ def write_3dm(
     check_suffix(path, ".3dm")
     if version not in VERSIONS:
         raise InputError(f"unknown Rhino version {version}: use one of {VERSIONS}")
-    if panels is None and beams is None:
-        raise InputError(f"there are no panels or beams to write to {path}")
+    _check_writable(panels, beams, path)
     model = new_model(units)
     _set_strings(model, graph_json, title)
     rejected, n_open = (), 0
@@ -190,6 +193,18 @@ def write_3dm(
     with replacing(target) as temporary:
         temporary.write_bytes(data)
     return RhinoFile(target, rejected, objects, tuple(notes))
+
+
+def _check_writable(
+    panels: Panels | None, beams: Beams | None, path: str | os.PathLike[str]
+) -> None:
+    n_beams = beams.n_beams if beams else 0
+    if panels is not None and (panels.n_panels or not n_beams):
+        check_writable(panels, path)
+    elif not n_beams:
+        raise InputError(f"there are no panels or beams to write to {path}")
+    if beams is not None and n_beams:
+        check_writable_beams(beams, path)
 
 
 class _Sound(NamedTuple):
@@ -251,7 +266,7 @@ def _add_moulds(model: RhinoModel, panels: Panels) -> dict[int, _Mould]:
     moulds = {-1: _Mould(root, None)}
     count = int(panels.labels.max(initial=-1)) + 1
     for label in range(count):
-        name, color = f"Mould {mould_number(label)}", mould_color(label, count)
+        name, color = mould_name(label, count), mould_color(label, count)
         place = add_layer(model, name, color, root)
         moulds[label] = _Mould(place, add_group(model, name))
     return moulds
@@ -350,9 +365,10 @@ def _add_edges(model: RhinoModel, panels: Panels) -> None:
 def _add_centers(model: RhinoModel, panels: Panels) -> None:
     # Centres lie far away: switched off, they do not shrink the model in a view.
     place = add_layer(model, "Centres", UNLABELLED, visible=False)
-    centers, radii = centers_and_radii(panels)
-    for name, center, radius in zip(panels.ids, centers.tolist(), radii.tolist(), strict=True):
-        if np.isfinite(radius):
+    found = panel_radii(panels)
+    centers, is_sphere = found.centers.tolist(), np.isfinite(found.radii).tolist()
+    for name, center, has_center in zip(panels.ids, centers, is_sphere, strict=True):
+        if has_center:
             attributes = object_attributes(model, name, "centre", place)
             model.file.Objects.AddPoint(model.library.Point3d(*center), attributes)
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final, Literal, get_args
 
 import numpy as np
 
+from ..kernel.beam_checks import check_writable_beams
 from ..kernel.beams import Beams
 from ..kernel.colors import BEAM, Color, mould_color, mould_name
 from ..kernel.congruent_panels import congruent_panels
@@ -97,6 +98,8 @@ def write_step(
         check_writable(panels, target)
     elif not n_beams:
         raise InputError(f"there are no panels or beams to write to {target}")
+    if beams is not None and n_beams:
+        check_writable_beams(beams, target)
     if schema not in get_args(StepSchema):
         raise InputError(f"unknown STEP schema {schema!r}: use AP214IS or AP242DIS")
     if copies not in get_args(StepCopies):

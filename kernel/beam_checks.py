@@ -1,15 +1,18 @@
 """What keeps a beam from being made: planes that lie flat, ends that lean or cross."""
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .arrays import BoolArray, dot, norm
+from .errors import InputError, name_ids
 from .tolerances import AXIS_LEAN, DEGENERATE
 
 if TYPE_CHECKING:
     from .annuli import Annuli
+    from .beams import Beams
 
 
 @dataclass(frozen=True)
@@ -108,3 +111,38 @@ def inner_reasons(annuli: "Annuli", size: float) -> dict[int, str]:
     for row in np.flatnonzero(sides[:, 0] * sides[:, 1] < 0).tolist():
         reasons.setdefault(row, "the two arcs cross: one end reaches inside, one outside")
     return reasons
+
+
+def check_writable_beams(beams: "Beams", target: object) -> None:
+    """
+    Refuse beams that no file can hold.
+
+    Parameters
+    ----------
+    beams : Beams
+        B beams.
+    target : path
+        The file, for the message.
+
+    Raises
+    ------
+    InputError
+        If there is no beam, two have the same name, or one has numbers that are not finite.
+    """
+    ids = beams.annuli.ids
+    if not ids:
+        raise InputError(f"there are no beams to write to {target}")
+    for name, count in Counter(ids).items():
+        if count > 1:
+            rows = [i for i, other in enumerate(ids) if other == name]
+            edges = name_ids(beams.annuli.edge_ids[rows].tolist())
+            raise InputError(
+                f"{count} beams are called {name!r} (edges {edges}): give each a name of its "
+                "own"
+            )
+    places = np.column_stack([beams.annuli.origins, beams.annuli.outer, beams.annuli.inner])
+    corners = [points.reshape(len(ids), -1) for points in (beams.corners, beams.sections)]
+    is_finite = np.isfinite(np.column_stack([places, *corners])).all(axis=1)
+    broken = [ids[i] for i in np.flatnonzero(~is_finite)]
+    if broken:
+        raise InputError(f"beam {broken[0]} ({len(broken)} in all) is not finite")

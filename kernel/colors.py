@@ -41,8 +41,27 @@ def mould_name(label: int, count: int) -> str:
     """
     if label < 0:
         return "Panels"
+    return f"Mould {mould_number(label, count)}"
+
+
+def mould_number(label: int, count: int) -> str:
+    """
+    Number of a mould, as its name has it.
+
+    Parameters
+    ----------
+    label : int
+        Mould, from 0; -1 for a panel without mould.
+    count : int
+        Number of moulds.
+
+    Returns
+    -------
+    str
+        ``01`` for the first; ``-`` for panels without mould.
+    """
     width = max(2, len(str(count)))
-    return f"Mould {label + 1:0{width}d}"
+    return f"{label + 1:0{width}d}" if label >= 0 else "-"
 
 
 def mould_color(label: int, count: int) -> Color:

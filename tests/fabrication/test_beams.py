@@ -21,6 +21,7 @@ from OCP.TopoDS import TopoDS_Shape
 from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication import xcaf
 from spheremesh.fabrication.beam_brep import beam_shapes
+from spheremesh.fabrication.dxf import write_dxf
 from spheremesh.fabrication.rhino import write_3dm
 from spheremesh.fabrication.step import beams_to_cadquery, write_step
 from spheremesh.kernel import beam_cutting
@@ -180,6 +181,30 @@ def test_nothing_to_write(tmp_path: Path) -> None:
         write_step(None, tmp_path / "n.step")
     with pytest.raises(InputError, match="no panels or beams"):
         write_3dm(None, tmp_path / "n.3dm")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["b.step", "b.3dm", "b.dxf"])
+def test_beams_that_no_file_can_hold_are_refused_by_name(tmp_path: Path, name: str) -> None:
+    def write(beams: Beams) -> None:
+        if name.endswith("dxf"):
+            write_dxf(beams, tmp_path / name)
+        elif name.endswith("step"):
+            write_step(None, tmp_path / name, beams=beams)
+        else:
+            write_3dm(None, tmp_path / name, beams=beams)
+
+    beams = CASES["mitred"]
+    with pytest.raises(InputError, match=r"no (panels or )?beams to write to"):
+        write(select_beams(beams, np.zeros(beams.n_beams, bool)))
+    ids = ("A", "B", "A", *beams.annuli.ids[3:])
+    edges = re.escape(str(beams.annuli.edge_ids[[0, 2]].tolist()))
+    with pytest.raises(InputError, match=rf"2 beams are called 'A' \(edges {edges}\)"):
+        write(replace(beams, annuli=replace(beams.annuli, ids=ids)))
+    sections = beams.sections.copy()
+    sections[3] = np.inf
+    with pytest.raises(InputError, match=r"beam B0003 \(1 in all\) is not finite"):
+        write(replace(beams, sections=sections))
     assert not list(tmp_path.iterdir())
 
 

@@ -32,6 +32,7 @@ Writer = Callable[[Panels, Path], Path]
 WRITERS: dict[str, Writer] = {
     "p.step": write_step,
     "q.step": lambda panels, path: write_step(panels, path, copies="instances"),
+    "p.3dm": lambda panels, path: write_3dm(panels, path).path,
     "p.csv": write_schedule,
     "p.json": write_schedule,
     "p.dxf": write_mould_drawings,
@@ -46,7 +47,6 @@ def write_all(panels: Panels, folder: Path) -> None:
         assert path.stat().st_size > 0
         if path.suffix == ".step":
             assert check_part21(path) == ()
-    write_3dm(panels, folder / "p.3dm")
     shapes = panel_shapes(panels, 1000.0)
     assert len(shapes) == panels.n_panels
     assert all(BRepCheck_Analyzer(shape).IsValid() for shape in shapes)

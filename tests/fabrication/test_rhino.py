@@ -216,11 +216,6 @@ def test_versions_and_units(
     assert all(item.Geometry.IsValid for item in model.Objects)
 
 
-def test_no_panels(panels: Panels, tmp_path: Path) -> None:
-    none = select_panels(panels, np.zeros(panels.n_panels, bool))
-    assert write_3dm(none, tmp_path / "empty.3dm").path.stat().st_size > 0
-
-
 @pytest.fixture
 def one_is_off(monkeypatch: pytest.MonkeyPatch) -> None:
     """Write panel 17 with a corner off by a millionth."""
