@@ -21,8 +21,8 @@ from exactness import judge_step
 from spheremesh.fabrication.audit import audit_panels
 from spheremesh.fabrication.mould_drawings import write_mould_drawings
 from spheremesh.fabrication.part21 import check_part21
-from spheremesh.fabrication.render_meshes import mesh_streams, panel_meshes
-from spheremesh.fabrication.rhino import MESH_TOLERANCE, RhinoContents, write_3dm
+from spheremesh.fabrication.render_meshes import MESH_TOLERANCE, mesh_streams, panel_meshes
+from spheremesh.fabrication.rhino import RhinoContents, write_3dm
 from spheremesh.fabrication.schedule import write_schedule
 from spheremesh.fabrication.step import write_step
 from spheremesh.kernel.congruent_panels import congruent_panels

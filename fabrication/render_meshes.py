@@ -1,13 +1,17 @@
 """
-Render meshes of panels as openNURBS objects, for viewers that cannot mesh a Brep.
+Render meshes of panels and beams as openNURBS objects, for viewers that cannot mesh solids.
 
-They are written into the streams of the Breps: the setters of rhino3dm crash it at exit. Layout
-of `ON_Mesh` 3.8 (`opennurbs_mesh.cpp`): ii counts of vertices and faces, domains that are not
-set, three empty boxes of floats, i -1, flags, faces of four indices each (a triangle repeats
-its last), buffers of float32 vertices and normals, empty buffers, the tag of no texture
-mapping, and a chunk with the vertices as float64, if that is needed.
+They are written into the streams of Breps and extrusions: the setters of rhino3dm crash it at
+exit. Layout of `ON_Mesh` 3.8 (`opennurbs_mesh.cpp`): ii counts of vertices and faces, domains
+that are not set, three empty boxes of floats, i -1, flags, faces of four indices each (a
+triangle repeats its last), buffers of float32 vertices and normals, empty buffers, the tag of
+no texture mapping, and a chunk with the vertices as float64, if that is needed.
+
+An extrusion keeps meshes in a chunk of version 1.0 (`ON_MeshCache`): for each a byte 1 and a
+chunk of version 1.0 with an id that says what it is for and the mesh; in the end a byte 0.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
@@ -15,11 +19,14 @@ from typing import Final
 import numpy as np
 
 from ..kernel.arrays import FloatArray, IntArray, norm
+from ..kernel.beam_triangles import beam_triangles
+from ..kernel.beams import Beams, beam_lengths
 from ..kernel.panels import Panels
 from ..kernel.tessellation import tessellate
 from ..kernel.tolerances import SINGLE_EPSILON, SINGLE_IS_ENOUGH
 from .chunks import (
     ANONYMOUS,
+    CHUNK_HEADER,
     Buffer,
     Chunk,
     Piece,
@@ -35,6 +42,13 @@ MESH: Final = bytes.fromhex("e4d4d74e47e9d311bfe50010830122f0")
 MESH_VERSION: Final = b"\x38"
 
 UNSET_DOMAINS: Final = doubles(*[-1.23432101234321e308] * 8) + bytes(16)
+MESH_TOLERANCE: Final = 0.004
+"""Largest distance of a render mesh from its surface, relative to the radius of the piece."""
+
+_RENDER_MESH: Final = bytes.fromhex("a9bae3f5a2a7fd49b8a166eb274a5f91")
+_AROUND_CACHE: Final = (0, 44, 56)
+"""Where the chunks around the meshes of an extrusion begin: class, its data, extrusion."""
+
 _EMPTY_BOXES = np.array([*[1, 1, 1, -1, -1, -1] * 2, 1, 1, -1, -1], "<f4").tobytes()
 _IDENTITY = doubles(*np.eye(4).ravel().tolist())
 
@@ -42,18 +56,18 @@ _IDENTITY = doubles(*np.eye(4).ravel().tolist())
 @dataclass(frozen=True)
 class RenderMeshes:
     """
-    Triangles of panels, those of the same triangulation together.
+    Triangles of panels or beams, those of the same triangulation together.
 
     Attributes
     ----------
     kinds : (P,) int array
-        Triangulation of each panel.
+        Triangulation of each piece.
     triangles : tuple of (T, 3) int array
         The triangulations; counter-clockwise about the normals.
     starts : (P,) int array
-        First vertex of each panel; its triangulation tells how many there are.
+        First vertex of each piece; its triangulation tells how many there are.
     points : (N, 3) float array
-        Vertices on the spheres, in model coordinates.
+        Vertices on the surfaces, in model coordinates.
     normals : (N, 3) float array
         Exact unit normals there.
     has_doubles : bool
@@ -98,26 +112,59 @@ def panel_meshes(panels: Panels, tolerance: float) -> RenderMeshes:
         kinds.append(known.setdefault((own - starts[-1]).tobytes(), len(known)))
     shapes = tuple(np.frombuffer(each, np.int64).reshape(-1, 3) for each in known)
     points = pieces.points + pieces.origin
+    sizes = np.maximum.reduceat(norm(panels.corners), panels.offsets[:-1])
     return RenderMeshes(
         np.array(kinds, np.int64),
         shapes,
         np.array(starts, np.int64),
         points,
         pieces.normals,
-        _needs_doubles(panels, points, tolerance),
+        _needs_doubles(points, tolerance * float(sizes.min(initial=np.inf))),
     )
 
 
-def _needs_doubles(panels: Panels, points: FloatArray, tolerance: float) -> bool:
-    """Whether rounding to float32 adds much to what triangles miss of the smallest panel."""
-    if panels.n_panels == 0:
-        return False
-    sizes = np.maximum.reduceat(norm(panels.corners), panels.offsets[:-1])
-    rounding = SINGLE_EPSILON * float(np.abs(points).max())
-    return rounding > SINGLE_IS_ENOUGH * tolerance * float(sizes.min())
+def beam_meshes(beams: Beams, tolerance: float) -> RenderMeshes:
+    """
+    Triangulate beams as extrusions of their contours.
+
+    Parameters
+    ----------
+    beams : Beams
+        B beams, at least one.
+    tolerance : float
+        Largest distance of the chords from the arcs, relative to half the length of a beam.
+
+    Returns
+    -------
+    RenderMeshes
+        The triangles.
+    """
+    groups = list(beam_triangles(beams, tolerance))
+    kinds, starts = np.zeros((2, beams.n_beams), np.int64)
+    n_points = 0
+    for kind, group in enumerate(groups):
+        n_beams, count = group.points.shape[:2]
+        kinds[group.beams] = kind
+        starts[group.beams] = n_points + count * np.arange(n_beams)
+        n_points += n_beams * count
+    points = np.concatenate([group.points.reshape(-1, 3) for group in groups])
+    return RenderMeshes(
+        kinds,
+        tuple(group.triangles for group in groups),
+        starts,
+        points,
+        np.concatenate([group.normals.reshape(-1, 3) for group in groups]),
+        _needs_doubles(points, tolerance * float(beam_lengths(beams).min()) / 2),
+    )
 
 
-def mesh_numbers(meshes: RenderMeshes, panels: IntArray) -> dict[str, FloatArray]:
+def _needs_doubles(points: FloatArray, error: float) -> bool:
+    """Whether rounding points to float32 adds much to what triangles miss."""
+    rounding = SINGLE_EPSILON * float(np.abs(points).max(initial=0.0))
+    return rounding > SINGLE_IS_ENOUGH * error
+
+
+def mesh_numbers(meshes: RenderMeshes, members: IntArray) -> dict[str, FloatArray]:
     """
     Numbers that fill the slots of `mesh_object`.
 
@@ -125,16 +172,16 @@ def mesh_numbers(meshes: RenderMeshes, panels: IntArray) -> dict[str, FloatArray
     ----------
     meshes : RenderMeshes
         The triangles.
-    panels : (n,) int array
-        Panels of one triangulation.
+    members : (n,) int array
+        Pieces of one triangulation.
 
     Returns
     -------
     dict of str to (n, 1, V, 3) float array
         ``points`` and ``normals``.
     """
-    count = _n_points(meshes.triangles[int(meshes.kinds[panels[0]])])
-    ids = meshes.starts[panels][:, None, None] + np.arange(count)
+    count = _n_points(meshes.triangles[int(meshes.kinds[members[0]])])
+    ids = meshes.starts[members][:, None, None] + np.arange(count)
     return {"points": meshes.points[ids], "normals": meshes.normals[ids]}
 
 
@@ -184,17 +231,60 @@ def mesh_streams(meshes: RenderMeshes) -> list[bytes]:
     Parameters
     ----------
     meshes : RenderMeshes
-        The triangles of P panels.
+        The triangles of P pieces.
 
     Returns
     -------
     list of bytes
         P objects, in model coordinates.
     """
+    return _filled(meshes, lambda mesh: mesh)
+
+
+def _filled(meshes: RenderMeshes, wrap: Callable[[Chunk], Chunk]) -> list[bytes]:
     result = [b""] * len(meshes.kinds)
     for kind in range(len(meshes.triangles)):
         members = np.flatnonzero(meshes.kinds == kind)
-        filled = fill(assemble(mesh_object(meshes, kind)), mesh_numbers(meshes, members))
-        for panel, stream in zip(members, filled, strict=True):
-            result[panel] = stream
+        template = assemble(wrap(mesh_object(meshes, kind)))
+        filled = fill(template, mesh_numbers(meshes, members))
+        for piece, stream in zip(members, filled, strict=True):
+            result[piece] = stream
     return result
+
+
+def extrusions_with_meshes(extrusions: Sequence[bytes], meshes: RenderMeshes) -> list[bytes]:
+    """
+    Put render meshes into extrusions.
+
+    Parameters
+    ----------
+    extrusions : sequence of bytes
+        Streams of B `ON_Extrusion`, as openNURBS encodes them without meshes.
+    meshes : RenderMeshes
+        The triangles of B pieces.
+
+    Returns
+    -------
+    list of bytes
+        The streams with their meshes.
+    """
+    caches = _filled(meshes, _cache)
+    (empty,) = fill(assemble(_cache()), {"": np.zeros((1, 0))})
+    result: list[bytes] = []
+    for stream, cache in zip(extrusions, caches, strict=True):
+        data = bytearray(stream)
+        # Checksums leave out inner chunks: the lengths around the cache are all that changes.
+        for start in _AROUND_CACHE:
+            typecode, length = CHUNK_HEADER.unpack_from(data, start)
+            CHUNK_HEADER.pack_into(data, start, typecode, length + len(cache) - len(empty))
+        place = data.rindex(empty)
+        data[place : place + len(empty)] = cache
+        result.append(bytes(data))
+    return result
+
+
+def _cache(*meshes: Chunk) -> Chunk:
+    pieces: list[Piece] = [ints(1, 0)]
+    for mesh in meshes:
+        pieces += [b"\1", Chunk(ANONYMOUS, (ints(1, 0) + _RENDER_MESH, mesh))]
+    return Chunk(ANONYMOUS, (*pieces, b"\0"))

@@ -30,7 +30,7 @@ from .brep_shell import join_panels
 from .files import check_suffix, replacing
 from .opennurbs import brep_streams, edge_streams
 from .panel_text import panel_text
-from .render_meshes import panel_meshes
+from .render_meshes import MESH_TOLERANCE, panel_meshes
 from .rhino_beams import add_beams
 from .rhino_blocks import add_definition, add_instance
 from .rhino_meshes import to_rhino_mesh
@@ -55,9 +55,6 @@ VERSIONS: Final = (6, 7, 8)
 Layer: TypeAlias = Literal["Edges", "Centres"]
 Shape: TypeAlias = Literal["panels", "blocks", "shell"]
 
-MESH_TOLERANCE: Final = 0.004
-"""Largest distance of a render mesh from its sphere, relative to the radius of the panel."""
-
 _BLACK = (0, 0, 0)
 _NOTE = (
     "bulge: out for domes, in for dishes, seen along the panel's outward normal. "
@@ -81,7 +78,7 @@ class RhinoContents:
     reference : Mesh, optional
         The design, for the layer ``Reference``.
     render_meshes : bool
-        Whether Breps carry triangles for viewers that cannot mesh them.
+        Whether Breps and extrusions carry triangles for viewers that cannot mesh them.
     """
 
     shape: Shape = "panels"
@@ -183,7 +180,7 @@ def write_3dm(
         rejected, n_open = _add_panels(model, panels, contents, units)
     notes = [f"{n_open} edges of neighbours lie apart and stay open"] if n_open else []
     if beams is not None:
-        add_beams(model, beams, units)
+        add_beams(model, beams, units, render_meshes=contents.render_meshes)
     if contents.reference is not None:
         notes += _add_reference(model, contents.reference)
     data, objects = encode_model(model, version), count_objects(model)

@@ -5,6 +5,8 @@ An extrusion is what a flat piece is before its ends are mitred: the contour in 
 the thickness, whose ends lie on the node axes. The mitres are in the STEP file.
 """
 
+import base64
+
 import numpy as np
 
 from ..kernel.arcs import ArcCircles, Arcs, arc_circles
@@ -13,12 +15,13 @@ from ..kernel.beams import Beams, beam_lengths, node_axis_segments, section_arcs
 from ..kernel.colors import BEAM
 from ..kernel.errors import InputError
 from ..kernel.support import node_name
+from .render_meshes import MESH_TOLERANCE, beam_meshes, extrusions_with_meshes
 from .rhino_model import RhinoModel, Untyped, add_layer, object_attributes
 
 _BLACK = (0, 0, 0)
 
 
-def add_beams(model: RhinoModel, beams: Beams, units: str) -> None:
+def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: bool) -> None:
     """
     Add beams on the layer ``Beams`` and the node axes on the layer ``Axes``.
 
@@ -30,9 +33,13 @@ def add_beams(model: RhinoModel, beams: Beams, units: str) -> None:
         The beams.
     units : str
         Model units.
+    render_meshes : bool
+        Whether the extrusions carry triangles for viewers that cannot mesh them.
     """
     place = add_layer(model, "Beams", BEAM)
     solids, texts = beam_extrusions(model.library, beams), beam_text(beams, units)
+    if render_meshes and solids:
+        solids = _with_meshes(model, solids, beams)
     for name, solid, text in zip(beams.annuli.ids, solids, texts, strict=True):
         attributes = object_attributes(model, name, "beam", place)
         for key, value in text.items():
@@ -92,6 +99,16 @@ def beam_extrusions(library: Untyped, beams: Beams) -> list[Untyped]:
         shown = ", ".join(refused[:8])
         raise InputError(f"openNURBS refuses {len(refused)} beams: {shown}; leave them out")
     return result
+
+
+def _with_meshes(model: RhinoModel, solids: list[Untyped], beams: Beams) -> list[Untyped]:
+    """Extrusions with render meshes, through their streams: the setter crashes at exit."""
+    streams = [base64.b64decode(solid.Encode()["data"]) for solid in solids]
+    meshes = beam_meshes(beams, MESH_TOLERANCE)
+    found = [model.decode(stream) for stream in extrusions_with_meshes(streams, meshes)]
+    if any(solid is None or not solid.IsValid for solid in found):
+        raise InputError("openNURBS refuses the render meshes of beams: write them without")
+    return found
 
 
 def _curve(

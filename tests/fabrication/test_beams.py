@@ -22,7 +22,7 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication import xcaf
 from spheremesh.fabrication.beam_brep import beam_shapes
 from spheremesh.fabrication.dxf import write_dxf
-from spheremesh.fabrication.rhino import write_3dm
+from spheremesh.fabrication.rhino import RhinoContents, write_3dm
 from spheremesh.fabrication.step import beams_to_cadquery, write_step
 from spheremesh.kernel import beam_cutting
 from spheremesh.kernel.annuli import Annuli
@@ -230,6 +230,7 @@ def test_extrusions_in_rhino(tmp_path: Path, case: str) -> None:
         solid = item.Geometry
         assert solid.IsValid
         assert solid.IsSolid
+        _check_render_mesh(solid, size)
         z = beams.annuli.frames[i, 2]
         brep = solid.ToBrep(False)  # noqa: FBT003
         assert len(brep.Faces) == 6
@@ -250,6 +251,42 @@ def test_extrusions_in_rhino(tmp_path: Path, case: str) -> None:
             level = rows[:, 0] * dot(flat_middle, flat_middle) - rows[:, 1:4] @ flat_middle
             on_circle = np.abs(level + rows[:, 4]).min() < 1e-9 * size
             assert on_circle or edge.IsLinear(1e-9 * size)
+
+
+def _check_render_mesh(solid: Any, size: float) -> None:  # noqa: ANN401
+    """It has the corners of the solid, and its triangles look outwards."""
+    mesh = solid.GetMesh(rhino3dm.MeshType.Render)
+    assert mesh.IsValid
+    points = [mesh.Vertices.Point3dAt(i) for i in range(len(mesh.Vertices))]
+    corners = [tuple(mesh.Faces[i][:3]) for i in range(mesh.Faces.Count)]
+    x = np.array([point(p) for p in points])
+    brep = solid.ToBrep(False)  # noqa: FBT003
+    for vertex in brep.Vertices:
+        assert norm(x - point(vertex.Location)).min() < 1e-5 * size
+    a, b, c = (x[corners] - x.mean(0)).transpose(1, 0, 2)
+    volume = dot(a, np.cross(b, c)).sum() / 6
+    assert volume > 0
+    vectors = np.array([(n.X, n.Y, n.Z) for n in mesh.Normals])[[t[0] for t in corners]]
+    assert (dot(np.cross(b - a, c - a), vectors) > 0).all()
+
+
+def test_a_model_without_render_meshes(tmp_path: Path) -> None:
+    contents = RhinoContents(render_meshes=False)
+    beams = CASES["straight"]
+    file = write_3dm(None, tmp_path / "b.3dm", beams=beams, contents=contents)
+    assert file.objects["Extrusion"] == beams.n_beams
+    solid = on_layer(rhino3dm.File3dm.Read(str(file.path)), "Beams")[0].Geometry
+    assert solid.GetMesh(rhino3dm.MeshType.Any) is None
+
+
+def test_beams_far_from_the_origin_keep_precise_meshes(tmp_path: Path) -> None:
+    shift = np.array([5e5, -3e5, 2e5])
+    moved = Mesh(TORUS.mesh.vertices + shift, TORUS.mesh.faces)
+    beams = make(SphereMesh.from_local(moved, TORUS.local_spheres))
+    file = write_3dm(None, tmp_path / "far.3dm", beams=beams)
+    for item in on_layer(rhino3dm.File3dm.Read(str(file.path)), "Beams"):
+        # Float32 would miss by 0.03.
+        _check_render_mesh(item.Geometry, 1e-3)
 
 
 def test_axes_layers_and_text_in_rhino(tmp_path: Path) -> None:
