@@ -67,14 +67,14 @@ def _triangulate(
 ) -> BeamTriangles:
     """Strips: upper and lower side, outer and inner face, first and second end."""
     annuli = beams.annuli
-    up, across = annuli.frames[members, 1:].transpose(1, 0, 2)[:, :, None]
+    up, across = annuli.frames[members, None, 1], annuli.frames[members, None, 2]
     rows = annuli.outer[members][:, None], annuli.inner[members][:, None]
     rims = [_points(each, members, steps) for each in arcs]
     faces = [normals(row, rim) for row, rim in zip(rows, rims, strict=True)]
     # Beams of negative power stand on the outer circle: their two rims change places.
     is_turned = (dot(rims[0] - rims[1], up).sum(1) < 0)[:, None, None]
-    outer, inner = np.where(is_turned, rims[::-1], rims)
-    outwards, inwards = np.where(is_turned, faces[::-1], faces)
+    outer, inner = (np.where(is_turned, rims[1 - k], rims[k]) for k in (0, 1))
+    outwards, inwards = (np.where(is_turned, faces[1 - k], faces[k]) for k in (0, 1))
     half = across * beams.thickness / 2
     beyond: FloatArray = np.cross(outer[:, [0, -1]] - inner[:, [0, -1]], across)
     first, second = np.split(unit(beyond), 2, axis=1)
