@@ -45,6 +45,19 @@ def main() -> None:
 @click.option("--moulds", type=int, help="Number of mould radii; by default one per panel.")
 @click.option("--thickness", type=float, default=0.0, help="Thickness, in model units.")
 @click.option("--joint-gap", type=float, default=0.0, help="Joint width, in model units.")
+@click.option(
+    "--side",
+    type=click.Choice(["inward", "outward", "centred"]),
+    default="inward",
+    help="Where the thickness goes from the spheres, which are those of the moulds.",
+)
+@click.option(
+    "--offset",
+    type=click.Choice(["constant", "power"]),
+    default="constant",
+    help="The same thickness everywhere, or the same difference of squared radii: neighbours "
+    "that bulge alike then meet on both faces.",
+)
 @click.option("--units", type=click.Choice(UNITS), default="m", help="Model units.")
 @click.option("--layer", default="", help="Only this layer (.3dm) or group (OBJ).")
 @click.option(

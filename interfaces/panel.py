@@ -16,6 +16,9 @@ from ..nodes.wires import Step, Wire
 
 Progress = Callable[[str, str], None]
 
+_LAYERS = {"constant": "offset", "power": "power"}
+"""Port of `panels` by option: --layer names a layer of the input."""
+
 
 @dataclass(frozen=True)
 class PanelOptions:
@@ -34,6 +37,10 @@ class PanelOptions:
         Number of moulds; None for a radius per panel.
     thickness, joint_gap : float
         In model units.
+    side : {"inward", "outward", "centred"}
+        Where the thickness goes from the spheres.
+    offset : {"constant", "power"}
+        Whether the thickness is the same everywhere, or the difference of squared radii.
     edges : {"bisector", "intersection"} or None
         How panels are cut; by default where the spheres meet if there is a support, else
         upright.
@@ -55,6 +62,8 @@ class PanelOptions:
     moulds: int | None = None
     thickness: float = 0.0
     joint_gap: float = 0.0
+    side: Literal["inward", "outward", "centred"] = "inward"
+    offset: Literal["constant", "power"] = "constant"
     edges: Literal["bisector", "intersection"] | None = None
     tolerance: float | None = None
     target_angle: float = 0.0
@@ -76,9 +85,9 @@ def panel_graph(options: PanelOptions) -> Graph:
     -------
     Graph
         Its steps are named mesh, start, angles (before an optimum of more than angles),
-        optimum, moulds and blanks (with a number of moulds), panels, audit, report, step,
-        rhino, table, list and picture, with a support nodes, annuli, beams and drawing too;
-        its writers write into the working directory.
+        optimum, panels, audit, report, step, rhino, table, list and picture; with a number of
+        moulds also moulds, blanks, mould_drawing and mould_picture, with a support nodes,
+        annuli, beams and drawing. Its writers write into the working directory.
 
     Raises
     ------
@@ -104,10 +113,12 @@ def panel_graph(options: PanelOptions) -> Graph:
     panels = graph.add(
         "panels", "panels", sphere_mesh=spheres, thickness=thickness, joint_gap=joint_gap,
         edges=options.edges or ("intersection" if options.support else "bisector"),
-        labels=labels,
+        labels=labels, side=options.side, layer=_LAYERS[options.offset],
     )  # fmt: skip
     if options.moulds is not None:
         blanks = graph.add("mould_blanks", "blanks", panels=panels.panels)
+        for name, path in (("mould_drawing", "moulds.dxf"), ("mould_picture", "moulds.svg")):
+            graph.add("write_mould_drawings", name, panels=panels.panels, path=path)
     audit = graph.add("audit", "audit", panels=panels.panels, cut=panels.report)
     structure = _beams(graph, options, spheres) if options.support else {}
     graph.add(

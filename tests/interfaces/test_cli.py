@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -10,12 +11,14 @@ from click.testing import CliRunner, Result
 import spheremesh as sm
 from spheremesh.fabrication.mesh_files import write_mesh
 from spheremesh.interfaces.cli import main
+from spheremesh.interfaces.panel import PanelOptions, panel_graph
 from spheremesh.kernel.mesh import Mesh
+from spheremesh.kernel.panel_facts import panel_radii
 from spheremesh.kernel.surfaces import vase_net
 
 FILES = {
-    "panels.step", "model.3dm", "schedule.csv", "schedule.json", "preview.png", "graph.json",
-    "report.json",
+    "panels.step", "model.3dm", "schedule.csv", "schedule.json", "moulds.dxf", "moulds.svg",
+    "preview.png", "graph.json", "report.json",
 }  # fmt: skip
 
 
@@ -216,6 +219,55 @@ def _assert_refused(arguments: list[str], out: Path, expected: str) -> None:
     assert expected in lines[0]
     assert result.stdout == ""
     assert not out.exists()
+
+
+# Sides of the thickness, and the drawings of moulds
+
+
+def schedule(out: Path) -> dict[str, Any]:
+    return json.loads((out / "schedule.json").read_text(encoding="utf-8"))
+
+
+def test_side_of_the_thickness(vase: Path, tmp_path: Path) -> None:
+    options = ("--thickness", "0.02", "--side", "outward", "--offset", "power")
+    result = panel(vase, tmp_path, *options, "--json")
+    assert result.exit_code == 0, result.stderr
+    rows = schedule(tmp_path)["panels"]
+    for row in rows:
+        assert row["inner_radius_mm"] == pytest.approx(row["radius_mm"])
+    powers = [abs(row["outer_radius_mm"] ** 2 - row["inner_radius_mm"] ** 2) for row in rows]
+    np.testing.assert_allclose(powers, powers[0], rtol=1e-6)
+    thickness = json.loads(result.stdout)["thickness"]
+    assert thickness["min"] < 0.02 < thickness["max"]
+    # Without a number of moulds there is nothing to draw.
+    assert not list(tmp_path.glob("moulds.*"))
+
+
+def test_sides_and_offsets_reach_the_panels(vase: Path) -> None:
+    sides: tuple[Literal["inward", "outward", "centred"], ...]
+    sides = ("inward", "outward", "centred")
+    for side, share in zip(sides, (0.0, 1.0, 0.5), strict=True):
+        graph = panel_graph(PanelOptions(mesh=vase, thickness=0.02, side=side))
+        made = graph.run("panels.panels")
+        radii = panel_radii(made)
+        outwards = np.abs(radii.outer_radii - radii.radii)
+        np.testing.assert_allclose(outwards, 0.02 * share, atol=1e-9)
+        np.testing.assert_allclose(made.thicknesses, 0.02, rtol=1e-12)
+
+
+@pytest.mark.parametrize("option", [("--side", "up"), ("--offset", "none")])
+def test_unknown_sides_and_offsets(option: tuple[str, str], vase: Path, tmp_path: Path) -> None:
+    result = panel(vase, tmp_path / "out", *option)
+    assert result.exit_code == 2
+    assert option[1] in result.stderr
+
+
+def test_drawings_of_moulds_show_every_panel(panelled: Panelled) -> None:
+    _, out = panelled
+    for name in ("moulds.dxf", "moulds.svg"):
+        text = (out / name).read_text(encoding="utf-8")
+        assert all(f"Mould {i:02d}: radius" in text for i in range(1, 5))
+        assert all(row["id"] in text for row in schedule(out)["panels"])
 
 
 # Support, tolerance, target
