@@ -32,7 +32,7 @@ from .opennurbs import brep_streams, edge_streams
 from .panel_text import panel_text
 from .render_meshes import MESH_TOLERANCE, panel_meshes
 from .rhino_beams import add_beams
-from .rhino_blocks import add_definition, add_instance
+from .rhino_blocks import add_definition, add_instance, add_mould_blocks
 from .rhino_meshes import to_rhino_mesh
 from .rhino_model import (
     Place,
@@ -52,7 +52,7 @@ from .rhino_model import (
 VERSIONS: Final = (6, 7, 8)
 """Versions of Rhino whose files can be written."""
 
-Layer: TypeAlias = Literal["Edges", "Centres"]
+Layer: TypeAlias = Literal["Edges", "Centres", "Moulds"]
 Shape: TypeAlias = Literal["panels", "blocks", "shell"]
 
 _BLACK = (0, 0, 0)
@@ -73,8 +73,9 @@ class RhinoContents:
     shape : {"panels", "blocks", "shell"}
         One Brep per panel; the same with a block definition and instances wherever panels are
         identical (to `SAME_PANEL` of their size); or all panels joined into one Brep.
-    layers : tuple of {"Edges", "Centres"}
-        Further layers: an arc or line for every edge of every panel; the centres of spheres.
+    layers : tuple of {"Edges", "Centres", "Moulds"}
+        Further layers: an arc or line for every edge of every panel; the centres of spheres; a
+        block for every mould, its blank, set under each of its panels.
     reference : Mesh, optional
         The design, for the layer ``Reference``.
     render_meshes : bool
@@ -100,8 +101,8 @@ class RhinoFile(NamedTuple):
     objects : mapping of str to int
         Number of objects by openNURBS's names: ``Brep``, ``ArcCurve``, ...
     notes : tuple of str
-        What else differs from what was asked for: edges that the shell leaves open, a
-        reference mesh that Rhino refuses.
+        What else differs from what was asked for: edges that the shell leaves open, moulds
+        whose blocks are not exact, a reference mesh that Rhino refuses.
     """
 
     path: Path
@@ -164,10 +165,10 @@ def write_3dm(
     Layers: ``Panels`` with a sub-layer ``Mould 01``, ... for every label (panels without a
     mould lie on ``Panels`` itself), ``Edges`` with one arc or line for every edge of every
     panel: neighbours' arcs differ by the joint and the edge gap, so both are there;
-    ``Centres`` and ``Reference`` are switched off. Each mould has its colour on its layer and
-    as a material, and is a group. Named views: Top and Perspective. User text: `panel_text`.
-    Object ids depend on the panel's id and the object's role only. Two runs differ in the time
-    of day alone.
+    ``Centres``, ``Moulds`` and ``Reference`` are switched off. Each mould has its colour on
+    its layer and as a material, and is a group. Named views: Top and Perspective. User text:
+    `panel_text`. Object ids depend on the panel's id and the object's role only. Two runs
+    differ in the time of day alone.
     """
     check_suffix(path, ".3dm")
     if version not in VERSIONS:
@@ -175,10 +176,10 @@ def write_3dm(
     _check_writable(panels, beams, path)
     model = new_model(units)
     _set_strings(model, graph_json, title)
-    rejected, n_open = (), 0
+    rejected: tuple[RejectedPanel, ...] = ()
+    notes: list[str] = []
     if panels is not None:
-        rejected, n_open = _add_panels(model, panels, contents, units)
-    notes = [f"{n_open} edges of neighbours lie apart and stay open"] if n_open else []
+        rejected, notes = _add_panels(model, panels, contents, units)
     if beams is not None:
         add_beams(model, beams, units, render_meshes=contents.render_meshes)
     if contents.reference is not None:
@@ -288,27 +289,29 @@ def _panel_attributes(
 
 def _add_panels(
     model: RhinoModel, panels: Panels, contents: RhinoContents, units: str
-) -> tuple[tuple[RejectedPanel, ...], int]:
-    """All that is known of panels; those rejected, and edges that the shell leaves open."""
+) -> tuple[tuple[RejectedPanel, ...], list[str]]:
+    """All that is known of panels; those rejected, and what else is not as asked for."""
     sound, rejected = _judge(model, panels, render_meshes=contents.render_meshes)
     exact = sound.panels
     moulds = _add_moulds(model, exact)
     attributes = _panel_attributes(model, exact, moulds, units)
-    n_open = 0
+    notes: list[str] = []
     if contents.shape == "panels":
         for brep, each in zip(sound.breps, attributes, strict=True):
             model.file.Objects.AddBrep(brep, each)
     elif contents.shape == "blocks":
         _add_blocks(model, sound, moulds, attributes)
     elif exact.n_panels:
-        n_open = _add_shell(model, sound, moulds[-1].place, model_tolerance(units))
+        notes += _add_shell(model, sound, moulds[-1].place, model_tolerance(units))
     if "Edges" in contents.layers:
         _add_edges(model, exact)
     if "Centres" in contents.layers:
         _add_centers(model, exact)
+    if "Moulds" in contents.layers:
+        notes += add_mould_blocks(model, exact, render_meshes=sound.render_meshes)
     if exact.n_panels:
         add_views(model, exact.corners + exact.origins[exact.corner_panels])
-    return rejected, n_open
+    return rejected, notes
 
 
 def _add_blocks(
@@ -337,8 +340,8 @@ def _add_blocks(
             add_instance(model, block, found.rotations[i], places[i], each)
 
 
-def _add_shell(model: RhinoModel, sound: _Sound, place: Place, largest_gap: float) -> int:
-    """All panels as one Brep; the number of edges that it leaves open."""
+def _add_shell(model: RhinoModel, sound: _Sound, place: Place, largest_gap: float) -> list[str]:
+    """All panels as one Brep; what it leaves open."""
     panels = sound.panels
     meshes = panel_meshes(panels, MESH_TOLERANCE) if sound.render_meshes else None
     shell = join_panels(panels, largest_gap, meshes)
@@ -347,7 +350,8 @@ def _add_shell(model: RhinoModel, sound: _Sound, place: Place, largest_gap: floa
         raise InputError("openNURBS cannot join the panels; write them one by one")
     attributes = object_attributes(model, "Shell", "shell", place)
     model.file.Objects.AddBrep(brep, attributes)
-    return shell.n_open
+    n_open = shell.n_open
+    return [f"{n_open} edges of neighbours lie apart and stay open"] if n_open else []
 
 
 def _add_edges(model: RhinoModel, panels: Panels) -> None:

@@ -132,7 +132,7 @@ def main() -> None:
     modules = Path(sys.argv[1]).resolve() / "node_modules"
     pictures = Path(sys.argv[2] if len(sys.argv) > 2 else tempfile.mkdtemp())
     roof, torus = nodes.roof_mesh(24, 40), nodes.torus_mesh(24, 16)
-    layers = ("Edges", "Centres")
+    layers = ("Edges", "Centres", "Moulds")
     models = {
         "roof": (write_model, roof, RhinoContents(layers=layers, reference=roof), 5),
         "torus of blocks": (write_model, torus, RhinoContents("blocks", ()), 3),
@@ -145,9 +145,9 @@ def main() -> None:
             shutil.copy(HERE / "index.html", place)
             (place / "node_modules").symlink_to(modules)
             written = dict(write(mesh, place / "model.3dm", contents, moulds).objects)
-            if contents.shape == "blocks":
+            n_instances = written.pop("InstanceReference", 0)
+            if n_instances:
                 # three.js sets the member of a block in place of every instance.
-                n_instances = written.pop("InstanceReference")
                 n_blocks = len({*_block_names(place / "model.3dm")})
                 written["Brep"] += n_instances - n_blocks
             found = look(place)

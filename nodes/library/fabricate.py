@@ -138,7 +138,7 @@ def write_3dm(
     beams: Beams | None = None,
     reference: Mesh | SphereMesh | None = None,
     shape: Literal["panels", "blocks", "shell"] = "panels",
-    layers: tuple[Literal["Edges", "Centres"], ...] = ("Edges",),
+    layers: tuple[Literal["Edges", "Centres", "Moulds"], ...] = ("Edges",),
 ) -> str:
     """
     Write panels and beams to a Rhino file: exact trimmed spheres, layers per mould, user text.
@@ -160,8 +160,9 @@ def write_3dm(
     shape : {"panels", "blocks", "shell"}
         A surface per panel; instances of a block wherever panels are identical; or all panels
         joined into one polysurface, which needs panels cut along intersections without joint.
-    layers : tuple of {"Edges", "Centres"}
-        Further layers: the edges of the panels, the centres of their spheres.
+    layers : tuple of {"Edges", "Centres", "Moulds"}
+        Further layers: the edges of the panels, the centres of their spheres, and the blanks
+        of the moulds as blocks under their panels.
 
     Returns
     -------

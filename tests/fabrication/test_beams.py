@@ -35,6 +35,7 @@ from spheremesh.kernel.cutting import cut_panels
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.fit import face_planes
 from spheremesh.kernel.mesh import mean_edge_length
+from spheremesh.kernel.panels import select_panels
 from spheremesh.kernel.surfaces import roof_net, torus_net, vase_net
 
 
@@ -156,6 +157,16 @@ def test_panels_without_any_beam(tmp_path: Path) -> None:
     assert len(read_solids(path)) == panels.n_panels
     model = rhino3dm.File3dm.Read(str(write_3dm(panels, tmp_path / "m.3dm", beams=none).path))
     assert on_layer(model, "Beams") == on_layer(model, "Axes") == []
+
+
+def test_beams_without_any_panel(tmp_path: Path) -> None:
+    panels, _ = cut_panels(TORUS, "intersection", thickness=0.02)
+    none = select_panels(panels, np.zeros(panels.n_panels, bool))
+    beams = CASES["mitred"]
+    contents = RhinoContents(layers=("Edges", "Centres", "Moulds"))
+    file = write_3dm(none, tmp_path / "m.3dm", beams=beams, contents=contents)
+    assert file.objects == {"Extrusion": beams.n_beams, "LineCurve": 35}
+    assert len(read_solids(write_step(none, tmp_path / "m.step", beams=beams))) == beams.n_beams
 
 
 def test_far_from_the_origin_no_digit_is_lost(tmp_path: Path) -> None:

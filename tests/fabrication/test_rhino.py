@@ -15,7 +15,7 @@ import pytest
 import rhino3dm
 
 from spheremesh import nodes
-from spheremesh.fabrication import rhino
+from spheremesh.fabrication import rhino, rhino_blocks
 from spheremesh.fabrication.brep_audit import BrepErrors, verify_breps
 from spheremesh.fabrication.brep_layout import read_brep_streams
 from spheremesh.fabrication.mesh_files import read_mesh
@@ -367,6 +367,59 @@ def test_identical_panels_are_instances(tmp_path: Path) -> None:
     model = rhino3dm.File3dm.Read(str(again.path))
     second_ids = {item.Attributes.Id for item in model.Objects}
     assert first_ids == second_ids | {block.Id for block in model.InstanceDefinitions}
+
+
+def test_a_block_for_every_mould(tmp_path: Path) -> None:
+    """Set under its panels it is their mould; what stands on it is known by name."""
+    sphere_mesh, labels, *_ = nodes.cluster_radii(nodes.fit_spheres(nodes.roof_mesh(4, 5)), k=3)
+    panels = nodes.panels(sphere_mesh, thickness=0.1, labels=labels, side="outward").panels
+    contents = RhinoContents(layers=("Moulds",))
+    file = write_3dm(panels, tmp_path / "m.3dm", contents=contents)
+    assert (file.objects, file.notes) == ({"Brep": 23, "InstanceReference": 20}, ())
+    model: Any = rhino3dm.File3dm.Read(str(file.path))
+    assert not next(layer for layer in model.Layers if layer.Name == "Moulds").Visible
+    names = [f"Mould {i:02d}" for i in range(1, 4)]
+    assert [block.Name for block in model.InstanceDefinitions] == names
+    blocks = {block.Id: block for block in model.InstanceDefinitions}
+    for item in on_layer(model, "Moulds"):
+        if item.Attributes.IsInstanceDefinitionObject:
+            continue
+        i = panels.ids.index(item.Attributes.Name)
+        block = blocks[item.Geometry.ParentIdefId]
+        assert block.Name == names[panels.labels[i]]
+        (member,) = block.GetObjectIds()
+        brep = model.Objects.FindId(str(member)).Geometry.Duplicate()
+        assert brep.Faces[0].GetMesh(rhino3dm.MeshType.Render) is not None
+        assert brep.Transform(item.Geometry.Xform)
+        stream = base64.b64decode(brep.Encode()["data"])
+        errors = verify_breps([stream], panels.design_spheres[[i]], panels.origins[[i]])[0]
+        assert errors.to_sphere < 1e-12 * errors.scale + errors.rounding
+    read = read_mesh(file.path, "Moulds", n_u=1, n_v=1)
+    assert read.n_faces == 20
+
+
+def test_no_moulds_have_no_blocks(tmp_path: Path) -> None:
+    panels = select_panels(torus_panels(), np.arange(48) < 3)
+    file = write_3dm(panels, tmp_path / "m.3dm", contents=RhinoContents(layers=("Moulds",)))
+    assert (file.objects, file.notes) == ({"Brep": 3}, ())
+
+
+def test_a_mould_that_is_not_exact_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    panels = torus_panels()
+    panels = replace(panels, labels=np.arange(48) % 2)
+    exact = rhino_blocks.brep_streams
+
+    def shifted(given: Panels, meshes: RenderMeshes | None = None) -> list[bytes]:
+        corners = given.corners.copy()
+        corners[5] += 1e-6
+        return exact(replace(given, corners=corners), meshes)
+
+    monkeypatch.setattr(rhino_blocks, "brep_streams", shifted)
+    file = write_3dm(panels, tmp_path / "m.3dm", contents=RhinoContents(layers=("Moulds",)))
+    assert file.objects == {"Brep": 49, "InstanceReference": 24}
+    assert "the block of Mould 02 is left out: a trim leaves its edge" in file.notes[0]
 
 
 def test_shell_joins_what_meets(tmp_path: Path) -> None:
