@@ -40,6 +40,7 @@ from .rhino_model import (
     Untyped,
     add_group,
     add_layer,
+    add_surface_layer,
     add_views,
     count_objects,
     encode_model,
@@ -260,12 +261,12 @@ class _Mould(NamedTuple):
 
 def _add_moulds(model: RhinoModel, panels: Panels) -> dict[int, _Mould]:
     """Layers and groups of the moulds by label, under the layer of panels without, -1."""
-    root = add_layer(model, "Panels", UNLABELLED)
+    root = add_surface_layer(model, "Panels", UNLABELLED)
     moulds = {-1: _Mould(root, None)}
     count = int(panels.labels.max(initial=-1)) + 1
     for label in range(count):
         name, color = mould_name(label, count), mould_color(label, count)
-        place = add_layer(model, name, color, root)
+        place = add_surface_layer(model, name, color, root)
         moulds[label] = _Mould(place, add_group(model, name))
     return moulds
 
@@ -381,6 +382,6 @@ def _add_reference(model: RhinoModel, mesh: Mesh) -> list[str]:
     except InputError as error:
         return [f"the reference is left out: {error}"]
     # It would flicker through the panels: it is there to be switched on.
-    place = add_layer(model, "Reference", UNLABELLED, visible=False)
+    place = add_surface_layer(model, "Reference", UNLABELLED, visible=False)
     model.file.Objects.AddMesh(rhino_mesh, object_attributes(model, "Reference", "mesh", place))
     return []

@@ -16,7 +16,7 @@ from ..kernel.colors import BEAM
 from ..kernel.errors import InputError
 from ..kernel.support import node_name
 from .render_meshes import MESH_TOLERANCE, beam_meshes, extrusions_with_meshes
-from .rhino_model import RhinoModel, Untyped, add_layer, object_attributes
+from .rhino_model import RhinoModel, Untyped, add_layer, add_surface_layer, object_attributes
 
 _BLACK = (0, 0, 0)
 
@@ -36,7 +36,7 @@ def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: boo
     render_meshes : bool
         Whether the extrusions carry triangles for viewers that cannot mesh them.
     """
-    place = add_layer(model, "Beams", BEAM)
+    place = add_surface_layer(model, "Beams", BEAM)
     solids, texts = beam_extrusions(model.library, beams), beam_text(beams, units)
     if render_meshes and solids:
         solids = _with_meshes(model, solids, beams)

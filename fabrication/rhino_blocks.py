@@ -18,7 +18,7 @@ from .brep_audit import verify_breps
 from .chunks import ANONYMOUS, Chunk, assemble, class_object, doubles, fill, ints
 from .opennurbs import brep_streams
 from .render_meshes import MESH_TOLERANCE, panel_meshes
-from .rhino_model import RhinoModel, Untyped, add_layer, object_attributes, object_id
+from .rhino_model import RhinoModel, Untyped, add_surface_layer, object_attributes, object_id
 
 INSTANCE_DEFINITION: Final = UUID("26f8bff6-2618-417f-a158-153d64a94989").bytes_le
 
@@ -138,7 +138,7 @@ def add_mould_blocks(model: RhinoModel, panels: Panels, *, render_meshes: bool) 
         Moulds that are left out, with their reasons.
     """
     # They lie under the panels: they are there to be switched on.
-    place = add_layer(model, "Moulds", UNLABELLED, visible=False)
+    place = add_surface_layer(model, "Moulds", UNLABELLED, visible=False)
     found = mould_caps(panels)
     meshes = panel_meshes(found.caps, MESH_TOLERANCE) if render_meshes else None
     streams = brep_streams(found.caps, meshes)
@@ -152,7 +152,8 @@ def add_mould_blocks(model: RhinoModel, panels: Panels, *, render_meshes: bool) 
             continue
         member = object_attributes(model, name, "block member", place)
         add_definition(model, name, object_id(name, "block"), model.decode(stream), member)
-    panel_ids, rows = found.members.tolist(), found.rows.tolist()
+    panel_ids: list[int] = found.members.tolist()
+    rows: list[int] = found.rows.tolist()
     for i, (panel, row) in enumerate(zip(panel_ids, rows, strict=True)):
         block = blocks[row]
         if block is not None:

@@ -130,8 +130,7 @@ def panel_graph(options: PanelOptions) -> Graph:
     if structure:
         made["beams"] = structure["beams"].beams
     graph.add("write_step", "step", **made, path="panels.step")
-    layers = ["Edges"] if options.moulds is None else ["Edges", "Moulds"]
-    graph.add("write_3dm", "rhino", **made, path="model.3dm", reference=mesh, layers=layers)
+    graph.add("write_3dm", "rhino", **made, path="model.3dm", reference=mesh)
     graph.add("write_schedule", "table", panels=panels.panels, path="schedule.csv")
     graph.add("write_schedule", "list", panels=panels.panels, path="schedule.json")
     graph.add("render", "picture", panels=panels.panels, path="preview.png")
