@@ -290,6 +290,25 @@ def test_a_model_without_render_meshes(tmp_path: Path) -> None:
     assert solid.GetMesh(rhino3dm.MeshType.Any) is None
 
 
+@pytest.mark.parametrize("version", [6, 7, 8])
+def test_every_version_of_rhino(tmp_path: Path, version: int) -> None:
+    panels, _ = cut_panels(TORUS, "intersection", labels=np.arange(35) % 3)
+    beams = CASES["mitred"]
+    contents = RhinoContents(layers=("Edges", "Centres", "Moulds"), reference=TORUS.mesh)
+    path = tmp_path / "m.3dm"
+    file = write_3dm(panels, path, version=version, beams=beams, contents=contents)
+    model = rhino3dm.File3dm.Read(str(path))
+    assert model.ArchiveVersion // 10 == version
+    objects: list[Any] = [model.Objects[i] for i in range(len(model.Objects))]
+    kinds = Counter(type(item.Geometry).__name__ for item in objects)
+    assert kinds == file.objects
+    assert kinds["Extrusion"] == beams.n_beams
+    assert kinds["InstanceReference"] == panels.n_panels
+    assert all(item.Geometry.IsValid for item in objects)
+    for item in on_layer(model, "Beams"):
+        assert item.Geometry.GetMesh(rhino3dm.MeshType.Render).IsValid
+
+
 def test_beams_far_from_the_origin_keep_precise_meshes(tmp_path: Path) -> None:
     shift = np.array([5e5, -3e5, 2e5])
     moved = Mesh(TORUS.mesh.vertices + shift, TORUS.mesh.faces)
