@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arcs import Arcs, arc_points
-from .arrays import FloatArray, IntArray, dot, norm, unit
+from .arrays import FloatArray, IntArray, norm, unit
 from .beams import Beams, section_arcs
 from .spheres import normals
 from .tessellation import MAX_STEPS
@@ -55,8 +55,8 @@ def beam_triangles(beams: Beams, tolerance: float) -> Iterator[BeamTriangles]:
     arcs = section_arcs(beams)
     sagittas = np.max([np.abs(each.sagittas) for each in arcs], axis=0, initial=0.0)
     halves = np.max([norm(each.ends - each.starts) for each in arcs], axis=0, initial=0.0) / 2
-    count = np.ceil(np.sqrt(sagittas / (tolerance * halves)))
-    steps = np.clip(count, 1, MAX_STEPS).astype(np.int64)
+    needed = np.ceil(np.sqrt(sagittas / (tolerance * halves)))
+    steps = np.clip(needed, 1, MAX_STEPS).astype(np.int64)
     for count in np.unique(steps).tolist():
         members = np.flatnonzero(steps == count)
         yield _triangulate(beams, arcs, members, count)
@@ -67,14 +67,10 @@ def _triangulate(
 ) -> BeamTriangles:
     """Strips: upper and lower side, outer and inner face, first and second end."""
     annuli = beams.annuli
-    up, across = annuli.frames[members, None, 1], annuli.frames[members, None, 2]
-    rows = annuli.outer[members][:, None], annuli.inner[members][:, None]
-    rims = [_points(each, members, steps) for each in arcs]
-    faces = [normals(row, rim) for row, rim in zip(rows, rims, strict=True)]
-    # Beams of negative power stand on the outer circle: their two rims change places.
-    is_turned = (dot(rims[0] - rims[1], up).sum(1) < 0)[:, None, None]
-    outer, inner = (np.where(is_turned, rims[1 - k], rims[k]) for k in (0, 1))
-    outwards, inwards = (np.where(is_turned, faces[1 - k], faces[k]) for k in (0, 1))
+    across = annuli.frames[members, None, 2]
+    outer, inner = (_points(each, members, steps) for each in arcs)
+    outwards = normals(annuli.outer[members][:, None], outer)
+    inwards = -normals(annuli.inner[members][:, None], inner)
     half = across * beams.thickness / 2
     beyond: FloatArray = np.cross(outer[:, [0, -1]] - inner[:, [0, -1]], across)
     first, second = np.split(unit(beyond), 2, axis=1)
@@ -83,7 +79,7 @@ def _triangulate(
         (inner + half, outer + half, across),
         (outer - half, inner - half, -across),
         (outer + half, outer - half, outwards),
-        (inner - half, inner + half, -inwards),
+        (inner - half, inner + half, inwards),
         (before - half, before + half, -first),
         (after + half, after - half, second),
     ]

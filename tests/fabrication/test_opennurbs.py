@@ -405,6 +405,24 @@ def test_moved_vertex_of_the_mesh(specimen: Specimen) -> None:
     assert "not finite" in reason(panels, lost)
 
 
+@pytest.mark.parametrize("has_doubles", [False, True])
+def test_moved_vertex_of_a_flat_mesh(has_doubles: bool) -> None:  # noqa: FBT001
+    """Where normals tell nothing."""
+    panels = FAMILIES["roof"]()
+    panels = select_panels(panels, panels.spheres[:, 0] == 0)
+    panels = select_panels(panels, np.arange(panels.n_panels) == 1)
+    meshes = replace(panel_meshes(panels, 0.002), has_doubles=has_doubles)
+    (stream,) = brep_streams(panels, meshes)
+    assert reason(panels, stream) == ""
+    buffer, dtype, lift = ("points", "<f8", 1e-9) if has_doubles else ("floats", "<f4", 1e-4)
+    normal = lift * panels.spheres[0, 1:4]
+    lifted = mesh_change(stream, buffer, lambda x: x + normal, 3, dtype)
+    errors = verify_brep_bytes(lifted, panels.spheres[0], panels.origins[0])
+    if not has_doubles:
+        assert "the render mesh leaves the sphere" in errors.reason()
+    assert errors.reason()
+
+
 def test_wrong_normal_of_the_mesh(specimen: Specimen) -> None:
     panels, stream = specimen
     tilted = mesh_change(stream, "normals", lambda x: x + np.array([1e-5, 0, -1e-5]), 3, "<f4")
