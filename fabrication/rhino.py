@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from importlib.metadata import version as installed_version
 from pathlib import Path
 from typing import Final, Literal, NamedTuple, TypeAlias
+from uuid import UUID
 
 import numpy as np
 
@@ -327,17 +328,19 @@ def _add_blocks(
     members = np.flatnonzero(~is_single & (first == np.arange(panels.n_panels)))
     chosen = select_panels(panels, np.isin(np.arange(panels.n_panels), members))
     local = replace(chosen, origins=np.zeros_like(chosen.origins))
-    streams = _streams(local, render_meshes=sound.render_meshes)
-    for i, stream in zip(members.tolist(), streams, strict=True):
-        name, place = panels.ids[i], moulds[int(panels.labels[i])].place
-        member = object_attributes(model, name, "block member", place)
-        block = object_id(name, "block")
-        add_definition(model, f"Panel {name}", block, model.decode(stream), member)
+    # What is not exact about its own origin has no block.
+    judged, _ = _judge(model, local, render_meshes=sound.render_meshes)
+    blocks: dict[str, UUID] = {}
+    labels: list[int] = judged.panels.labels.tolist()
+    for name, label, brep in zip(judged.panels.ids, labels, judged.breps, strict=True):
+        member = object_attributes(model, name, "block member", moulds[label].place)
+        blocks[name] = object_id(name, "block")
+        add_definition(model, f"Panel {name}", blocks[name], brep, member)
     for i, each in enumerate(attributes):
-        if is_single[i]:
+        block = blocks.get(panels.ids[int(first[i])])
+        if block is None:
             model.file.Objects.AddBrep(sound.breps[i], each)
         else:
-            block = object_id(panels.ids[int(first[i])], "block")
             add_instance(model, block, found.rotations[i], places[i], each)
 
 

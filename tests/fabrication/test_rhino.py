@@ -374,6 +374,28 @@ def test_identical_panels_are_instances(tmp_path: Path) -> None:
     assert first_ids == second_ids | {block.Id for block in model.InstanceDefinitions}
 
 
+def test_a_block_that_is_not_exact_is_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its panels are written one by one."""
+    exact_streams = rhino.brep_streams
+
+    def shifted(given: Panels, meshes: RenderMeshes | None = None) -> list[bytes]:
+        corners = given.corners.copy()
+        if not given.origins.any():
+            corners[1] += 1e-6
+        return exact_streams(replace(given, corners=corners), meshes)
+
+    panels = torus_panels()
+    sound = write_3dm(panels, tmp_path / "a.3dm", contents=RhinoContents("blocks", ()))
+    monkeypatch.setattr(rhino, "brep_streams", shifted)
+    file = write_3dm(panels, tmp_path / "a.3dm", contents=RhinoContents("blocks", ()))
+    assert file.rejected == ()
+    n_instances = sound.objects["InstanceReference"] - file.objects["InstanceReference"]
+    assert n_instances > 0
+    assert file.objects["Brep"] == sound.objects["Brep"] + n_instances - 1
+
+
 def test_a_block_for_every_mould(tmp_path: Path) -> None:
     """Set under its panels it is their mould; what stands on it is known by name."""
     sphere_mesh, labels, *_ = nodes.cluster_radii(nodes.fit_spheres(nodes.roof_mesh(4, 5)), k=3)
