@@ -1,8 +1,9 @@
 """
-What workshop files cost: STEP with and without instances, its check, schedule, audit, drawings.
+What workshop files cost: STEP, its check, Rhino, schedule, audit, drawings.
 
-    python benchmarks/workshop.py [exact]
+    python benchmarks/workshop.py [exact | rhino]
 
+``rhino`` writes the Rhino files alone.
 ``exact`` also checks every solid of 5,000 panels with OpenCASCADE, as built and as read back
 from the file, against the closed forms; that takes minutes. Seconds are CPU time.
 """
@@ -20,6 +21,8 @@ from exactness import judge_step
 from spheremesh.fabrication.audit import audit_panels
 from spheremesh.fabrication.mould_drawings import write_mould_drawings
 from spheremesh.fabrication.part21 import check_part21
+from spheremesh.fabrication.render_meshes import MESH_TOLERANCE, mesh_streams, panel_meshes
+from spheremesh.fabrication.rhino import RhinoContents, write_3dm
 from spheremesh.fabrication.schedule import write_schedule
 from spheremesh.fabrication.step import write_step
 from spheremesh.kernel.congruent_panels import congruent_panels
@@ -62,11 +65,25 @@ def clock(name: str, task: Callable[[], object]) -> None:
     print(line, flush=True)
 
 
+def rhino_files(made: Panels, folder: Path) -> None:
+    """Panels with user text and edges, with and without render meshes."""
+    write_3dm(roof_sample(made), folder / "first.3dm")  # load rhino3dm outside the clock
+    bare = RhinoContents(render_meshes=False)
+    clock(".3dm", lambda: write_3dm(made, folder / "p.3dm").path)
+    clock(
+        ".3dm, no render meshes", lambda: write_3dm(made, folder / "b.3dm", contents=bare).path
+    )
+    clock("render meshes alone", lambda: mesh_streams(panel_meshes(made, MESH_TOLERANCE)))
+
+
 def main() -> None:
     """Print a line per task."""
     warnings.simplefilter("ignore")
     folder = Path(tempfile.mkdtemp())
     made = roof()
+    rhino_files(made, folder)
+    if sys.argv[1:] == ["rhino"]:
+        return
     write_step(roof_sample(made), folder / "first.step")  # load OpenCASCADE outside the clock
     clock("STEP, 5,000 shapes", lambda: write_step(made, folder / "shapes.step"))
     clock("its check", lambda: check_part21(folder / "shapes.step"))

@@ -2,10 +2,9 @@
 The audit before files go out: numbered findings about panels, errors apart from notes.
 
 A check is a function of a `PanelSubject` that returns findings; `PANEL_CHECKS` lists them.
-Other parts (beams) bring checks of their own and the same `Finding`.
+Beams have checks of their own in `fabrication.beam_audit`, for the same workshop.
 """
 
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Final
@@ -13,7 +12,14 @@ from typing import Final
 import numpy as np
 
 from ..kernel.arrays import BoolArray, FloatArray, IntArray
-from ..kernel.findings import Finding, Severity
+from ..kernel.findings import (
+    Finding,
+    Severity,
+    findings_where,
+    refusals,
+    rejected_report,
+    repeated_names,
+)
 from ..kernel.panel_checks import RejectedPanel, finite_panels
 from ..kernel.panel_facts import PanelFacts, panel_facts
 from ..kernel.panels import Panels, neighbor_ids, scale_panels
@@ -29,19 +35,26 @@ class AuditLimits:
     Attributes
     ----------
     corner_deg : float
-        Corners sharper than this break.
+        Corners of panels and bevels of beams sharper than this break.
     edge_mm : float
-        Edges shorter than this are hard to cut.
+        Edges and beams shorter than this are hard to cut.
     wall_tilt_deg : float
-        Walls that lean more than this from upright need another tool.
+        Walls and beams that lean more than this from upright need another tool.
     step_mm : float
-        Steps between neighbours higher than this are seen.
+        Steps between neighbours, and between the ends of beams at a node, larger than this are
+        seen.
     thickness_share : float
         Panels thicker than this share of their smallest radius are hard to form.
     thickness_change : float
         Thicknesses that differ by more than this share from the one asked for.
     blank_mm : float
         Largest blank to be had; infinite for any.
+    twist_deg : float
+        Beams whose plane misses a node axis by more than this do not fit there.
+    depth_share : float
+        Beams shallower than this many thicknesses are no beams any more.
+    beam_mm : float
+        Longest piece that can be cut; infinite for any.
     """
 
     corner_deg: float = 15.0
@@ -51,6 +64,9 @@ class AuditLimits:
     thickness_share: float = 0.2
     thickness_change: float = 0.2
     blank_mm: float = float("inf")
+    twist_deg: float = 1.0
+    depth_share: float = 2.0
+    beam_mm: float = float("inf")
 
 
 @dataclass(frozen=True)
@@ -111,7 +127,10 @@ def audit_panels(
         If the units are not known.
     """
     scaled = scale_panels(panels, millimeters_per(units))
-    findings = [*_names(panels), *_refusals(rejected)]
+    findings = [
+        *repeated_names(panels.ids, "P001", "panels"),
+        *refusals(rejected_report(rejected)),
+    ]
     finite = finite_panels(panels)
     findings += [
         Finding("P002", panels.ids[i], "has numbers that are not finite")
@@ -160,15 +179,21 @@ def findings_by_id(findings: Iterable[Finding]) -> dict[str, list[Finding]]:
     return result
 
 
-def _names(panels: Panels) -> Iterator[Finding]:
-    for name, count in Counter(panels.ids).items():
-        if count > 1:
-            yield Finding("P001", name, f"{count} panels have this name", float(count))
+def warning_text(findings: Iterable[Finding]) -> str:
+    """
+    Findings of one part in a line.
 
+    Parameters
+    ----------
+    findings : iterable of Finding
+        The findings.
 
-def _refusals(rejected: Iterable[RejectedPanel]) -> Iterator[Finding]:
-    for panel in rejected:
-        yield Finding("P100", panel.id, f"cannot be made: {panel.reason}")
+    Returns
+    -------
+    str
+        Codes and messages, separated by semicolons.
+    """
+    return "; ".join(f"{finding.code} {finding.message}" for finding in findings)
 
 
 def _caps(subject: PanelSubject) -> Iterator[Finding]:
@@ -254,7 +279,5 @@ def _found(
     is_found: BoolArray,
     message: str,
     severity: Severity = "note",
-) -> Iterator[Finding]:
-    for i in np.flatnonzero(is_found).tolist():
-        size = float(sizes[i])
-        yield Finding(code, subject.panels.ids[i], message.format(size), size, severity)
+) -> list[Finding]:
+    return findings_where(subject.panels.ids, code, sizes, is_found, message, severity)

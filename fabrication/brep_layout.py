@@ -66,12 +66,12 @@ class Side(NamedTuple):
 
 
 class FaceMesh(NamedTuple):
-    """A render mesh: its triangles and the buffers of points (both precisions) and normals."""
+    """A render mesh: its triangles, the buffers of points and normals, and of exact points."""
 
     triangles: NDArray[np.unsignedinteger]
     floats: Buffer
     normals: Buffer
-    points: Buffer
+    points: Buffer | None
 
 
 @dataclass(frozen=True)
@@ -194,7 +194,7 @@ def parse_brep(stream: bytes) -> BrepLayout:
         fixed[start : start + 8 * count] = False
     for buffer in () if mesh is None else mesh[1:]:
         # Deflated bytes are compared: each stream is then judged on its own.
-        if not buffer.is_deflated:
+        if buffer is not None and not buffer.is_deflated:
             fixed[buffer.start : buffer.stop] = False
     for checksum in cursor.checksums:
         fixed[checksum.place : checksum.place + CRC.size] = False
@@ -378,15 +378,22 @@ def _face_mesh(cursor: Cursor) -> FaceMesh | None:
         with cursor.chunk(ANONYMOUS):
             cursor.take(160)
         cursor.take(3)
-        cursor.expect(b"\0\1", "a mesh without ngons, with precise vertices")
-        with cursor.chunk(ANONYMOUS):
-            if cursor.ints(3) != (1, 0, n_points):
-                raise UnreadableError("the render mesh has another number of precise vertices")
-            points = cursor.buffer(24 * n_points)
+        cursor.expect(b"\0", "a mesh without ngons")
+        points = _precise_points(cursor, n_points)
         cursor.take(48)
     if n_faces < 1 or faces.max() >= n_points or (faces[:, 2] != faces[:, 3]).any():
         raise UnreadableError("the render mesh is not made of triangles of its vertices")
     return FaceMesh(faces[:, :3], floats, normals, points)
+
+
+def _precise_points(cursor: Cursor, n_points: int) -> Buffer | None:
+    """The vertices as float64, if they are there."""
+    if cursor.data[cursor.take(1)] == 0:
+        return None
+    with cursor.chunk(ANONYMOUS):
+        if cursor.ints(3) != (1, 0, n_points):
+            raise UnreadableError("the render mesh has another number of precise vertices")
+        return cursor.buffer(24 * n_points)
 
 
 def _side(

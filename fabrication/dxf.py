@@ -2,7 +2,8 @@
 Cutting drawings of beams as DXF: exact contours, nested on sheets, in millimetres.
 
 Layers: ``CUT`` has a closed polyline with exact arcs for every beam, ``ENGRAVE`` its id, the
-names of its nodes and the bevels of its ends, ``SHEET`` the outlines of the sheets.
+names of its nodes and the bevels of its ends, ``DRILL`` circles where it is drilled, ``SHEET``
+the outlines of the sheets.
 """
 
 import io
@@ -15,8 +16,10 @@ from typing import Any, Final, NamedTuple, TypeAlias
 import numpy as np
 
 from ..kernel.arrays import FloatArray
-from ..kernel.beams import Beams, scale_beams
+from ..kernel.beam_checks import check_writable_beams
+from ..kernel.beams import Beams, DrillMarks, scale_beams
 from ..kernel.contours import Contours, beam_contours, contour_boxes, shelves
+from ..kernel.drilling import mark_centers
 from ..kernel.errors import InputError, MissingLibraryError
 from ..kernel.support import node_name
 from .files import check_suffix, replacing
@@ -25,7 +28,7 @@ from .units import millimeters_per
 # What comes from ezdxf is partly untyped.
 _Untyped: TypeAlias = Any
 
-LAYERS: Final = {"CUT": 1, "ENGRAVE": 3, "SHEET": 8}
+LAYERS: Final = {"CUT": 1, "ENGRAVE": 3, "DRILL": 5, "SHEET": 8}
 """Layers of a drawing and their colours, by AutoCAD's index."""
 
 SHEET: Final = (3000.0, 1500.0)
@@ -92,8 +95,8 @@ def write_dxf(
     Raises
     ------
     InputError
-        If there are no beams, the unit is not known, sheet or spacing are no lengths, or the
-        folder does not exist.
+        If there are no beams, two have one name or one is not finite, the unit is not known,
+        sheet or spacing are no lengths, or the folder does not exist.
     MissingLibraryError
         If ezdxf is missing.
 
@@ -105,11 +108,11 @@ def write_dxf(
     target = Path(path)
     check_suffix(target, ".dxf")
     scale = millimeters_per(units)
-    if beams.n_beams == 0:
-        raise InputError(f"there are no beams to write to {target}")
+    check_writable_beams(beams, target)
     if not (np.isfinite([*sheet, spacing]).all() and min(sheet) > 0 and spacing >= 0):
         raise InputError(f"sheet {sheet} and spacing {spacing} must be lengths in millimetres")
-    contours = beam_contours(scale_beams(beams, scale))
+    beams = scale_beams(beams, scale)
+    contours = beam_contours(beams)
     boxes = contour_boxes(contours)
     sizes = boxes[:, 1] - boxes[:, 0]
     places, sheets, oversize = shelves(sizes, sheet, spacing)
@@ -123,6 +126,8 @@ def write_dxf(
             space.add_lwpolyline(ring, close=True, dxfattribs={"layer": "SHEET"})
         _add_contours(space, contours, shifts)
         _add_labels(space, beams, contours, shifts)
+        if beams.marks is not None:
+            _add_marks(space, beams, beams.marks, shifts)
         stream = io.StringIO()
         document.write(stream)
     with replacing(target) as temporary:
@@ -186,6 +191,12 @@ def _add_labels(space: _Untyped, beams: Beams, contours: Contours, shifts: Float
         for (text, share), point in zip(texts, points, strict=True):
             entity = space.add_text(text, height=share * size, dxfattribs={"layer": "ENGRAVE"})
             entity.set_placement(point, align=middle)
+
+
+def _add_marks(space: _Untyped, beams: Beams, marks: DrillMarks, shifts: FloatArray) -> None:
+    centers = (mark_centers(beams, marks) + shifts[:, None])[marks.fits]
+    for center in centers.reshape(-1, 2).tolist():
+        space.add_circle(center, marks.diameter / 2, dxfattribs={"layer": "DRILL"})
 
 
 @contextmanager

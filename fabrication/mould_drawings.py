@@ -7,7 +7,6 @@ DXF (for CAD and plotters) or SVG (for browsers and print).
 
 import os
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 from xml.etree import ElementTree
@@ -200,18 +199,25 @@ def _remark(made: Panels, caps: PanelCaps, panel: int) -> str:
 
 def _outlines(made: Panels, arcs: Arcs, caps: PanelCaps) -> list[FloatArray]:
     """Outline (n, 2) of each panel about the middle of its cap, seen against the axis."""
-    # An arc cut into n chords stands off them by its sagitta over n².
-    largest = float(np.abs(arcs.sagittas).max(initial=0.0))
-    steps = int(np.clip(np.ceil(np.sqrt(largest / CHORD_MM)), 1, MAX_STEPS))
     owners, first = made.corner_panels, made.offsets[:-1]
+    # An arc cut into n chords stands off them by its sagitta over n².
+    sagittas = np.maximum.reduceat(np.abs(arcs.sagittas), first)
+    steps = np.clip(np.ceil(np.sqrt(sagittas / CHORD_MM)), 1, MAX_STEPS).astype(np.int64)
     along = arcs.ends[first] - arcs.starts[first]
     along = unit(along - dot(along, caps.axes)[:, None] * caps.axes)
     frames = np.stack([along, np.cross(caps.axes, along)], 1)
-    points = arc_points(arcs, np.linspace(-1, 1, steps, endpoint=False))
-    relative = points - caps.centers[owners][:, None]
-    flat = np.einsum("hij,hnj->hni", frames[owners], relative)
-    bounds = made.offsets.tolist()
-    return [flat[start:end].reshape(-1, 2) for start, end in pairwise(bounds)]
+    result = [np.zeros((0, 2))] * made.n_panels
+    for count in np.unique(steps).tolist():
+        panels = np.flatnonzero(steps == count)
+        edges = np.flatnonzero(steps[owners] == count)
+        chosen = Arcs(*(values[edges] for values in vars(arcs).values()))
+        points = arc_points(chosen, np.linspace(-1, 1, count, endpoint=False))
+        relative = points - caps.centers[owners[edges]][:, None]
+        flat = np.einsum("hij,hnj->hni", frames[owners[edges]], relative).reshape(-1, 2)
+        ends = np.cumsum(count * made.degrees[panels])
+        for panel, outline in zip(panels.tolist(), np.split(flat, ends[:-1]), strict=True):
+            result[panel] = outline
+    return result
 
 
 def _add_block(drawing: Drawing, title: str, cells: list[_Cell]) -> Drawing:

@@ -131,7 +131,7 @@ def brep_streams(panels: Panels, meshes: RenderMeshes | None = None) -> list[byt
         face_mesh: tuple[Piece, ...] = (b"\0",)
         if meshes is not None:
             numbers |= mesh_numbers(meshes, group.ids)
-            face_mesh = (b"\1", mesh_object(meshes.triangles[kind]))
+            face_mesh = (b"\1", mesh_object(meshes, kind))
         template = assemble(_brep(int(corners.shape[1]), spans, face_mesh))
         for panel, stream in zip(group.ids, fill(template, numbers), strict=True):
             result[panel] = stream

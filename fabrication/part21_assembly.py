@@ -11,7 +11,8 @@ from datetime import datetime
 from typing import Final, Literal
 
 from ..kernel.colors import Color
-from .part21_bodies import Body, real, references
+from .part21_bodies import Body
+from .part21_values import numbers, real, references, string
 
 StepSchema = Literal["AP214IS", "AP242DIS"]
 
@@ -357,49 +358,3 @@ class _Assembler:
         )
         self._add(f"CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#{relation},#{shape})")
         return placement
-
-
-def numbers(values: Iterable[float]) -> str:
-    """
-    Numbers of a point or direction.
-
-    Parameters
-    ----------
-    values : iterable of float
-        Finite numbers.
-
-    Returns
-    -------
-    str
-        The numbers, separated by commas.
-    """
-    return ",".join(map(real, values))
-
-
-def string(text: str) -> str:
-    r"""
-    A string of ISO 10303-21.
-
-    Parameters
-    ----------
-    text : str
-        Any text.
-
-    Returns
-    -------
-    str
-        The text in quotes; characters beyond ASCII as directives.
-
-    Examples
-    --------
-    >>> print(string("Dach's Höhe"))
-    'Dach''s H\X4\000000F6\X0\he'
-    """
-    quoted = text.replace("\\", "\\\\").replace("'", "''")
-    return "'" + "".join(map(_character, quoted)) + "'"
-
-
-def _character(character: str) -> str:
-    if character.isascii() and character.isprintable():
-        return character
-    return f"\\X4\\{ord(character):08X}\\X0\\"

@@ -15,6 +15,7 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 
 from ..kernel.arrays import FloatArray, IntArray, norm, unit
+from .part21_values import real, references
 
 Ring: TypeAlias = tuple[tuple[int, bool], ...]
 """Edges of a closed chain, each with whether it is run from its start to its end."""
@@ -30,6 +31,9 @@ SURFACES: Final = {"PLANE": 6, "SPHERICAL_SURFACE": 10, "CYLINDRICAL_SURFACE": 1
 Surfaces and how many numbers tell them: unit normal and x axis of a plane, which passes through
 a corner; origin, unit z and x axes, and the radius. Normals point away from centres and axes.
 """
+
+
+_SENSES: Final = {True: ".T.", False: ".F."}
 
 
 @dataclass(frozen=True)
@@ -136,32 +140,6 @@ class Body:
         return filled % tuple((self.layout.references + first).tolist())
 
 
-def real(number: float) -> str:
-    """
-    A number as the least digits that are read back as the same.
-
-    Parameters
-    ----------
-    number : float
-        A finite number.
-
-    Returns
-    -------
-    str
-        A real number of ISO 10303-21, with a point and a capital E.
-
-    Examples
-    --------
-    >>> real(0.1), real(-2.0), real(1e-07), real(2.5e+16)
-    ('0.1', '-2.0', '1.E-07', '2.5E+16')
-    """
-    text = repr(number)
-    if "e" not in text:
-        return text
-    mantissa, exponent = text.split("e")
-    return f"{mantissa}{'' if '.' in mantissa else '.'}E{exponent}"
-
-
 def bodies(
     corners: Iterable[FloatArray],
     edges: Iterable[EdgeBatch],
@@ -224,10 +202,10 @@ _Face: TypeAlias = tuple[str, Ring, bool, int]
 
 
 class _Entities:
-    """Entities numbered from 0 as they come; their numbers in the text are to be filled in."""
+    """Entities numbered from 0 as they come, after those whose places are kept for the end."""
 
-    def __init__(self) -> None:
-        self.lines: list[str] = []
+    def __init__(self, kept: int) -> None:
+        self.lines = [""] * kept
 
     def add(self, text: str) -> int:
         self.lines.append(f"#{len(self.lines)}={text};\n")
@@ -264,8 +242,7 @@ def _layout(
     n_corners: int, edges: tuple[_Edge, ...], faces: tuple[_Face, ...], *, is_solid: bool
 ) -> BodyLayout:
     # The body and its shell come first; what they refer to is known at the end.
-    entities = _Entities()
-    entities.lines = ["", ""]
+    entities = _Entities(kept=2)
     points = [entities.point() for _ in range(n_corners)]
     vertices = [entities.add(f"VERTEX_POINT('',#{point})") for point in points]
     edge_curves = [
@@ -297,8 +274,7 @@ def _layout(
 
 
 def _line_layout(count: int) -> BodyLayout:
-    entities = _Entities()
-    entities.lines = [""]
+    entities = _Entities(kept=1)
     lines: list[int] = []
     for _ in range(count):
         start, end = entities.point(), entities.point()
@@ -307,29 +283,3 @@ def _line_layout(count: int) -> BodyLayout:
         lines.append(entities.add(f"TRIMMED_CURVE('',#{line},{ends},.T.,.PARAMETER.)"))
     entities.lines[0] = f"#0=GEOMETRIC_CURVE_SET('',({references(lines)}));\n"
     return entities.layout("GEOMETRICALLY_BOUNDED_WIREFRAME_SHAPE_REPRESENTATION")
-
-
-def references(ids: Iterable[int]) -> str:
-    """
-    A list of references.
-
-    Parameters
-    ----------
-    ids : iterable of int
-        Numbers of entities.
-
-    Returns
-    -------
-    str
-        The references, separated by commas, ten to a line.
-
-    Examples
-    --------
-    >>> references([1, 2])
-    '#1,#2'
-    """
-    words = [f"#{entity}" for entity in ids]
-    return ",\n".join(",".join(words[i : i + 10]) for i in range(0, len(words), 10))
-
-
-_SENSES: Final = {True: ".T.", False: ".F."}

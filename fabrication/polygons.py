@@ -121,6 +121,35 @@ def join_polygons(parts: Sequence[Polygons]) -> Polygons:
     )
 
 
+def transform_polygons(polygons: Polygons, transform: FloatArray) -> Polygons:
+    """
+    Move polygons by an affine map.
+
+    Parameters
+    ----------
+    polygons : Polygons
+        What a file says.
+    transform : (4, 4) float array
+        The map, for columns of homogeneous coordinates.
+
+    Returns
+    -------
+    Polygons
+        The same polygons there; a map that mirrors turns them over, so that their normals
+        stay on their side.
+    """
+    if np.array_equal(transform, np.eye(4)):
+        return polygons
+    linear = transform[:3, :3]
+    vertices = polygons.vertices @ linear.T + transform[:3, 3]
+    corners = polygons.corners
+    if np.linalg.det(linear) < 0:
+        owners = np.repeat(np.arange(len(polygons.degrees)), polygons.degrees)
+        order = np.lexsort([-np.arange(len(corners)), owners])
+        corners = corners[order]
+    return replace(polygons, vertices=vertices, corners=corners)
+
+
 def drop_repeats(polygons: Polygons) -> Polygons:
     """
     Polygons without corners that repeat the one before, and without faces of no area left.

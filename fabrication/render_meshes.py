@@ -1,28 +1,56 @@
 """
-Render meshes of panels as openNURBS objects, for viewers that cannot mesh a Brep.
+Render meshes of panels, beams and nodes as openNURBS objects.
 
-They are written into the streams of the Breps: the setters of rhino3dm crash it at exit. Layout
-of `ON_Mesh` 3.8 (`opennurbs_mesh.cpp`): ii counts of vertices and faces, domains that are not
-set, three empty boxes of floats, i -1, flags, faces of four indices each (a triangle repeats
-its last), buffers of float32 vertices and normals, empty buffers, the tag of no texture
-mapping, and a chunk with the vertices as float64.
+They are for viewers that cannot mesh solids, and are written into the streams of Breps and
+extrusions: the setters of rhino3dm crash it at exit. Layout of `ON_Mesh` 3.8
+(`opennurbs_mesh.cpp`): ii counts of vertices and faces, domains that are not set, three empty
+boxes of floats, i -1, flags, faces of four indices each (a triangle repeats its last), buffers
+of float32 vertices and normals, empty buffers, the tag of no texture mapping, and a chunk with
+the vertices as float64, if that is needed.
+
+An extrusion keeps meshes in a chunk of version 1.0 (`ON_MeshCache`): for each a byte 1 and a
+chunk of version 1.0 with an id that says what it is for and the mesh; in the end a byte 0.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
 import numpy as np
 
-from ..kernel.arrays import FloatArray, IntArray
+from ..kernel.arrays import FloatArray, IntArray, norm, unit
+from ..kernel.beam_triangles import beam_triangles
+from ..kernel.beams import Beams, beam_lengths
+from ..kernel.node_cylinders import NodeCylinders
 from ..kernel.panels import Panels
 from ..kernel.tessellation import tessellate
-from .chunks import ANONYMOUS, Buffer, Chunk, Slot, assemble, class_object, doubles, fill, ints
+from ..kernel.tolerances import SINGLE_EPSILON, SINGLE_IS_ENOUGH
+from .chunks import (
+    ANONYMOUS,
+    CHUNK_HEADER,
+    Buffer,
+    Chunk,
+    Piece,
+    Slot,
+    assemble,
+    class_object,
+    doubles,
+    fill,
+    ints,
+)
 
 MESH: Final = bytes.fromhex("e4d4d74e47e9d311bfe50010830122f0")
 MESH_VERSION: Final = b"\x38"
 
 UNSET_DOMAINS: Final = doubles(*[-1.23432101234321e308] * 8) + bytes(16)
+MESH_TOLERANCE: Final = 0.004
+"""Largest distance of a render mesh from its surface, relative to the radius of the piece."""
+
+_RENDER_MESH: Final = bytes.fromhex("a9bae3f5a2a7fd49b8a166eb274a5f91")
+_AROUND_CACHE: Final = (0, 44, 56)
+"""Where the chunks around the meshes of an extrusion begin: class, its data, extrusion."""
+
 _EMPTY_BOXES = np.array([*[1, 1, 1, -1, -1, -1] * 2, 1, 1, -1, -1], "<f4").tobytes()
 _IDENTITY = doubles(*np.eye(4).ravel().tolist())
 
@@ -30,20 +58,23 @@ _IDENTITY = doubles(*np.eye(4).ravel().tolist())
 @dataclass(frozen=True)
 class RenderMeshes:
     """
-    Triangles of panels, those of the same triangulation together.
+    Triangles of panels, beams or nodes, those of the same triangulation together.
 
     Attributes
     ----------
     kinds : (P,) int array
-        Triangulation of each panel.
+        Triangulation of each piece.
     triangles : tuple of (T, 3) int array
         The triangulations; counter-clockwise about the normals.
     starts : (P,) int array
-        First vertex of each panel; its triangulation tells how many there are.
+        First vertex of each piece; its triangulation tells how many there are.
     points : (N, 3) float array
-        Vertices on the spheres, in model coordinates.
+        Vertices on the surfaces, in model coordinates.
     normals : (N, 3) float array
         Exact unit normals there.
+    has_doubles : bool
+        Whether vertices are written as float64 too: where the model lies so far from the
+        origin that float32 would show.
     """
 
     kinds: IntArray
@@ -51,6 +82,7 @@ class RenderMeshes:
     starts: IntArray
     points: FloatArray
     normals: FloatArray
+    has_doubles: bool
 
 
 def panel_meshes(panels: Panels, tolerance: float) -> RenderMeshes:
@@ -81,16 +113,107 @@ def panel_meshes(panels: Panels, tolerance: float) -> RenderMeshes:
         starts.append(int(own.min()))
         kinds.append(known.setdefault((own - starts[-1]).tobytes(), len(known)))
     shapes = tuple(np.frombuffer(each, np.int64).reshape(-1, 3) for each in known)
+    points = pieces.points + pieces.origin
+    sizes = np.maximum.reduceat(norm(panels.corners), panels.offsets[:-1])
     return RenderMeshes(
         np.array(kinds, np.int64),
         shapes,
         np.array(starts, np.int64),
-        pieces.points + pieces.origin,
+        points,
         pieces.normals,
+        _needs_doubles(points, tolerance * float(sizes.min(initial=np.inf))),
     )
 
 
-def mesh_numbers(meshes: RenderMeshes, panels: IntArray) -> dict[str, FloatArray]:
+def beam_meshes(beams: Beams, tolerance: float) -> RenderMeshes:
+    """
+    Triangulate beams as extrusions of their contours.
+
+    Parameters
+    ----------
+    beams : Beams
+        B beams, at least one.
+    tolerance : float
+        Largest distance of the chords from the arcs, relative to half the length of a beam.
+
+    Returns
+    -------
+    RenderMeshes
+        The triangles.
+    """
+    groups = list(beam_triangles(beams, tolerance))
+    kinds, starts = np.zeros((2, beams.n_beams), np.int64)
+    n_points = 0
+    for kind, group in enumerate(groups):
+        n_beams, count = group.points.shape[:2]
+        kinds[group.beams] = kind
+        starts[group.beams] = n_points + count * np.arange(n_beams)
+        n_points += n_beams * count
+    points = np.concatenate([group.points.reshape(-1, 3) for group in groups])
+    return RenderMeshes(
+        kinds,
+        tuple(group.triangles for group in groups),
+        starts,
+        points,
+        np.concatenate([group.normals.reshape(-1, 3) for group in groups]),
+        _needs_doubles(points, tolerance * float(beam_lengths(beams).min()) / 2),
+    )
+
+
+def cylinder_meshes(cylinders: NodeCylinders, tolerance: float) -> RenderMeshes:
+    """
+    Triangulate node cylinders.
+
+    Parameters
+    ----------
+    cylinders : NodeCylinders
+        N cylinders, at least one.
+    tolerance : float
+        Largest distance of the chords from the circles, relative to the radius.
+
+    Returns
+    -------
+    RenderMeshes
+        The triangles.
+    """
+    count = int(np.ceil(np.pi / np.arccos(1 - tolerance)))
+    down = cylinders.directions
+    x = unit(np.cross(down, np.eye(3)[np.abs(down).argmin(axis=1)]))
+    y = np.cross(down, x)
+    turns = 2 * np.pi * np.arange(count) / count
+    around = np.cos(turns)[:, None] * x[:, None] + np.sin(turns)[:, None] * y[:, None]
+    first = cylinders.origins[:, None] + cylinders.radius * around
+    last = first + (cylinders.heights[:, None] * down)[:, None]
+    flat = np.broadcast_to(down[:, None], around.shape)
+    # Side and discs have vertices of their own: their normals differ.
+    points = np.stack([first, last, first, last], 1)
+    normals = np.stack([around, around, -flat, flat], 1)
+    here = np.arange(count)
+    following = (here + 1) % count
+    fan = np.stack([np.zeros(count - 2, np.int64), here[1:-1], here[2:]], 1)
+    triangles = np.concatenate([
+        np.stack([here, following, count + here], 1),
+        np.stack([following, count + following, count + here], 1),
+        2 * count + fan[:, ::-1],
+        3 * count + fan,
+    ])  # fmt: skip
+    return RenderMeshes(
+        np.zeros(cylinders.n_nodes, np.int64),
+        (triangles,),
+        4 * count * np.arange(cylinders.n_nodes),
+        points.reshape(-1, 3),
+        normals.reshape(-1, 3),
+        _needs_doubles(points, tolerance * cylinders.radius),
+    )
+
+
+def _needs_doubles(points: FloatArray, error: float) -> bool:
+    """Whether rounding points to float32 adds much to what triangles miss."""
+    rounding = SINGLE_EPSILON * float(np.abs(points).max(initial=0.0))
+    return rounding > SINGLE_IS_ENOUGH * error
+
+
+def mesh_numbers(meshes: RenderMeshes, members: IntArray) -> dict[str, FloatArray]:
     """
     Numbers that fill the slots of `mesh_object`.
 
@@ -98,45 +221,51 @@ def mesh_numbers(meshes: RenderMeshes, panels: IntArray) -> dict[str, FloatArray
     ----------
     meshes : RenderMeshes
         The triangles.
-    panels : (n,) int array
-        Panels of one triangulation.
+    members : (n,) int array
+        Pieces of one triangulation.
 
     Returns
     -------
     dict of str to (n, 1, V, 3) float array
         ``points`` and ``normals``.
     """
-    count = _n_points(meshes.triangles[int(meshes.kinds[panels[0]])])
-    ids = meshes.starts[panels][:, None, None] + np.arange(count)
+    count = _n_points(meshes.triangles[int(meshes.kinds[members[0]])])
+    ids = meshes.starts[members][:, None, None] + np.arange(count)
     return {"points": meshes.points[ids], "normals": meshes.normals[ids]}
 
 
-def mesh_object(triangles: IntArray) -> Chunk:
+def mesh_object(meshes: RenderMeshes, kind: int) -> Chunk:
     """
     An `ON_Mesh` whose vertices and normals are still to be filled in.
 
     Parameters
     ----------
-    triangles : (T, 3) int array
-        Vertices of each triangle, all used.
+    meshes : RenderMeshes
+        The triangles.
+    kind : int
+        Which of the triangulations; it uses all of its vertices.
 
     Returns
     -------
     Chunk
         The object, with slots ``points`` and ``normals``.
     """
+    triangles = meshes.triangles[kind]
     count = _n_points(triangles)
     size = 1 if count < 1 << 8 else 2 if count < 1 << 16 else 4
     faces = triangles[:, [0, 1, 2, 2]].astype(f"<u{size}").tobytes()
     floats = (Buffer(Slot(name, 0, 3 * count, "<f4")) for name in ("points", "normals"))
-    precise = (ints(1, 0, count), Buffer(Slot("points", 0, 3 * count)))
+    doubles_too: tuple[Piece, ...] = (b"\0",)
+    if meshes.has_doubles:
+        precise = (ints(1, 0, count), Buffer(Slot("points", 0, 3 * count)))
+        doubles_too = (b"\1", Chunk(ANONYMOUS, precise))
     return class_object(
         MESH, MESH_VERSION, ints(count, len(triangles)), UNSET_DOMAINS, _EMPTY_BOXES, ints(-1),
         bytes(5), ints(size), faces, *floats,
         ints(0, 0, 0) + bytes(4 + 16) + ints(0),  # no textures, curvatures, colours, parameters
         Chunk(ANONYMOUS, (ints(1, 1) + bytes(16 + 4) + _IDENTITY + ints(0),)),
-        bytes(3) + b"\0\1",  # manifold, oriented, solid: not known; no ngons; float64 vertices
-        Chunk(ANONYMOUS, precise), UNSET_DOMAINS[:48],
+        bytes(3) + b"\0",  # manifold, oriented, solid: not known; no ngons
+        *doubles_too, UNSET_DOMAINS[:48],
     )  # fmt: skip
 
 
@@ -151,17 +280,60 @@ def mesh_streams(meshes: RenderMeshes) -> list[bytes]:
     Parameters
     ----------
     meshes : RenderMeshes
-        The triangles of P panels.
+        The triangles of P pieces.
 
     Returns
     -------
     list of bytes
         P objects, in model coordinates.
     """
+    return _filled(meshes, lambda mesh: mesh)
+
+
+def _filled(meshes: RenderMeshes, wrap: Callable[[Chunk], Chunk]) -> list[bytes]:
     result = [b""] * len(meshes.kinds)
-    for kind, triangles in enumerate(meshes.triangles):
+    for kind in range(len(meshes.triangles)):
         members = np.flatnonzero(meshes.kinds == kind)
-        filled = fill(assemble(mesh_object(triangles)), mesh_numbers(meshes, members))
-        for panel, stream in zip(members, filled, strict=True):
-            result[panel] = stream
+        template = assemble(wrap(mesh_object(meshes, kind)))
+        filled = fill(template, mesh_numbers(meshes, members))
+        for piece, stream in zip(members, filled, strict=True):
+            result[piece] = stream
     return result
+
+
+def extrusions_with_meshes(extrusions: Sequence[bytes], meshes: RenderMeshes) -> list[bytes]:
+    """
+    Put render meshes into extrusions.
+
+    Parameters
+    ----------
+    extrusions : sequence of bytes
+        Streams of B `ON_Extrusion`, as openNURBS encodes them without meshes.
+    meshes : RenderMeshes
+        The triangles of B pieces.
+
+    Returns
+    -------
+    list of bytes
+        The streams with their meshes.
+    """
+    caches = _filled(meshes, _cache)
+    (empty,) = fill(assemble(_cache()), {"": np.zeros((1, 0))})
+    result: list[bytes] = []
+    for stream, cache in zip(extrusions, caches, strict=True):
+        data = bytearray(stream)
+        # Checksums leave out inner chunks: the lengths around the cache are all that changes.
+        for start in _AROUND_CACHE:
+            typecode, length = CHUNK_HEADER.unpack_from(data, start)
+            CHUNK_HEADER.pack_into(data, start, typecode, length + len(cache) - len(empty))
+        place = data.rindex(empty)
+        data[place : place + len(empty)] = cache
+        result.append(bytes(data))
+    return result
+
+
+def _cache(*meshes: Chunk) -> Chunk:
+    pieces: list[Piece] = [ints(1, 0)]
+    for mesh in meshes:
+        pieces += [b"\1", Chunk(ANONYMOUS, (ints(1, 0) + _RENDER_MESH, mesh))]
+    return Chunk(ANONYMOUS, (*pieces, b"\0"))

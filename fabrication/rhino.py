@@ -12,25 +12,28 @@ from dataclasses import dataclass, replace
 from importlib.metadata import version as installed_version
 from pathlib import Path
 from typing import Final, Literal, NamedTuple, TypeAlias
+from uuid import UUID
 
 import numpy as np
 
+from ..kernel.beam_checks import check_writable_beams
 from ..kernel.beams import Beams
-from ..kernel.colors import UNLABELLED, mould_color
+from ..kernel.colors import UNLABELLED, mould_color, mould_name
 from ..kernel.congruent_panels import congruent_panels
 from ..kernel.errors import InputError
 from ..kernel.mesh import Mesh
-from ..kernel.panel_checks import RejectedPanel
+from ..kernel.panel_checks import RejectedPanel, check_writable
+from ..kernel.panel_facts import panel_radii
 from ..kernel.panels import Panels, select_panels
 from .brep_audit import verify_breps
 from .brep_layout import read_brep_streams
 from .brep_shell import join_panels
 from .files import check_suffix, replacing
 from .opennurbs import brep_streams, edge_streams
-from .panel_text import centers_and_radii, mould_number, panel_text
-from .render_meshes import panel_meshes
+from .panel_text import panel_text
+from .render_meshes import MESH_TOLERANCE, panel_meshes
 from .rhino_beams import add_beams
-from .rhino_blocks import add_definition, add_instance
+from .rhino_blocks import add_definition, add_instance, add_mould_blocks
 from .rhino_meshes import to_rhino_mesh
 from .rhino_model import (
     Place,
@@ -38,6 +41,7 @@ from .rhino_model import (
     Untyped,
     add_group,
     add_layer,
+    add_surface_layer,
     add_views,
     count_objects,
     encode_model,
@@ -50,15 +54,13 @@ from .rhino_model import (
 VERSIONS: Final = (6, 7, 8)
 """Versions of Rhino whose files can be written."""
 
-Layer: TypeAlias = Literal["Edges", "Centres"]
+Layer: TypeAlias = Literal["Edges", "Centres", "Moulds"]
 Shape: TypeAlias = Literal["panels", "blocks", "shell"]
-
-_MESH_TOLERANCE = 0.002
-"""Largest distance of a render mesh from its sphere, relative to the radius of the panel."""
 
 _BLACK = (0, 0, 0)
 _NOTE = (
     "bulge: out for domes, in for dishes, seen along the panel's outward normal. "
+    "radius: of the mould, which the outer face differs from by the side of the thickness. "
     "neighbors: beyond each edge in order, - where there is no panel."
 )
 
@@ -73,12 +75,13 @@ class RhinoContents:
     shape : {"panels", "blocks", "shell"}
         One Brep per panel; the same with a block definition and instances wherever panels are
         identical (to `SAME_PANEL` of their size); or all panels joined into one Brep.
-    layers : tuple of {"Edges", "Centres"}
-        Further layers: an arc or line for every edge of every panel; the centres of spheres.
+    layers : tuple of {"Edges", "Centres", "Moulds"}
+        Further layers: an arc or line for every edge of every panel; the centres of spheres; a
+        block for every mould, its blank, set under each of its panels.
     reference : Mesh, optional
         The design, for the layer ``Reference``.
     render_meshes : bool
-        Whether Breps carry triangles for viewers that cannot mesh them.
+        Whether Breps and extrusions carry triangles for viewers that cannot mesh them.
     """
 
     shape: Shape = "panels"
@@ -100,8 +103,8 @@ class RhinoFile(NamedTuple):
     objects : mapping of str to int
         Number of objects by openNURBS's names: ``Brep``, ``ArcCurve``, ...
     notes : tuple of str
-        What else differs from what was asked for: edges that the shell leaves open, a
-        reference mesh that Rhino refuses.
+        What else differs from what was asked for: edges that the shell leaves open, moulds
+        whose blocks are not exact, a reference mesh that Rhino refuses.
     """
 
     path: Path
@@ -144,7 +147,8 @@ def write_3dm(
         What the file holds of the panels.
     beams : Beams, optional
         Beams, written as capped extrusions of their flat contours on the layer ``Beams``, with
-        the node axes as lines on the layer ``Axes``.
+        the node axes as lines on the layer ``Axes``, node cylinders on the layer ``Nodes`` and
+        drilling marks on the layer ``Drilling``.
 
     Returns
     -------
@@ -155,32 +159,32 @@ def write_3dm(
     Raises
     ------
     InputError
-        If there are neither panels nor beams, units or version are not known, the file cannot
-        be written, no panel is exact, or panels that are to be joined leave gaps.
+        If there are neither panels nor beams, two of them have the same name or one is not
+        finite, units or version are not known, the file cannot be written, no panel is exact,
+        or panels that are to be joined leave gaps.
 
     Notes
     -----
     Layers: ``Panels`` with a sub-layer ``Mould 01``, ... for every label (panels without a
     mould lie on ``Panels`` itself), ``Edges`` with one arc or line for every edge of every
     panel: neighbours' arcs differ by the joint and the edge gap, so both are there;
-    ``Centres`` and ``Reference`` are switched off. Each mould has its colour on its layer and
-    as a material, and is a group. Named views: Top and Perspective. User text: `panel_text`.
-    Object ids depend on the panel's id and the object's role only. Two runs differ in the time
-    of day alone.
+    ``Centres``, ``Moulds`` and ``Reference`` are switched off. Each mould has its colour on
+    its layer and as a material, and is a group. Named views: Top and Perspective. User text:
+    `panel_text`. Object ids depend on the panel's id and the object's role only. Two runs
+    differ in the time of day alone.
     """
     check_suffix(path, ".3dm")
     if version not in VERSIONS:
         raise InputError(f"unknown Rhino version {version}: use one of {VERSIONS}")
-    if panels is None and beams is None:
-        raise InputError(f"there are no panels or beams to write to {path}")
+    _check_writable(panels, beams, path)
     model = new_model(units)
     _set_strings(model, graph_json, title)
-    rejected, n_open = (), 0
+    rejected: tuple[RejectedPanel, ...] = ()
+    notes: list[str] = []
     if panels is not None:
-        rejected, n_open = _add_panels(model, panels, contents, units)
-    notes = [f"{n_open} edges of neighbours lie apart and stay open"] if n_open else []
+        rejected, notes = _add_panels(model, panels, contents, units)
     if beams is not None:
-        add_beams(model, beams, units)
+        add_beams(model, beams, units, render_meshes=contents.render_meshes)
     if contents.reference is not None:
         notes += _add_reference(model, contents.reference)
     data, objects = encode_model(model, version), count_objects(model)
@@ -192,6 +196,18 @@ def write_3dm(
     return RhinoFile(target, rejected, objects, tuple(notes))
 
 
+def _check_writable(
+    panels: Panels | None, beams: Beams | None, path: str | os.PathLike[str]
+) -> None:
+    n_beams = beams.n_beams if beams else 0
+    if panels is not None and (panels.n_panels or not n_beams):
+        check_writable(panels, path)
+    elif not n_beams:
+        raise InputError(f"there are no panels or beams to write to {path}")
+    if beams is not None and n_beams:
+        check_writable_beams(beams, path)
+
+
 class _Sound(NamedTuple):
     """Panels whose Breps are exact, their Breps, and whether these hold render meshes."""
 
@@ -201,7 +217,7 @@ class _Sound(NamedTuple):
 
 
 def _streams(panels: Panels, *, render_meshes: bool) -> list[bytes]:
-    meshes = panel_meshes(panels, _MESH_TOLERANCE) if render_meshes else None
+    meshes = panel_meshes(panels, MESH_TOLERANCE) if render_meshes else None
     return brep_streams(panels, meshes)
 
 
@@ -247,12 +263,12 @@ class _Mould(NamedTuple):
 
 def _add_moulds(model: RhinoModel, panels: Panels) -> dict[int, _Mould]:
     """Layers and groups of the moulds by label, under the layer of panels without, -1."""
-    root = add_layer(model, "Panels", UNLABELLED)
+    root = add_surface_layer(model, "Panels", UNLABELLED)
     moulds = {-1: _Mould(root, None)}
     count = int(panels.labels.max(initial=-1)) + 1
     for label in range(count):
-        name, color = f"Mould {mould_number(label)}", mould_color(label, count)
-        place = add_layer(model, name, color, root)
+        name, color = mould_name(label, count), mould_color(label, count)
+        place = add_surface_layer(model, name, color, root)
         moulds[label] = _Mould(place, add_group(model, name))
     return moulds
 
@@ -276,27 +292,29 @@ def _panel_attributes(
 
 def _add_panels(
     model: RhinoModel, panels: Panels, contents: RhinoContents, units: str
-) -> tuple[tuple[RejectedPanel, ...], int]:
-    """All that is known of panels; those rejected, and edges that the shell leaves open."""
+) -> tuple[tuple[RejectedPanel, ...], list[str]]:
+    """All that is known of panels; those rejected, and what else is not as asked for."""
     sound, rejected = _judge(model, panels, render_meshes=contents.render_meshes)
     exact = sound.panels
     moulds = _add_moulds(model, exact)
     attributes = _panel_attributes(model, exact, moulds, units)
-    n_open = 0
+    notes: list[str] = []
     if contents.shape == "panels":
         for brep, each in zip(sound.breps, attributes, strict=True):
             model.file.Objects.AddBrep(brep, each)
     elif contents.shape == "blocks":
         _add_blocks(model, sound, moulds, attributes)
     elif exact.n_panels:
-        n_open = _add_shell(model, sound, moulds[-1].place, model_tolerance(units))
+        notes += _add_shell(model, sound, moulds[-1].place, model_tolerance(units))
     if "Edges" in contents.layers:
         _add_edges(model, exact)
     if "Centres" in contents.layers:
         _add_centers(model, exact)
+    if "Moulds" in contents.layers:
+        notes += add_mould_blocks(model, exact, render_meshes=sound.render_meshes)
     if exact.n_panels:
         add_views(model, exact.corners + exact.origins[exact.corner_panels])
-    return rejected, n_open
+    return rejected, notes
 
 
 def _add_blocks(
@@ -311,31 +329,34 @@ def _add_blocks(
     members = np.flatnonzero(~is_single & (first == np.arange(panels.n_panels)))
     chosen = select_panels(panels, np.isin(np.arange(panels.n_panels), members))
     local = replace(chosen, origins=np.zeros_like(chosen.origins))
-    streams = _streams(local, render_meshes=sound.render_meshes)
-    for i, stream in zip(members.tolist(), streams, strict=True):
-        name, place = panels.ids[i], moulds[int(panels.labels[i])].place
-        member = object_attributes(model, name, "block member", place)
-        block = object_id(name, "block")
-        add_definition(model, f"Panel {name}", block, model.decode(stream), member)
+    # What is not exact about its own origin has no block.
+    judged, _ = _judge(model, local, render_meshes=sound.render_meshes)
+    blocks: dict[str, UUID] = {}
+    labels: list[int] = judged.panels.labels.tolist()
+    for name, label, brep in zip(judged.panels.ids, labels, judged.breps, strict=True):
+        member = object_attributes(model, name, "block member", moulds[label].place)
+        blocks[name] = object_id(name, "block")
+        add_definition(model, f"Panel {name}", blocks[name], brep, member)
     for i, each in enumerate(attributes):
-        if is_single[i]:
+        block = blocks.get(panels.ids[int(first[i])])
+        if block is None:
             model.file.Objects.AddBrep(sound.breps[i], each)
         else:
-            block = object_id(panels.ids[int(first[i])], "block")
             add_instance(model, block, found.rotations[i], places[i], each)
 
 
-def _add_shell(model: RhinoModel, sound: _Sound, place: Place, largest_gap: float) -> int:
-    """All panels as one Brep; the number of edges that it leaves open."""
+def _add_shell(model: RhinoModel, sound: _Sound, place: Place, largest_gap: float) -> list[str]:
+    """All panels as one Brep; what it leaves open."""
     panels = sound.panels
-    meshes = panel_meshes(panels, _MESH_TOLERANCE) if sound.render_meshes else None
+    meshes = panel_meshes(panels, MESH_TOLERANCE) if sound.render_meshes else None
     shell = join_panels(panels, largest_gap, meshes)
     brep = model.decode(shell.stream)
     if brep is None or not brep.IsValid:
         raise InputError("openNURBS cannot join the panels; write them one by one")
     attributes = object_attributes(model, "Shell", "shell", place)
     model.file.Objects.AddBrep(brep, attributes)
-    return shell.n_open
+    n_open = shell.n_open
+    return [f"{n_open} edges of neighbours lie apart and stay open"] if n_open else []
 
 
 def _add_edges(model: RhinoModel, panels: Panels) -> None:
@@ -350,9 +371,10 @@ def _add_edges(model: RhinoModel, panels: Panels) -> None:
 def _add_centers(model: RhinoModel, panels: Panels) -> None:
     # Centres lie far away: switched off, they do not shrink the model in a view.
     place = add_layer(model, "Centres", UNLABELLED, visible=False)
-    centers, radii = centers_and_radii(panels)
-    for name, center, radius in zip(panels.ids, centers.tolist(), radii.tolist(), strict=True):
-        if np.isfinite(radius):
+    found = panel_radii(panels)
+    centers, is_sphere = found.centers.tolist(), np.isfinite(found.radii).tolist()
+    for name, center, has_center in zip(panels.ids, centers, is_sphere, strict=True):
+        if has_center:
             attributes = object_attributes(model, name, "centre", place)
             model.file.Objects.AddPoint(model.library.Point3d(*center), attributes)
 
@@ -364,6 +386,6 @@ def _add_reference(model: RhinoModel, mesh: Mesh) -> list[str]:
     except InputError as error:
         return [f"the reference is left out: {error}"]
     # It would flicker through the panels: it is there to be switched on.
-    place = add_layer(model, "Reference", UNLABELLED, visible=False)
+    place = add_surface_layer(model, "Reference", UNLABELLED, visible=False)
     model.file.Objects.AddMesh(rhino_mesh, object_attributes(model, "Reference", "mesh", place))
     return []

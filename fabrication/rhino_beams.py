@@ -1,26 +1,39 @@
 """
-Beams for a Rhino model: capped extrusions of their flat contours, and the node axes as lines.
+Beams for a Rhino model: capped extrusions of their flat contours, drilling marks, and nodes.
 
 An extrusion is what a flat piece is before its ends are mitred: the contour in the middle of
-the thickness, whose ends lie on the node axes. The mitres are in the STEP file.
+the thickness, whose ends lie on the node axes. The mitres are in the STEP file. Nodes are lines
+along their axes, and cylinders where beams end square before them.
 """
+
+import base64
 
 import numpy as np
 
 from ..kernel.arcs import ArcCircles, Arcs, arc_circles
 from ..kernel.arrays import FloatArray
-from ..kernel.beams import Beams, beam_lengths, node_axis_segments, section_arcs
-from ..kernel.colors import BEAM
+from ..kernel.beam_facts import beam_facts
+from ..kernel.beams import Beams, DrillMarks, node_axis_segments, section_arcs
+from ..kernel.colors import AXIS, BEAM, NODE
 from ..kernel.errors import InputError
+from ..kernel.node_cylinders import NodeCylinders, node_cylinders
 from ..kernel.support import node_name
-from .rhino_model import RhinoModel, Untyped, add_layer, object_attributes
+from .render_meshes import (
+    MESH_TOLERANCE,
+    RenderMeshes,
+    beam_meshes,
+    cylinder_meshes,
+    extrusions_with_meshes,
+)
+from .rhino_model import RhinoModel, Untyped, add_layer, add_surface_layer, object_attributes
 
-_BLACK = (0, 0, 0)
 
-
-def add_beams(model: RhinoModel, beams: Beams, units: str) -> None:
+def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: bool) -> None:
     """
-    Add beams on the layer ``Beams`` and the node axes on the layer ``Axes``.
+    Add beams and their nodes.
+
+    Beams lie on the layer ``Beams``, the node axes on the layer ``Axes``; where there are any,
+    node cylinders on the layer ``Nodes`` and drilling marks on the layer ``Drilling``.
 
     Parameters
     ----------
@@ -30,17 +43,35 @@ def add_beams(model: RhinoModel, beams: Beams, units: str) -> None:
         The beams.
     units : str
         Model units.
+    render_meshes : bool
+        Whether the extrusions carry triangles for viewers that cannot mesh them.
     """
-    place = add_layer(model, "Beams", BEAM)
+    place = add_surface_layer(model, "Beams", BEAM)
     solids, texts = beam_extrusions(model.library, beams), beam_text(beams, units)
+    if render_meshes and solids:
+        solids = _with_meshes(model, solids, beam_meshes(beams, MESH_TOLERANCE))
     for name, solid, text in zip(beams.annuli.ids, solids, texts, strict=True):
         attributes = object_attributes(model, name, "beam", place)
         for key, value in text.items():
             attributes.SetUserString(key, value)
         model.file.Objects.AddExtrusion(solid, attributes)
-    place = add_layer(model, "Axes", _BLACK)
+    place = add_layer(model, "Axes", AXIS)
     for name, line in axis_lines(model.library, beams):
         model.file.Objects.AddCurve(line, object_attributes(model, name, "axis", place))
+    cylinders = node_cylinders(beams)
+    if cylinders.n_nodes:
+        place = add_surface_layer(model, "Nodes", NODE)
+        solids = cylinder_extrusions(model.library, cylinders)
+        if render_meshes:
+            solids = _with_meshes(model, solids, cylinder_meshes(cylinders, MESH_TOLERANCE))
+        for name, solid in zip(cylinders.ids, solids, strict=True):
+            attributes = object_attributes(model, name, "node", place)
+            model.file.Objects.AddExtrusion(solid, attributes)
+    if beams.marks is not None:
+        place = add_layer(model, "Drilling", AXIS)
+        for name, number, circle in mark_circles(model.library, beams, beams.marks):
+            attributes = object_attributes(model, name, f"mark {number}", place)
+            model.file.Objects.AddCurve(circle, attributes)
 
 
 def beam_extrusions(library: Untyped, beams: Beams) -> list[Untyped]:
@@ -94,6 +125,17 @@ def beam_extrusions(library: Untyped, beams: Beams) -> list[Untyped]:
     return result
 
 
+def _with_meshes(
+    model: RhinoModel, solids: list[Untyped], meshes: RenderMeshes
+) -> list[Untyped]:
+    """Extrusions with render meshes, through their streams: the setter crashes at exit."""
+    streams = [base64.b64decode(solid.Encode()["data"]) for solid in solids]
+    found = [model.decode(stream) for stream in extrusions_with_meshes(streams, meshes)]
+    if any(solid is None or not solid.IsValid for solid in found):
+        raise InputError("openNURBS refuses the render meshes of beams: write them without")
+    return found
+
+
 def _curve(
     library: Untyped, arcs: Arcs, circles: ArcCircles, i: int, lift: FloatArray
 ) -> Untyped:
@@ -133,12 +175,11 @@ def beam_text(beams: Beams, units: str) -> list[dict[str, str]]:
         the boundary), ``outer_radius`` and ``inner_radius`` (``straight`` for lines),
         ``thickness``, ``length``, ``tilt`` in degrees, ``units``.
     """
-    annuli = beams.annuli
-    radii = [arc_circles(arcs).radii.tolist() for arcs in section_arcs(beams)]
+    annuli, facts = beams.annuli, beam_facts(beams)
     rows = zip(
         annuli.ids, annuli.edge_ids.tolist(), annuli.edge_vertices.tolist(),
-        annuli.edge_faces.tolist(), *radii, beam_lengths(beams).tolist(),
-        np.degrees(annuli.tilt).tolist(), strict=True,
+        annuli.edge_faces.tolist(), facts.outer_radii.tolist(), facts.inner_radii.tolist(),
+        facts.lengths.tolist(), np.degrees(facts.tilts).tolist(), strict=True,
     )  # fmt: skip
     return [
         {
@@ -182,3 +223,78 @@ def axis_lines(library: Untyped, beams: Beams) -> list[tuple[str, Untyped]]:
         (node_name(vertex), library.LineCurve(library.Point3d(*a), library.Point3d(*b)))
         for vertex, (a, b) in zip(vertices, segments.tolist(), strict=True)
     ]
+
+
+def cylinder_extrusions(library: Untyped, cylinders: NodeCylinders) -> list[Untyped]:
+    """
+    A capped extrusion per node cylinder.
+
+    Parameters
+    ----------
+    library : module
+        The module rhino3dm.
+    cylinders : NodeCylinders
+        N cylinders.
+
+    Returns
+    -------
+    list of rhino3dm.Extrusion
+        N solids, in model coordinates.
+
+    Raises
+    ------
+    InputError
+        If openNURBS finds one invalid; the message names the nodes.
+    """
+    solids: list[Untyped] = []
+    for origin, direction, height in zip(
+        cylinders.origins.tolist(), cylinders.directions.tolist(), cylinders.heights.tolist(),
+        strict=True,
+    ):  # fmt: skip
+        circle = library.Circle(cylinders.radius)
+        circle.Plane = library.Plane(library.Point3d(*origin), library.Vector3d(*direction))
+        cylinder = library.Cylinder(circle, height)
+        solids.append(library.Extrusion.CreateCylinderExtrusion(cylinder, True, True))  # noqa: FBT003
+    refused = [
+        name
+        for name, solid in zip(cylinders.ids, solids, strict=True)
+        if solid is None or not (solid.IsValid and solid.IsSolid)
+    ]
+    if refused:
+        shown = ", ".join(refused[:8])
+        raise InputError(f"openNURBS refuses {len(refused)} nodes: {shown}; use mitred beams")
+    return solids
+
+
+def mark_circles(
+    library: Untyped, beams: Beams, marks: DrillMarks
+) -> list[tuple[str, int, Untyped]]:
+    """
+    Drilling marks as circles on the sides of the beams to which their normals point.
+
+    Parameters
+    ----------
+    library : module
+        The module rhino3dm.
+    beams : Beams
+        The beams.
+    marks : DrillMarks
+        Their marks.
+
+    Returns
+    -------
+    list of (str, int, rhino3dm.ArcCurve)
+        Name of the beam, number of the hole in it, and circle.
+    """
+    annuli = beams.annuli
+    lifts = annuli.origins + annuli.frames[:, 2] * beams.thickness / 2
+    centers = marks.holes + lifts[:, None]
+    result: list[tuple[str, int, Untyped]] = []
+    for i in np.flatnonzero(marks.fits).tolist():
+        x, y, _ = (library.Vector3d(*axis) for axis in annuli.frames[i].tolist())
+        for number, center in enumerate(centers[i].tolist()):
+            circle = library.Circle(marks.diameter / 2)
+            circle.Plane = library.Plane(library.Point3d(*center), x, y)
+            curve = library.ArcCurve.CreateFromCircle(circle)
+            result.append((annuli.ids[i], number, curve))
+    return result

@@ -11,8 +11,14 @@ from uuid import UUID
 import numpy as np
 
 from ..kernel.arrays import FloatArray
+from ..kernel.colors import UNLABELLED
+from ..kernel.mould_caps import mould_caps
+from ..kernel.panels import Panels
+from .brep_audit import verify_breps
 from .chunks import ANONYMOUS, Chunk, assemble, class_object, doubles, fill, ints
-from .rhino_model import RhinoModel, Untyped
+from .opennurbs import brep_streams
+from .render_meshes import MESH_TOLERANCE, panel_meshes
+from .rhino_model import RhinoModel, Untyped, add_surface_layer, object_attributes, object_id
 
 INSTANCE_DEFINITION: Final = UUID("26f8bff6-2618-417f-a158-153d64a94989").bytes_le
 
@@ -111,3 +117,47 @@ def add_instance(
         setattr(transform, f"M{i}3", float(translation[i]))
     reference = model.library.InstanceReference(definition, transform)
     model.file.Objects.Add(reference, attributes)
+
+
+def add_mould_blocks(model: RhinoModel, panels: Panels, *, render_meshes: bool) -> list[str]:
+    """
+    Add a block for every mould, and set it under each of its panels.
+
+    Parameters
+    ----------
+    model : RhinoModel
+        The model.
+    panels : Panels
+        Panels, with and without moulds.
+    render_meshes : bool
+        Whether the blocks carry triangles for viewers that cannot mesh them.
+
+    Returns
+    -------
+    list of str
+        Moulds that are left out, with their reasons.
+    """
+    # They lie under the panels: they are there to be switched on.
+    place = add_surface_layer(model, "Moulds", UNLABELLED, visible=False)
+    found = mould_caps(panels)
+    meshes = panel_meshes(found.caps, MESH_TOLERANCE) if render_meshes else None
+    streams = brep_streams(found.caps, meshes)
+    judged = verify_breps(streams, found.caps.spheres, found.caps.origins)
+    notes: list[str] = []
+    blocks: list[UUID | None] = []
+    for name, stream, errors in zip(found.caps.ids, streams, judged, strict=True):
+        blocks.append(None if errors.reason() else object_id(name, "block"))
+        if errors.reason():
+            notes.append(f"the block of {name} is left out: {errors.reason()}")
+            continue
+        member = object_attributes(model, name, "block member", place)
+        add_definition(model, name, object_id(name, "block"), model.decode(stream), member)
+    panel_ids: list[int] = found.members.tolist()
+    rows: list[int] = found.rows.tolist()
+    for i, (panel, row) in enumerate(zip(panel_ids, rows, strict=True)):
+        block = blocks[row]
+        if block is not None:
+            attributes = object_attributes(model, panels.ids[panel], "mould", place)
+            turn, shift = found.rotations[i], found.translations[i]
+            add_instance(model, block, turn, shift, attributes)
+    return notes

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from io import SEEK_CUR, BytesIO
 from itertools import chain, islice
 from pathlib import Path
-from typing import Any, TypeAlias, cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -16,12 +16,18 @@ from ..kernel.arrays import FloatArray, IntArray
 from ..kernel.errors import InputError
 from ..kernel.mesh import Mesh
 from ..kernel.tolerances import COINCIDENT
-from .polygons import Polygons, drop_repeats, drop_unused, join_polygons, mean_side, weld
+from .polygons import (
+    Polygons,
+    drop_repeats,
+    drop_unused,
+    join_polygons,
+    mean_side,
+    transform_polygons,
+    weld,
+)
+from .rhino_objects import RhinoObject, placed_objects
 from .rhino_surfaces import SURFACES, GridSize, sample_object
 from .triangles import fan_triangles
-
-RhinoObject: TypeAlias = Any
-"""An object of rhino3dm, whose stubs lack iteration and half of the methods."""
 
 _GRID = GridSize(24, 24)
 
@@ -41,7 +47,8 @@ def read_3dm(data: bytes, layer: str = "", size: GridSize = _GRID) -> Polygons:
         Content of the file.
     layer : str
         Full path of a layer, such as ``Roof::Panels``: read only what is on it and on its
-        sublayers; empty reads all. Objects inside block definitions are never read.
+        sublayers; empty reads all. Objects inside blocks are read wherever an instance
+        stands, see `placed_objects`.
     size : GridSize
         Quads along u and v of each face of surfaces and polysurfaces.
 
@@ -63,21 +70,28 @@ def read_3dm(data: bytes, layer: str = "", size: GridSize = _GRID) -> Polygons:
     model = rhino.File3dm.FromByteArray(data)
     if model is None:
         raise InputError("Rhino cannot read the file: it is damaged or no .3dm; save it again")
-    objects = _objects_on(model, layer)
-    meshes = [each for each in objects if isinstance(each, rhino.Mesh) and each.Faces.Count]
+    objects = placed_objects(model, layer)
+    meshes = [
+        transform_polygons(_mesh_polygons(each.geometry), each.transform)
+        for each in objects
+        if isinstance(each.geometry, rhino.Mesh) and each.geometry.Faces.Count
+    ]
     if meshes:
-        encoded = (base64.b64decode(each.Encode()["data"]) for each in meshes)
-        return _weld([_read_mesh(_class_data(each)) for each in encoded])
-    surfaces = [each for each in objects if type(each).__name__ in SURFACES]
-    if surfaces:
-        grids = (grid for each in surfaces for grid in sample_object(each, size))
-        return drop_repeats(_weld(list(grids)))
-    kinds = Counter(type(each).__name__ for each in objects)
+        return _weld(meshes)
+    grids = [
+        transform_polygons(grid, each.transform)
+        for each in objects
+        if type(each.geometry).__name__ in SURFACES
+        for grid in sample_object(each.geometry, size)
+    ]
+    if grids:
+        return drop_repeats(_weld(grids))
+    kinds = Counter(type(each.geometry).__name__ for each in objects)
     held = ", ".join(f"{count} {kind}" for kind, count in kinds.items()) or "no objects"
     where = f"layer {layer!r}" if layer else "the file"
     raise InputError(
         f"{where} holds no meshes and no surfaces, but {held}; mesh them in Rhino (Mesh, "
-        "QuadRemesh or ExtractRenderMesh), explode blocks, and save"
+        "QuadRemesh or ExtractRenderMesh) and save"
     )
 
 
@@ -87,28 +101,16 @@ def _rhino3dm() -> RhinoObject:
     return cast("RhinoObject", rhino3dm)
 
 
-def _objects_on(model: RhinoObject, layer: str) -> list[RhinoObject]:
-    paths: dict[int, str] = {each.Index: each.FullPath for each in model.Layers}
-    objects: list[RhinoObject] = []
-    for each in model.Objects:
-        path = paths.get(each.Attributes.LayerIndex, "")
-        is_on_layer = not layer or path == layer or path.startswith(f"{layer}::")
-        if is_on_layer and not each.Attributes.IsInstanceDefinitionObject:
-            objects.append(each.Geometry)
-    if layer and not objects:
-        raise InputError(
-            f"nothing is on layer {layer!r}; the file has layers "
-            + (", ".join(map(repr, paths.values())) or "none")
-        )
-    return objects
-
-
 def _weld(parts: list[Polygons]) -> Polygons:
     joined = drop_unused(join_polygons(parts))
     if joined.corners.max() >= len(joined.vertices) or not np.isfinite(joined.vertices).all():
         return joined
     vertices, ids = weld(joined.vertices, COINCIDENT * mean_side(joined))
     return Polygons(vertices, ids[joined.corners], joined.degrees)
+
+
+def _mesh_polygons(mesh: RhinoObject) -> Polygons:
+    return _read_mesh(_class_data(base64.b64decode(mesh.Encode()["data"])))
 
 
 def _class_data(encoded: bytes) -> bytes:

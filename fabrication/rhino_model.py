@@ -41,10 +41,10 @@ class RhinoModel(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Indices of a layer and of the material of its objects."""
+    """Indices of a layer and of the material of its objects, if they have one."""
 
     layer: int
-    material: int
+    material: int | None = None
 
 
 def model_tolerance(units: str) -> float:
@@ -169,7 +169,7 @@ def add_layer(
     visible: bool = True,
 ) -> Place:
     """
-    Add a layer and a material of its colour.
+    Add a layer of lines or points.
 
     Parameters
     ----------
@@ -190,19 +190,53 @@ def add_layer(
         Where objects go.
     """
     file = model.file
-    material = model.library.Material()
-    material.Id = object_id(name, "material")
-    material.Name = name
-    material.DiffuseColor = (*color, 255)
     layer = model.library.Layer()
     layer.Id = object_id(name, "layer")
     layer.Name = name
     layer.Color = (*color, 255)
     layer.Visible = visible
-    layer.RenderMaterialIndex = file.Materials.Add(material)
     if parent:
         layer.ParentLayerId = file.Layers[parent.layer].Id
-    return Place(file.Layers.Add(layer), layer.RenderMaterialIndex)
+    return Place(file.Layers.Add(layer))
+
+
+def add_surface_layer(
+    model: RhinoModel,
+    name: str,
+    color: Color,
+    parent: Place | None = None,
+    *,
+    visible: bool = True,
+) -> Place:
+    """
+    Add a layer and a material of its colour.
+
+    Parameters
+    ----------
+    model : RhinoModel
+        The model.
+    name : str
+        Name of the layer and of the material.
+    color : (int, int, int)
+        Their colour.
+    parent : Place, optional
+        The layer that it lies under.
+    visible : bool
+        Whether it is switched on.
+
+    Returns
+    -------
+    Place
+        Where objects go.
+    """
+    material = model.library.Material()
+    material.Id = object_id(name, "material")
+    material.Name = name
+    material.DiffuseColor = (*color, 255)
+    index: int = model.file.Materials.Add(material)
+    place = add_layer(model, name, color, parent, visible=visible)
+    model.file.Layers[place.layer].RenderMaterialIndex = index
+    return place._replace(material=index)
 
 
 def add_group(model: RhinoModel, name: str) -> int:
@@ -230,7 +264,7 @@ def add_group(model: RhinoModel, name: str) -> int:
 
 def object_attributes(model: RhinoModel, name: str, role: str, place: Place) -> Untyped:
     """
-    Attributes with a stable id: the colour of the layer, and its material.
+    Attributes with a stable id: the colour of the layer, and its material if it has one.
 
     Parameters
     ----------
@@ -252,9 +286,10 @@ def object_attributes(model: RhinoModel, name: str, role: str, place: Place) -> 
     attributes.Id = object_id(name, role)
     attributes.Name = name
     attributes.LayerIndex = place.layer
-    # Many viewers know materials of objects only, and show others in white.
-    attributes.MaterialSource = model.library.ObjectMaterialSource.MaterialFromObject
-    attributes.MaterialIndex = place.material
+    if place.material is not None:
+        # Many viewers know materials of objects only, and show other surfaces in white.
+        attributes.MaterialSource = model.library.ObjectMaterialSource.MaterialFromObject
+        attributes.MaterialIndex = place.material
     return attributes
 
 

@@ -7,7 +7,7 @@ first divided into quads from its middle. rhino3dm shows no curves in (u, v): th
 edges are found on the surface.
 """
 
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -16,8 +16,7 @@ from ..kernel.errors import InputError
 from ..kernel.nurbs import NurbsSurface, evaluate_nurbs, nearest_parameters
 from ..kernel.tolerances import CLOSED, EDGE_MISS
 from .polygons import Polygons, join_polygons
-
-RhinoObject = Any
+from .rhino_objects import RhinoObject
 
 SURFACES: Final = ("Surface", "NurbsSurface", "PlaneSurface", "RevSurface", "Brep", "Extrusion")
 """Classes of rhino3dm that can be sampled."""

@@ -1,33 +1,30 @@
 """
 The schedule: a row per panel with all that a workshop asks for, in millimetres.
 
-Coordinates are those of the model. The same ids stand in STEP, Rhino and report files.
+Coordinates are those of the model. The same ids stand in STEP, Rhino and report files. Rows of
+beams are in `fabrication.beam_schedule`.
 """
 
-import csv
 import json
 import os
-from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any, Final, cast
+from typing import Any
 
 import numpy as np
 
+from ..kernel.beam_checks import check_writable_beams
+from ..kernel.beams import Beams
 from ..kernel.congruent_panels import CongruentPanels, congruent_panels
-from ..kernel.errors import MissingLibraryError
+from ..kernel.errors import InputError
 from ..kernel.mould_blanks import mould_blanks
 from ..kernel.panel_checks import check_writable
 from ..kernel.panel_facts import panel_facts
 from ..kernel.panels import Panels, neighbor_ids, scale_panels
-from .audit import AuditLimits, PanelSubject, check_panels, findings_by_id
+from .audit import AuditLimits, PanelSubject, check_panels, findings_by_id, warning_text
+from .beam_schedule import beam_rows, node_rows
 from .files import check_suffix, replacing
-from .units import millimeters_per
-
-SQUARE_METER: Final = 1e6
-"""Square millimetres in a square metre."""
-
-CUBIC_METER: Final = 1e9
-"""Cubic millimetres in a cubic metre."""
+from .tables import finite_or_none, write_csv, write_xlsx
+from .units import CUBIC_METER, SQUARE_METER, millimeters_per
 
 
 def schedule_rows(panels: Panels, units: str) -> list[dict[str, Any]]:
@@ -75,9 +72,9 @@ def schedule_rows(panels: Panels, units: str) -> list[dict[str, Any]]:
                 "same_as": models[i],
                 "shape": "plane" if is_plane else "sphere",
                 "bulge": "flat" if is_plane else "out" if curvature < 0 else "in",
-                "radius_mm": _finite(facts.radii[i]),
-                "outer_radius_mm": _finite(facts.outer_radii[i]),
-                "inner_radius_mm": _finite(facts.inner_radii[i]),
+                "radius_mm": finite_or_none(facts.radii[i]),
+                "outer_radius_mm": finite_or_none(facts.outer_radii[i]),
+                "inner_radius_mm": finite_or_none(facts.inner_radii[i]),
                 "center_mm": None if is_plane else facts.centers[i].tolist(),
                 "area_m2": float(facts.areas[i]) / SQUARE_METER,
                 "volume_m3": float(facts.volumes[i]) / CUBIC_METER,
@@ -86,15 +83,13 @@ def schedule_rows(panels: Panels, units: str) -> list[dict[str, Any]]:
                 "blank_diameter_mm": 2 * float(facts.caps.radii[i]),
                 "blank_sagitta_mm": abs(float(facts.caps.sagittas[i])),
                 "edge_lengths_mm": facts.edge_lengths[edges].tolist(),
-                "arc_radii_mm": [_finite(radius) for radius in facts.arc_radii[edges]],
+                "arc_radii_mm": [finite_or_none(radius) for radius in facts.arc_radii[edges]],
                 "sagittas_mm": facts.sagittas[edges].tolist(),
                 "wall_tilts_deg": tilts[edges].tolist(),
                 "corner_angles_deg": angles[edges].tolist(),
                 "neighbors": names[edges],
                 "corners_mm": facts.corners[edges].tolist(),
-                "warnings": "; ".join(
-                    f"{finding.code} {finding.message}" for finding in warnings.get(name, [])
-                ),
+                "warnings": warning_text(warnings.get(name, ())),
             }
         )
     return rows
@@ -132,7 +127,7 @@ def mould_rows(panels: Panels, units: str) -> list[dict[str, Any]]:
         rows.append(
             {
                 "mould": label + 1,
-                "radius_mm": _finite(blanks.radii[i]),
+                "radius_mm": finite_or_none(blanks.radii[i]),
                 "panels": int(blanks.counts[i]),
                 "shapes": int(blanks.shapes[i]),
                 "blank_diameter_mm": float(blanks.diameters[i]),
@@ -144,20 +139,28 @@ def mould_rows(panels: Panels, units: str) -> list[dict[str, Any]]:
     return rows
 
 
-def write_schedule(panels: Panels, path: str | os.PathLike[str], units: str = "m") -> Path:
+def write_schedule(
+    panels: Panels | None,
+    path: str | os.PathLike[str],
+    units: str = "m",
+    beams: Beams | None = None,
+) -> Path:
     """
     Write the schedule as a table or as JSON, by the suffix of the path.
 
     Parameters
     ----------
-    panels : Panels
-        P panels, at least one.
+    panels : Panels or None
+        P panels, at least one; None only if there are beams.
     path : path
-        File ending in ``.csv`` (UTF-8 with byte order mark, as spreadsheets expect; lists are
-        separated by blanks, points by semicolons), ``.xlsx`` (sheets of panels and moulds, the
-        lists as in CSV) or ``.json``.
+        File ending in ``.csv`` (one table, in UTF-8 with byte order mark, as spreadsheets
+        expect; lists are separated by blanks, points by semicolons), ``.xlsx`` (sheets of
+        panels and moulds, of beams and nodes, the lists as in CSV) or ``.json`` (the lists
+        ``panels`` and ``moulds``, ``beams`` and ``nodes``).
     units : str
         Model units: mm, cm, m, in or ft.
+    beams : Beams, optional
+        B beams, at least one.
 
     Returns
     -------
@@ -167,73 +170,36 @@ def write_schedule(panels: Panels, path: str | os.PathLike[str], units: str = "m
     Raises
     ------
     InputError
-        If the suffix or the units are unknown, there are no panels, two have the same name or
-        one is not finite, or the file cannot be written.
+        If the suffix or the units are unknown, there is nothing to write, two parts have the
+        same name or one is not finite, panels and beams are to share a ``.csv``, or the file
+        cannot be written.
     MissingLibraryError
         If openpyxl is missing, which writes ``.xlsx``.
     """
     target = Path(path)
     check_suffix(target, ".csv", ".json", ".xlsx")
-    check_writable(panels, target)
-    rows, moulds = schedule_rows(panels, units), mould_rows(panels, units)
+    if panels is None and beams is None:
+        raise InputError(f"there are no panels or beams to write to {target}")
+    is_csv = target.suffix.lower() == ".csv"
+    if is_csv and panels is not None and beams is not None:
+        raise InputError(
+            f"{target} holds one table: write panels and beams to a .csv each, or both to "
+            ".json or .xlsx"
+        )
+    tables: dict[str, list[dict[str, Any]]] = {}
+    if panels is not None:
+        check_writable(panels, target)
+        tables |= {"Panels": schedule_rows(panels, units), "Moulds": mould_rows(panels, units)}
+    if beams is not None:
+        check_writable_beams(beams, target)
+        tables |= {"Beams": beam_rows(beams, units), "Nodes": node_rows(beams, units)}
     with replacing(target) as temporary:
-        if target.suffix.lower() == ".csv":
-            _write_csv(rows, temporary)
+        if is_csv:
+            write_csv(next(iter(tables.values())), temporary)
         elif target.suffix.lower() == ".xlsx":
-            _write_xlsx({"Panels": rows, "Moulds": moulds}, temporary)
+            write_xlsx(tables, temporary)
         else:
-            content = {"units": "mm", "moulds": moulds, "panels": rows}
+            content = {"units": "mm"} | {name.lower(): rows for name, rows in tables.items()}
             text = json.dumps(content, indent=1, allow_nan=False) + "\n"
             temporary.write_text(text, encoding="utf-8")
     return target
-
-
-def _write_xlsx(sheets: Mapping[str, list[dict[str, Any]]], path: Path) -> None:
-    try:
-        import openpyxl  # pyright: ignore[reportMissingModuleSource]
-    except ImportError as error:
-        raise MissingLibraryError(
-            "a schedule in .xlsx needs openpyxl: install spheremesh[excel], or write .csv"
-        ) from error
-    book = openpyxl.Workbook(write_only=True)
-    for title, rows in sheets.items():
-        sheet = book.create_sheet(title)
-        sheet.freeze_panes = "B2"
-        sheet.append(list(rows[0]) if rows else ["none"])
-        for row in rows:
-            sheet.append([_excel_cell(value) for value in row.values()])
-    book.save(path)
-
-
-def _excel_cell(value: object) -> str | int | float:
-    """Numbers stay numbers; text that a spreadsheet would take for a formula is quoted."""
-    if isinstance(value, int | float):
-        return value
-    text = _cell(value)
-    return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text
-
-
-def _write_csv(rows: Iterable[Mapping[str, Any]], path: Path) -> None:
-    with path.open("w", encoding="utf-8-sig", newline="") as file:
-        writer: csv.DictWriter[str] | None = None
-        for row in rows:
-            if writer is None:
-                writer = csv.DictWriter(file, list(row))
-                writer.writeheader()
-            writer.writerow({name: _cell(value) for name, value in row.items()})
-
-
-def _cell(value: object) -> str:
-    if value is None:
-        return ""
-    if isinstance(value, float):
-        return f"{value:.9g}"
-    if isinstance(value, list):
-        items = cast("list[object]", value)
-        separator = "; " if items and isinstance(items[0], list) else " "
-        return separator.join(_cell(item) or "-" for item in items)
-    return str(value)
-
-
-def _finite(value: np.float64) -> float | None:
-    return float(value) if np.isfinite(value) else None

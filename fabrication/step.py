@@ -16,18 +16,28 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 
 from ..kernel.arrays import FloatArray
-from ..kernel.beams import Beams, scale_beams
-from ..kernel.colors import BEAM, Color, mould_color, mould_name
+from ..kernel.beam_checks import check_writable_beams
+from ..kernel.beams import Beams, node_axis_segments, scale_beams
+from ..kernel.colors import AXIS, BEAM, NODE, Color, mould_color, mould_name
 from ..kernel.congruent_panels import congruent_panels
 from ..kernel.errors import InputError, MissingLibraryError
+from ..kernel.node_cylinders import node_cylinders
 from ..kernel.panel_checks import check_writable
 from ..kernel.panels import Panels
 from .beam_bodies import beam_bodies
 from .beam_numbers import beam_numbers
-from .brep_numbers import CONFUSION, copy_places, panel_tolerances, panels_in_place
+from .brep_numbers import (
+    CONFUSION,
+    copy_places,
+    panel_tolerances,
+    panels_in_place,
+    rounded_origins,
+)
 from .files import check_suffix, check_target, replacing
+from .node_bodies import cylinder_bodies
 from .panel_bodies import panel_bodies
 from .part21_assembly import Group, Instance, Part, StepHeader, StepSchema, assembly_lines
+from .part21_bodies import line_body
 from .units import millimeters_per
 
 if TYPE_CHECKING:
@@ -73,8 +83,10 @@ def write_step(
     -------
     Path
         The file. It holds one assembly ``Panels`` with a component per panel, named by its id,
-        on the layer and in the colour of its mould. Beams lie on the layer ``Beams``, and the
-        assembly is called ``Beams``, or ``Model`` with both.
+        on the layer and in the colour of its mould. With beams, it is part of an assembly
+        ``Model``, together with an assembly ``Beams``, an assembly ``Nodes`` of the node
+        cylinders if beams have a node radius, and a part ``Axes`` of the node axes as lines:
+        each on the layer of that name.
 
     Raises
     ------
@@ -85,7 +97,8 @@ def write_step(
     Notes
     -----
     The only geometry is spheres, planes, circles and lines, and for beams cylinders and
-    ellipses. Every number is read back as it was.
+    ellipses. Names of curves get lost in STEP, so the axes are one part of many lines; a Rhino
+    file has them by name. Every number is read back as it was.
 
     Instances stand within 1e-6 mean edges of the panels that they stand for (`SAME_PANEL`):
     0.001 mm where edges are 1 m long.
@@ -97,6 +110,8 @@ def write_step(
         check_writable(panels, target)
     elif not n_beams:
         raise InputError(f"there are no panels or beams to write to {target}")
+    if beams is not None and n_beams:
+        check_writable_beams(beams, target)
     check_target(target)
     if schema not in get_args(StepSchema):
         raise InputError(f"unknown STEP schema {schema!r}: use AP214IS or AP242DIS")
@@ -104,15 +119,14 @@ def write_step(
         raise InputError(f"copies must be shapes or instances, not {copies!r}")
     millimeters = millimeters_per(step_units)
     scale, confusion = millimeters_per(units) / millimeters, CONFUSION / millimeters
-    groups: list[Group] = []
-    if panels is not None and panels.n_panels:
-        build = _panel_parts if copies == "shapes" else _shared_parts
-        groups.append(Group("Panels", build(panels, scale, confusion)))
+    build = _panel_parts if copies == "shapes" else _shared_parts
+    parts = build(panels, scale, confusion) if panels is not None and panels.n_panels else []
+    root = Group("Panels", parts)
     if beams is not None and n_beams:
-        groups.append(Group("Beams", _beam_parts(beams, scale, confusion)))
+        support = _support_parts(beams, scale, confusion)
+        root = Group("Model", [root, *support] if parts else support)
     system = f"spheremesh {version('spheremesh')}"
     header = StepHeader(schema, step_units, millimeters, confusion, title, system)
-    root = groups[0] if len(groups) == 1 else Group("Model", groups)
     lines = assembly_lines(root, header)
     with (
         replacing(target) as temporary,
@@ -163,6 +177,28 @@ def _beam_parts(beams: Beams, scale: float, confusion: float) -> list[Part]:
             strict=True,
         )
     ]  # fmt: skip
+
+
+def _support_parts(beams: Beams, scale: float, confusion: float) -> list[Group | Part]:
+    """Beams, node cylinders where they have a radius, and node axes."""
+    groups: list[Group | Part] = [Group("Beams", _beam_parts(beams, scale, confusion))]
+    scaled = scale_beams(beams, scale)
+    found = node_cylinders(scaled)
+    if found.n_nodes:
+        places = rounded_origins(found.origins)
+        made = cylinder_bodies(
+            found.origins - places, found.directions, found.heights, found.radius
+        )
+        nodes = [
+            Part(body, name, "Nodes", NODE, confusion, (Instance(name, tuple(place)),))
+            for body, name, place in zip(made, found.ids, places.tolist(), strict=True)
+        ]
+        groups.append(Group("Nodes", nodes))
+    _, segments = node_axis_segments(scaled)
+    place = rounded_origins(segments[:1, 0])
+    axes = line_body(segments - place)
+    here = (Instance("Axes", tuple(place[0].tolist())),)
+    return [*groups, Part(axes, "Axes", "Axes", AXIS, confusion, here)]
 
 
 def _file_tolerances(tolerances: FloatArray, confusion: float) -> list[float]:
@@ -267,6 +303,4 @@ def _opencascade() -> Generator[None]:
             )
         else:
             remedy = "install the package cadquery, which brings it"
-        raise MissingLibraryError(
-            f"objects of CadQuery need OpenCASCADE: {error}; {remedy}"
-        ) from error
+        raise MissingLibraryError(f"STEP needs OpenCASCADE: {error}; {remedy}") from error

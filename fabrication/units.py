@@ -7,6 +7,12 @@ from ..kernel.errors import InputError
 MILLIMETERS: Final = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, "ft": 304.8}
 """Millimetres per model unit."""
 
+SQUARE_METER: Final = 1e6
+"""Square millimetres in a square metre."""
+
+CUBIC_METER: Final = 1e9
+"""Cubic millimetres in a cubic metre."""
+
 
 def millimeters_per(units: str) -> float:
     """

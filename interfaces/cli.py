@@ -45,6 +45,19 @@ def main() -> None:
 @click.option("--moulds", type=int, help="Number of mould radii; by default one per panel.")
 @click.option("--thickness", type=float, default=0.0, help="Thickness, in model units.")
 @click.option("--joint-gap", type=float, default=0.0, help="Joint width, in model units.")
+@click.option(
+    "--side",
+    type=click.Choice(["inward", "outward", "centred"]),
+    default="inward",
+    help="Where the thickness goes from the spheres, which are those of the moulds.",
+)
+@click.option(
+    "--offset",
+    type=click.Choice(["constant", "power"]),
+    default="constant",
+    help="The same thickness everywhere, or the same difference of squared radii: neighbours "
+    "that bulge alike then meet on both faces.",
+)
 @click.option("--units", type=click.Choice(UNITS), default="m", help="Model units.")
 @click.option("--layer", default="", help="Only this layer (.3dm) or group (OBJ).")
 @click.option(
@@ -68,6 +81,12 @@ def main() -> None:
 @click.option("--depth", type=float, help="Depth of the beams; a quarter of the mean edge.")
 @click.option(
     "--beam-thickness", type=float, help="Thickness of the beams; a tenth of the depth."
+)
+@click.option(
+    "--node-radius",
+    type=click.FloatRange(min=0),
+    default=0.0,
+    help="Radius of cylinders at the nodes, before which beams end square; 0 for mitres.",
 )
 @click.option("--strict", is_flag=True, help="Exit with 5 if a panel or beam is rejected.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report alone.")
@@ -239,11 +258,13 @@ def _print_report(
     """Warnings and rejected panels on standard error; the report, or what matters of it."""
     for text in report["warnings"]:
         click.echo(f"warning: {text}", err=True)
-    for rejected in (*report["panels"]["rejected"], *report["beams"]["rejected"]):
-        click.echo(f"rejected: {rejected['id']}: {rejected['reason']}", err=True)
+    refused = (*report["panels"]["rejected"], *report["beams"]["rejected"])
+    for part in refused:
+        click.echo(f"rejected {part['code']}: {part['id']}: {part['reason']}", err=True)
+    codes = {part["code"] for part in refused}
     audit: Mapping[str, Any] = report["audit"] or {"errors": []}
     for found in audit["errors"]:
-        if found["code"] != "P100":  # these are the rejected ones
+        if found["code"] not in codes:  # these are the rejected ones
             click.echo(f"error {found['code']}: {found['id']}: {found['message']}", err=True)
     if as_json:
         click.echo(json.dumps(report, indent=1))

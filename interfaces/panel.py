@@ -16,6 +16,9 @@ from ..nodes.wires import Step, Wire
 
 Progress = Callable[[str, str], None]
 
+_LAYERS = {"constant": "offset", "power": "power"}
+"""Port of `panels` by option: --layer names a layer of the input."""
+
 
 @dataclass(frozen=True)
 class PanelOptions:
@@ -34,6 +37,10 @@ class PanelOptions:
         Number of moulds; None for a radius per panel.
     thickness, joint_gap : float
         In model units.
+    side : {"inward", "outward", "centred"}
+        Where the thickness goes from the spheres.
+    offset : {"constant", "power"}
+        Whether the thickness is the same everywhere, or the difference of squared radii.
     edges : {"bisector", "intersection"} or None
         How panels are cut; by default where the spheres meet if there is a support, else
         upright.
@@ -47,6 +54,8 @@ class PanelOptions:
     depth, beam_thickness : float or None
         Of the beams, in model units; by default a quarter of the mean edge, and a tenth of the
         depth.
+    node_radius : float
+        Radius of the node cylinders, in model units; 0 for mitred beams.
     """
 
     mesh: Path | None = None
@@ -55,12 +64,15 @@ class PanelOptions:
     moulds: int | None = None
     thickness: float = 0.0
     joint_gap: float = 0.0
+    side: Literal["inward", "outward", "centred"] = "inward"
+    offset: Literal["constant", "power"] = "constant"
     edges: Literal["bisector", "intersection"] | None = None
     tolerance: float | None = None
     target_angle: float = 0.0
     support: bool = False
     depth: float | None = None
     beam_thickness: float | None = None
+    node_radius: float = 0.0
 
 
 def panel_graph(options: PanelOptions) -> Graph:
@@ -76,9 +88,9 @@ def panel_graph(options: PanelOptions) -> Graph:
     -------
     Graph
         Its steps are named mesh, start, angles (before an optimum of more than angles),
-        optimum, moulds and blanks (with a number of moulds), panels, audit, report, step,
-        rhino, table, list and picture, with a support nodes, annuli, beams and drawing too;
-        its writers write into the working directory.
+        optimum, panels, audit, report, step, rhino, table, list and picture; with a number of
+        moulds also moulds, blanks, mould_drawing and mould_picture, with a support nodes,
+        annuli, beams, drawing and beam_table. Its writers write into the working directory.
 
     Raises
     ------
@@ -104,12 +116,21 @@ def panel_graph(options: PanelOptions) -> Graph:
     panels = graph.add(
         "panels", "panels", sphere_mesh=spheres, thickness=thickness, joint_gap=joint_gap,
         edges=options.edges or ("intersection" if options.support else "bisector"),
-        labels=labels,
+        labels=labels, side=options.side, layer=_LAYERS[options.offset],
     )  # fmt: skip
     if options.moulds is not None:
         blanks = graph.add("mould_blanks", "blanks", panels=panels.panels)
-    audit = graph.add("audit", "audit", panels=panels.panels, cut=panels.report)
+        for name, path in (("mould_drawing", "moulds.dxf"), ("mould_picture", "moulds.svg")):
+            graph.add("write_mould_drawings", name, panels=panels.panels, path=path)
     structure = _beams(graph, options, spheres) if options.support else {}
+    carried: dict[str, Wire] = {}
+    if structure:
+        carried = {
+            "beams": structure["beams"].beams,
+            "annuli_report": structure["annuli"].report,
+            "beams_report": structure["beams"].report,
+        }
+    audit = graph.add("audit", "audit", panels=panels.panels, cut=panels.report, **carried)
     graph.add(
         "panel_report", "report", sphere_mesh=spheres, optimum=optimum.report,
         cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report,
@@ -121,7 +142,7 @@ def panel_graph(options: PanelOptions) -> Graph:
     graph.add("write_step", "step", **made, path="panels.step")
     graph.add("write_3dm", "rhino", **made, path="model.3dm", reference=mesh)
     graph.add("write_schedule", "table", panels=panels.panels, path="schedule.csv")
-    graph.add("write_schedule", "list", panels=panels.panels, path="schedule.json")
+    graph.add("write_schedule", "list", **made, path="schedule.json")
     graph.add("render", "picture", panels=panels.panels, path="preview.png")
     return graph
 
@@ -150,7 +171,7 @@ def _support_weights(options: PanelOptions) -> dict[str, float]:
 
 
 def _beams(graph: Graph, options: PanelOptions, spheres: Wire) -> dict[str, Step]:
-    """Nodes, annuli and beams; their drawing is written as well."""
+    """Nodes, annuli and beams; their drawing and schedule are written as well."""
     nodes = graph.add("support_structure", "nodes", sphere_mesh=spheres)
     depth = (
         {} if options.depth is None else {"depth": graph.param("depth", options.depth, min=0)}
@@ -160,8 +181,12 @@ def _beams(graph: Graph, options: PanelOptions, spheres: Wire) -> dict[str, Step
     if options.beam_thickness is not None:
         value = graph.param("beam_thickness", options.beam_thickness, min=0)
         thickness = {"thickness": value}
-    beams = graph.add("beams", "beams", annuli=annuli.annuli, **thickness)
+    cylinders = {}
+    if options.node_radius:
+        cylinders = {"node_radius": graph.param("node_radius", options.node_radius, min=0)}
+    beams = graph.add("beams", "beams", annuli=annuli.annuli, **thickness, **cylinders)
     graph.add("write_dxf", "drawing", beams=beams.beams, path="beams.dxf")
+    graph.add("write_schedule", "beam_table", beams=beams.beams, path="beams.csv")
     return {"nodes": nodes, "annuli": annuli, "beams": beams}
 
 
@@ -217,10 +242,14 @@ def run_job(
     here = Path.cwd()
     with replacing_all(folder) as staging:
         with chdir(staging):
-            _refuse_nothing(graph.run("panels.report", on_step=clock.note, read_from=here))
+            _refuse_nothing(
+                graph.run("panels.report", on_step=clock.note, read_from=here), "panels"
+            )
             _refuse_unfinished(graph.run("optimum.report", read_from=here))
-            graph.run(*graph.ends, on_step=clock.note, read_from=here)
             found = graph.run("report", on_step=clock.note, read_from=here)
+            if found["support"]:
+                _refuse_nothing(found["beams"], "beams")
+            graph.run(*graph.ends, on_step=clock.note, read_from=here)
         graph.save(staging / "graph.json")
         source = graph.steps["mesh"]
         path = str(source.inputs.get("path", source.node.name))
@@ -257,12 +286,12 @@ def _refuse_unfinished(optimum: Mapping[str, Any]) -> None:
         )
 
 
-def _refuse_nothing(cut: Mapping[str, Any]) -> None:
-    if cut["written"] == 0:
-        rejected = cut["rejected"]
-        shown = "; ".join(f"{panel['id']}: {panel['reason']}" for panel in rejected[:3])
+def _refuse_nothing(made: Mapping[str, Any], what: str) -> None:
+    if made["written"] == 0:
+        rejected = made["rejected"]
+        shown = "; ".join(f"{part['id']}: {part['reason']}" for part in rejected[:3])
         more = f"; {len(rejected) - 3} more" if len(rejected) > 3 else ""
-        raise InputError(f"none of the {len(rejected)} panels can be made: {shown}{more}")
+        raise InputError(f"none of the {len(rejected)} {what} can be made: {shown}{more}")
 
 
 class _StepClock:

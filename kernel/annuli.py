@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .arcs import Arcs, sphere_arcs
-from .arrays import BoolArray, FloatArray, IntArray, norm, sum_by
+from .arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by
 
 
 @dataclass(frozen=True)
@@ -31,6 +31,8 @@ class Annuli:
         Vertices at the two ends.
     edge_faces : (B, 2) int array
         Faces left and right of the edge; -1 beyond the boundary.
+    panel_ids : tuple of (str or None, str or None)
+        Names of the panels of these faces; None beyond the boundary.
     origins : (B, 3) float array
         Origins, in model coordinates: points of the planes near the middle of the edges.
     frames : (B, 3, 3) float array
@@ -58,6 +60,7 @@ class Annuli:
     edge_ids: IntArray
     edge_vertices: IntArray
     edge_faces: IntArray
+    panel_ids: tuple[tuple[str | None, str | None], ...]
     origins: FloatArray
     frames: FloatArray
     outer: FloatArray
@@ -127,6 +130,7 @@ def select_annuli(annuli: Annuli, keep: BoolArray) -> Annuli:
         edge_ids=annuli.edge_ids[keep],
         edge_vertices=annuli.edge_vertices[keep],
         edge_faces=annuli.edge_faces[keep],
+        panel_ids=tuple(annuli.panel_ids[i] for i in np.flatnonzero(keep)),
         origins=annuli.origins[keep],
         frames=annuli.frames[keep],
         outer=annuli.outer[keep],
@@ -186,6 +190,41 @@ def corner_mismatch(annuli: Annuli) -> FloatArray:
     return norm(points - means[groups].reshape(-1, 2, 3)).max(axis=1).reshape(-1, 2)
 
 
+def axis_angles(annuli: Annuli) -> FloatArray:
+    """
+    Angles by which the planes of the annuli miss the node axes: 0 where a node has no torsion.
+
+    Parameters
+    ----------
+    annuli : Annuli
+        B annuli.
+
+    Returns
+    -------
+    (B, 2) float array
+        Angles in [0, π/2] at both ends, in radians.
+    """
+    sines = np.abs(dot(annuli.node_axes, annuli.frames[:, None, 2]))
+    return np.arcsin(np.minimum(sines, 1.0))
+
+
+def end_depths(annuli: Annuli) -> FloatArray:
+    """
+    Lengths of the ends, along the lines that the beams of a node share.
+
+    Parameters
+    ----------
+    annuli : Annuli
+        B annuli.
+
+    Returns
+    -------
+    (B, 2) float array
+        From outer to inner corner, in model units.
+    """
+    return norm(annuli.corners[:, :, 1] - annuli.corners[:, :, 0])
+
+
 def mean_end_depth(annuli: Annuli) -> float:
     """
     Mean length of the ends of the annuli.
@@ -200,5 +239,5 @@ def mean_end_depth(annuli: Annuli) -> float:
     float
         From outer to inner corner, in model units; 0 without annuli.
     """
-    lengths = norm(annuli.corners[:, :, 1] - annuli.corners[:, :, 0])
+    lengths = end_depths(annuli)
     return float(lengths.mean()) if lengths.size else 0.0

@@ -11,12 +11,21 @@ from typing import Any
 
 import numpy as np
 
-from .annuli import Annuli, beam_ids, corner_mismatch, select_annuli
+from .annuli import (
+    Annuli,
+    axis_angles,
+    beam_ids,
+    corner_mismatch,
+    end_depths,
+    select_annuli,
+)
 from .arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
-from .beam_checks import RejectedBeam, inner_reasons, standing_reasons
+from .beam_checks import NO_ANNULUS, RejectedBeam, inner_reasons, standing_reasons
 from .cutting import flatten_nearly_plane
 from .errors import InputError
+from .findings import rejected_report
 from .mesh import Mesh, face_centroids, face_normals, local_corners, mean_edge_length
+from .panels import panel_ids
 from .sphere_mesh import SphereMesh
 from .spheres import evaluate, meet_lines, minkowski, normals, recenter
 from .support import SupportStructure, arc_planes, support_structure
@@ -107,7 +116,8 @@ def annulus_support(
         annuli = _with_power(annuli, float(kappa or 0), stands)
     reasons = inner_reasons(annuli, mean_edge_length(sphere_mesh.mesh)) | reasons
     rejected = tuple(
-        RejectedBeam(annuli.ids[row], row, reason) for row, reason in sorted(reasons.items())
+        RejectedBeam(annuli.ids[row], row, reason, NO_ANNULUS)
+        for row, reason in sorted(reasons.items())
     )
     keep = np.ones(annuli.n_annuli, bool)
     keep[list(reasons)] = False
@@ -184,14 +194,24 @@ def _outer_annuli(
     origins = face_centroids(mesh)[faces[:, 0]] + middles[first] + feet
     across = face_normals(mesh)[faces[:, 0]] + face_normals(mesh)[faces[:, 1]]
     across = np.where(is_interior[:, None], across, left[:, 1:4])
+    edge_faces = np.where(is_interior[:, None], faces, faces * [1, 0] - [0, 1])
     annuli = Annuli(
-        beam_ids(len(first)), np.arange(len(first)), vertices,
-        np.where(is_interior[:, None], faces, faces * [1, 0] - [0, 1]), origins,
+        beam_ids(len(first)), np.arange(len(first)), vertices, edge_faces,
+        _panel_ids_beside(edge_faces, mesh.n_faces), origins,
         np.stack([x, np.cross(z, x), z], 1), outer, outer,
         np.stack([tops, tops], 2), directions, axes,
         _angle_of_planes(z, np.cross(chords, across)), 0.0, 0.0,
     )  # fmt: skip
     return annuli, is_real & meets.reshape(-1, 2).all(axis=1)
+
+
+def _panel_ids_beside(
+    edge_faces: IntArray, n_faces: int
+) -> tuple[tuple[str | None, str | None], ...]:
+    """Names of the panels beside edges."""
+    names = (*panel_ids(n_faces), None)  # -1, beyond the boundary, is the last
+    sides: list[list[int]] = edge_faces.tolist()
+    return tuple((names[left], names[right]) for left, right in sides)
 
 
 def _great_spheres(
@@ -289,13 +309,12 @@ def annulus_report(support: AnnulusSupport, size: float) -> dict[str, Any]:
         annuli made, ``corner_mismatch`` (max, relative_to_edge) between ends at a node,
         ``axis_angle_deg`` (the largest angle between a node axis and a plane), ``end_depth``
         (min and max length of the ends), ``outward`` (how many ends reach to the outer side),
-        ``made`` and ``rejected`` (id and reason).
+        ``made`` and ``rejected`` (id, code and reason).
     """
     annuli = support.annuli
     tilt = np.degrees(annuli.tilt)
     steps = annuli.corners[:, :, 1] - annuli.corners[:, :, 0]
-    lengths = norm(steps)
-    sines = np.abs(dot(annuli.node_axes, annuli.frames[:, None, 2]))
+    lengths = end_depths(annuli)
     mismatch = float(corner_mismatch(annuli).max(initial=0.0)) if annuli.n_annuli else 0.0
     return {
         "kappa_max": support.kappa_max if np.isfinite(support.kappa_max) else None,
@@ -304,12 +323,12 @@ def annulus_report(support: AnnulusSupport, size: float) -> dict[str, Any]:
             "max": float(tilt.max(initial=0.0)),
         },
         "corner_mismatch": {"max": mismatch, "relative_to_edge": mismatch / size},
-        "axis_angle_deg": float(np.degrees(np.arcsin(sines.max(initial=0.0)))),
+        "axis_angle_deg": float(np.degrees(axis_angles(annuli).max(initial=0.0))),
         "end_depth": {
             "min": float(lengths.min()) if lengths.size else 0.0,
             "max": float(lengths.max(initial=0.0)),
         },
         "outward": int((dot(steps, annuli.end_directions) < 0).sum()),
         "made": annuli.n_annuli,
-        "rejected": [{"id": beam.id, "reason": beam.reason} for beam in support.rejected],
+        "rejected": rejected_report(support.rejected),
     }

@@ -293,3 +293,31 @@ def arc_tangents(arcs: Arcs) -> tuple[FloatArray, FloatArray]:
     # Half of the sweep, by the tangent of a quarter of it.
     cosine, sine = (1 - square) / (1 + square), 2 * _bulges(arcs)[:, None] / (1 + square)
     return cosine * along + sine * arcs.rises, cosine * along - sine * arcs.rises
+
+
+def arc_reaches(arcs: Arcs, directions: FloatArray) -> FloatArray:
+    """
+    How far arcs reach in a direction.
+
+    Parameters
+    ----------
+    arcs : Arcs
+        H arcs.
+    directions : (H, 3) float array
+        Unit vectors in the planes of the arcs.
+
+    Returns
+    -------
+    (H,) float array
+        Largest coordinate of a point of the arc along the direction, from the origin: that of
+        an end, or of the point of the circle that lies in that direction if the arc has it.
+    """
+    ends = np.maximum(dot(arcs.starts, directions), dot(arcs.ends, directions))
+    outward = np.copysign(1.0, arcs.sagittas)[:, None] * arcs.rises
+    apex = (arcs.starts + arcs.ends) / 2 + arcs.sagittas[:, None] * arcs.rises
+    turn = 2 * np.arctan2(norm(directions - outward), norm(directions + outward))
+    circles = arc_circles(arcs)
+    is_between = (turn < circles.sweeps / 2) & np.isfinite(circles.radii)
+    # From the apex, not from a centre that may be far away.
+    rise = np.where(is_between, circles.radii, 0.0) * 2 * np.sin(turn / 2) ** 2
+    return np.where(is_between, dot(apex, directions) + rise, ends)

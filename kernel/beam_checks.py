@@ -1,15 +1,24 @@
 """What keeps a beam from being made: planes that lie flat, ends that lean or cross."""
 
+from collections import Counter
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from .arrays import BoolArray, dot, norm
+from .errors import InputError, name_ids
 from .tolerances import AXIS_LEAN, DEGENERATE
 
 if TYPE_CHECKING:
     from .annuli import Annuli
+    from .beams import Beams
+
+NO_ANNULUS: Final = "B100"
+"""Code of a beam whose edge has no annulus."""
+
+NO_CUT: Final = "B101"
+"""Code of a beam whose annulus cannot be cut at the nodes."""
 
 
 @dataclass(frozen=True)
@@ -25,11 +34,14 @@ class RejectedBeam:
         Its edge.
     reason : str
         What is wrong, for a person.
+    code : str
+        Number of the finding that it is: `NO_ANNULUS` or `NO_CUT`.
     """
 
     id: str
     edge_id: int
     reason: str
+    code: str
 
 
 def standing_reasons(annuli: "Annuli", is_real: BoolArray, max_tilt: float) -> dict[int, str]:
@@ -108,3 +120,60 @@ def inner_reasons(annuli: "Annuli", size: float) -> dict[int, str]:
     for row in np.flatnonzero(sides[:, 0] * sides[:, 1] < 0).tolist():
         reasons.setdefault(row, "the two arcs cross: one end reaches inside, one outside")
     return reasons
+
+
+def finite_beams(beams: "Beams") -> BoolArray:
+    """
+    Which beams have finite numbers only.
+
+    Parameters
+    ----------
+    beams : Beams
+        B beams.
+
+    Returns
+    -------
+    (B,) bool array
+        Whether origins, circles and corners are finite.
+    """
+    annuli = beams.annuli
+    numbers = [
+        array.reshape(beams.n_beams, np.prod(array.shape[1:], dtype=int))
+        for array in (
+            annuli.origins, annuli.outer, annuli.inner, annuli.corners, beams.corners,
+            beams.sections,
+        )
+    ]  # fmt: skip
+    return np.asarray(np.isfinite(np.hstack(numbers)).all(axis=1))
+
+
+def check_writable_beams(beams: "Beams", target: object) -> None:
+    """
+    Refuse beams that no file can hold.
+
+    Parameters
+    ----------
+    beams : Beams
+        B beams.
+    target : path
+        The file, for the message.
+
+    Raises
+    ------
+    InputError
+        If there is no beam, two have the same name, or one has numbers that are not finite.
+    """
+    ids = beams.annuli.ids
+    if not ids:
+        raise InputError(f"there are no beams to write to {target}")
+    for name, count in Counter(ids).items():
+        if count > 1:
+            rows = [i for i, other in enumerate(ids) if other == name]
+            edges = name_ids(beams.annuli.edge_ids[rows].tolist())
+            raise InputError(
+                f"{count} beams are called {name!r} (edges {edges}): give each a name of its "
+                "own"
+            )
+    broken = [ids[i] for i in np.flatnonzero(~finite_beams(beams))]
+    if broken:
+        raise InputError(f"beam {broken[0]} ({len(broken)} in all) is not finite")

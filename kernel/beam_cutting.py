@@ -11,7 +11,7 @@ import numpy as np
 
 from .annuli import Annuli
 from .arrays import BoolArray, FloatArray, dot, unit
-from .beam_checks import RejectedBeam
+from .beam_checks import NO_CUT, RejectedBeam
 from .beams import Beams, cut_corners, insets_at, inward_directions, select_beams
 from .errors import InputError
 from .tolerances import MITRE_LIMIT, PARALLEL_PLANES
@@ -75,7 +75,7 @@ def cut_beams(
     )  # fmt: skip
     reasons = _rejection_reasons(beams, half_angles, exists & section_exists)
     rejected = tuple(
-        RejectedBeam(annuli.ids[row], int(annuli.edge_ids[row]), reason)
+        RejectedBeam(annuli.ids[row], int(annuli.edge_ids[row]), reason, NO_CUT)
         for row, reason in sorted(reasons.items())
     )
     keep = np.ones(annuli.n_annuli, bool)
@@ -177,7 +177,10 @@ def _rejection_reasons(
 
     closest = half_angles.min(axis=(1, 2))
     _note(closest < PARALLEL_PLANES, "another beam leaves the node in the same direction")
-    _note(~exists, "the cut of an end misses a circle: make the beams thinner")
+    _note(
+        ~exists,
+        "the cut of an end misses a circle: make the beams thinner or the node smaller",
+    )
     ridges = np.abs(beams.levels[..., 1]) >= beams.thickness / 2
     _note(
         np.asarray((ridges & ~beams.is_flat).any(axis=1)),

@@ -19,6 +19,40 @@ from .spheres import meet_lines, recenter, rescale
 
 
 @dataclass(frozen=True)
+class DrillMarks:
+    """
+    Holes at the ends of beams (`kernel.drilling`).
+
+    Attributes
+    ----------
+    centers : (B, 2, n, 3) float array
+        Centres at both ends, from the outer to the inner side; local, in the planes of the
+        annuli.
+    fits : (B,) bool array
+        Beams that get them; what is said of the others is of no use.
+    diameter : float
+        Diameter of all, in model units.
+    """
+
+    centers: FloatArray
+    fits: BoolArray
+    diameter: float
+
+    @property
+    def holes(self) -> FloatArray:
+        """
+        Centres of all holes of each beam.
+
+        Returns
+        -------
+        (B, 2 n, 3) float array
+            Those of the first end first; local.
+        """
+        n_beams, n_ends, count, _ = self.centers.shape
+        return self.centers.reshape(n_beams, n_ends * count, 3)
+
+
+@dataclass(frozen=True)
 class Beams:
     """
     Beams that can be made, in the order of their edges.
@@ -41,6 +75,8 @@ class Beams:
         Corners of the section in the middle of the thickness: at both ends, outer and inner.
     thickness, node_gap, node_radius : float
         As they were asked for, in model units.
+    marks : DrillMarks, optional
+        Where holes are to be drilled.
     """
 
     annuli: Annuli
@@ -52,6 +88,7 @@ class Beams:
     thickness: float
     node_gap: float
     node_radius: float
+    marks: DrillMarks | None = None
 
     @property
     def n_beams(self) -> int:
@@ -155,6 +192,7 @@ def select_beams(beams: Beams, keep: BoolArray) -> Beams:
     Beams
         The chosen beams, in the same order.
     """
+    marks = beams.marks
     return replace(
         beams,
         annuli=select_annuli(beams.annuli, keep),
@@ -163,6 +201,7 @@ def select_beams(beams: Beams, keep: BoolArray) -> Beams:
         is_flat=beams.is_flat[keep],
         corners=beams.corners[keep],
         sections=beams.sections[keep],
+        marks=marks and DrillMarks(marks.centers[keep], marks.fits[keep], marks.diameter),
     )
 
 
@@ -182,7 +221,7 @@ def scale_beams(beams: Beams, factor: float) -> Beams:
     Beams
         The same beams; every length is multiplied by the factor.
     """
-    annuli = beams.annuli
+    annuli, marks = beams.annuli, beams.marks
     scaled = replace(
         annuli,
         origins=annuli.origins * factor,
@@ -202,6 +241,7 @@ def scale_beams(beams: Beams, factor: float) -> Beams:
         thickness=beams.thickness * factor,
         node_gap=beams.node_gap * factor,
         node_radius=beams.node_radius * factor,
+        marks=marks and DrillMarks(marks.centers * factor, marks.fits, marks.diameter * factor),
     )
 
 
@@ -219,7 +259,7 @@ def section_arcs(beams: Beams) -> tuple[Arcs, Arcs]:
     outer, inner : Arcs
         B arcs each, local, from the first to the second end.
     """
-    return _level_arcs(beams, beams.sections, np.zeros(beams.n_beams))
+    return level_arcs(beams, beams.sections, np.zeros(beams.n_beams))
 
 
 def side_arcs(beams: Beams, level: int) -> tuple[Arcs, Arcs]:
@@ -238,10 +278,27 @@ def side_arcs(beams: Beams, level: int) -> tuple[Arcs, Arcs]:
     outer, inner : Arcs
         B arcs each, local, from the first to the second end.
     """
-    return _level_arcs(beams, beams.corners[:, :, :, level], beams.levels[:, 0, level])
+    return level_arcs(beams, beams.corners[:, :, :, level], beams.levels[:, 0, level])
 
 
-def _level_arcs(beams: Beams, corners: FloatArray, heights: FloatArray) -> tuple[Arcs, Arcs]:
+def level_arcs(beams: Beams, corners: FloatArray, heights: FloatArray) -> tuple[Arcs, Arcs]:
+    """
+    Outer and inner arcs at a height, between given corners.
+
+    Parameters
+    ----------
+    beams : Beams
+        B beams.
+    corners : (B, 2, 2, 3) float array
+        Corners at both ends, outer and inner, at the height; local.
+    heights : (B,) float array
+        Heights over the planes of the annuli.
+
+    Returns
+    -------
+    outer, inner : Arcs
+        B arcs each, local, from the first to the second end.
+    """
     planes = beams.annuli.frames[:, 2]
     lift = heights[:, None] * planes
     outer, inner = (
@@ -283,7 +340,7 @@ def beam_volumes(beams: Beams) -> FloatArray:
 def _section_areas(beams: Beams, heights: FloatArray) -> FloatArray:
     insets = insets_at(beams.levels, beams.insets, heights)
     corners = cut_corners(beams.annuli, insets[..., None])[0][:, :, :, 0]
-    outer, inner = _level_arcs(beams, corners, np.zeros(beams.n_beams))
+    outer, inner = level_arcs(beams, corners, np.zeros(beams.n_beams))
     diagonal, other = outer.ends - inner.starts, outer.starts - inner.ends
     quadrilaterals = dot(np.cross(diagonal, other), beams.annuli.frames[:, 2]) / 2
     return quadrilaterals + segment_areas(outer) - segment_areas(inner)

@@ -11,6 +11,12 @@ UNLABELLED: Final[Color] = (178, 182, 187)
 BEAM: Final[Color] = (112, 92, 74)
 """Brown of beams, which no mould has."""
 
+NODE: Final[Color] = (84, 88, 94)
+"""Dark grey of node cylinders."""
+
+AXIS: Final[Color] = (24, 24, 24)
+"""Nearly black, of lines."""
+
 _HUES: Final = (4.45, 1.1)  # radians: from blue over green to sand
 _LIGHTNESSES: Final = (0.50, 0.87)
 _CHROMA: Final = 0.11
@@ -41,8 +47,27 @@ def mould_name(label: int, count: int) -> str:
     """
     if label < 0:
         return "Panels"
+    return f"Mould {mould_number(label, count)}"
+
+
+def mould_number(label: int, count: int) -> str:
+    """
+    Number of a mould, as its name has it.
+
+    Parameters
+    ----------
+    label : int
+        Mould, from 0; -1 for a panel without mould.
+    count : int
+        Number of moulds.
+
+    Returns
+    -------
+    str
+        ``01`` for the first; ``-`` for panels without mould.
+    """
     width = max(2, len(str(count)))
-    return f"Mould {label + 1:0{width}d}"
+    return f"{label + 1:0{width}d}" if label >= 0 else "-"
 
 
 def mould_color(label: int, count: int) -> Color:

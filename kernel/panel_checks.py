@@ -27,11 +27,14 @@ class RejectedPanel:
         Its face.
     reason : str
         What is wrong, for a person.
+    code : str
+        Number of the finding that it is.
     """
 
     id: str
     face_id: int
     reason: str
+    code: str = "P100"
 
 
 def check_writable(panels: Panels, target: object) -> None:

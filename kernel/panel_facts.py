@@ -18,9 +18,9 @@ from .spheres import center_radius, normals
 
 
 @dataclass(frozen=True)
-class PanelFacts:
+class PanelRadii:
     """
-    Measures of panels, in the unit of the panels; points in model coordinates.
+    Centres and radii of panels, in the unit of the panels; points in model coordinates.
 
     Attributes
     ----------
@@ -31,6 +31,21 @@ class PanelFacts:
         Radii of the outer and inner faces.
     centers : (P, 3) float array
         Centre of all three; infinite for planes.
+    """
+
+    radii: FloatArray
+    outer_radii: FloatArray
+    inner_radii: FloatArray
+    centers: FloatArray
+
+
+@dataclass(frozen=True)
+class PanelFacts(PanelRadii):
+    """
+    Measures of panels, in the unit of the panels; points in model coordinates.
+
+    Attributes
+    ----------
     areas : (P,) float array
         Areas of the outer faces.
     volumes : (P,) float array
@@ -58,10 +73,6 @@ class PanelFacts:
         Smallest caps of the moulds that hold the panels.
     """
 
-    radii: FloatArray
-    outer_radii: FloatArray
-    inner_radii: FloatArray
-    centers: FloatArray
     areas: FloatArray
     volumes: FloatArray
     sizes: FloatArray
@@ -73,6 +84,29 @@ class PanelFacts:
     wall_tilts: FloatArray
     steps: FloatArray
     caps: PanelCaps
+
+
+def panel_radii(panels: Panels) -> PanelRadii:
+    """
+    Measure the spheres of panels.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+
+    Returns
+    -------
+    PanelRadii
+        Centres and radii.
+    """
+    centers, squares = center_radius(panels.design_spheres)
+    return PanelRadii(
+        radii=np.sqrt(squares),
+        outer_radii=np.sqrt(center_radius(panels.spheres)[1]),
+        inner_radii=np.sqrt(center_radius(panels.inner_spheres)[1]),
+        centers=centers + panels.origins,
+    )
 
 
 def panel_facts(panels: Panels) -> PanelFacts:
@@ -90,13 +124,9 @@ def panel_facts(panels: Panels) -> PanelFacts:
         The measures.
     """
     arcs = panel_arcs(panels)
-    centers, squares = center_radius(panels.design_spheres)
     tilts, steps = _neighborhood(panels)
     return PanelFacts(
-        radii=np.sqrt(squares),
-        outer_radii=np.sqrt(center_radius(panels.spheres)[1]),
-        inner_radii=np.sqrt(center_radius(panels.inner_spheres)[1]),
-        centers=centers + panels.origins,
+        **vars(panel_radii(panels)),
         areas=panel_areas(panels),
         volumes=panel_volumes(panels),
         sizes=_bounding_sizes(panels),

@@ -203,3 +203,9 @@ FOLD_STEP: Final = 1e-3
 
 LATTICE_TIE: Final = 1e-7
 """A vertex this close to a line of a map, in steps of the map, is moved off it."""
+
+OVERLAP: Final = 1e-6
+"""Beams that run into each other by less, in thicknesses, touch (rounding of mitres)."""
+
+SINGLE_IS_ENOUGH: Final = 0.01
+"""Share of the error of a triangulation that rounding its points to float32 may add."""

@@ -12,6 +12,7 @@ from spheremesh.nodes import (
     annulus_support,
     beams,
     central_spheres,
+    drilling_marks,
     face_planes,
     minimize_angles,
     roof_mesh,
@@ -76,3 +77,36 @@ def test_a_graph_from_spheres_to_drawings(tmp_path: Path) -> None:
     )
     with pytest.warns(UserWarning, match="larger than the sheet"):
         graph.run(small)
+
+
+def test_drilling_marks_report_and_warn(tmp_path: Path) -> None:
+    annuli = annulus_support(face_planes(torus_mesh(8, 6)), depth=0.3).annuli
+    cut = beams(annuli, 0.05).beams
+    drilled = drilling_marks(cut, 3)
+    assert drilled.report == {
+        "marked": cut.n_beams, "diameter": pytest.approx(0.025), "inset": pytest.approx(0.0375),
+        "counts": {}, "notes": [],
+    }  # fmt: skip
+    with pytest.warns(UserWarning, match="beams get no drilling marks: B0000"):
+        crowded = drilling_marks(cut, 2, diameter=0.2, inset=0.2)
+    assert json.loads(json.dumps(crowded.report, allow_nan=False)) == crowded.report
+    assert crowded.report["counts"] == {"B208": cut.n_beams}
+    assert crowded.report["marked"] == 0
+    assert [note["id"] for note in crowded.report["notes"]] == list(cut.annuli.ids)
+    # Nothing to draw is no error.
+    for path in (
+        write_dxf(crowded.beams, str(tmp_path / "d.dxf")),
+        write_3dm(beams=crowded.beams, path=str(tmp_path / "d.3dm")),
+    ):
+        assert Path(path).stat().st_size > 1000
+
+
+def test_rejected_beams_have_codes_in_reports() -> None:
+    sphere_mesh = minimize_angles(central_spheres(roof_mesh())).sphere_mesh
+    with pytest.warns(UserWarning, match="annuli cannot be made"):
+        found = annulus_support(sphere_mesh, depth=0.2)
+    assert {entry["code"] for entry in found.report["rejected"]} == {"B100"}
+    annuli = annulus_support(face_planes(torus_mesh()), depth=0.1).annuli
+    with pytest.warns(UserWarning, match="beams cannot be made"):
+        thick = beams(annuli, 0.3)
+    assert {entry["code"] for entry in thick.report["rejected"]} == {"B101"}

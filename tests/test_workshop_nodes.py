@@ -9,7 +9,9 @@ import pytest
 import spheremesh as sm
 from spheremesh.fabrication.part21 import check_part21
 from spheremesh.nodes import (
+    annulus_support,
     audit,
+    beams,
     cluster_radii,
     fit_spheres,
     identical_panels,
@@ -18,6 +20,7 @@ from spheremesh.nodes import (
     panel_report,
     panels,
     torus_mesh,
+    write_schedule,
 )
 
 
@@ -116,3 +119,33 @@ def test_shapes_are_told_apart_by_tolerance() -> None:
     coarse = identical_panels(made, tolerance=10.0)
     assert coarse.report["shapes"] == 1
     assert np.bincount(coarse.labels).tolist() == [48]
+
+
+def test_beams_and_what_was_rejected_are_audited(tmp_path: Path) -> None:
+    optimum = minimize_angles(fit_spheres(torus_mesh(8, 6)))
+    cut = panels(optimum.sphere_mesh, thickness=0.02)
+    with pytest.warns(UserWarning, match="annuli cannot be made"):
+        annuli = annulus_support(optimum.sphere_mesh, depth=0.3, max_tilt=2)
+    with pytest.warns(UserWarning, match="beams cannot be made"):
+        made = beams(annuli.annuli, 0.05, node_radius=0.3)
+    found = audit(
+        cut.panels, cut.report, beams=made.beams, annuli_report=annuli.report,
+        beams_report=made.report, max_wall_tilt=1, max_length=600,
+    )  # fmt: skip
+    refused = [error["id"] for error in found.report["errors"]]
+    counts = found.report["counts"]
+    assert counts["B100"] == len(annuli.report["rejected"]) > 0
+    assert counts["B101"] == len(made.report["rejected"]) > 0
+    assert {"B207", "P105"} <= set(counts)
+    # Every edge is a beam or has a code.
+    assert sorted([*refused, *made.beams.annuli.ids]) == [f"B{i:04d}" for i in range(96)]
+    alone = audit(beams=made.beams, max_wall_tilt=1, max_length=600).report["counts"]
+    assert alone == {code: counts[code] for code in alone}
+    report = panel_report(
+        optimum.sphere_mesh, optimum.report, cut.report, audit=found.report,
+        annuli=annuli.report, beams=made.report,
+    )  # fmt: skip
+    assert {part["code"] for part in report["beams"]["rejected"]} == {"B100", "B101"}
+    path = write_schedule(cut.panels, str(tmp_path / "s.json"), beams=made.beams)
+    rows = json.loads(Path(path).read_text("utf-8"))["beams"]
+    assert len(rows) == report["beams"]["written"] == made.beams.n_beams

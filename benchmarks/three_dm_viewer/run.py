@@ -6,7 +6,7 @@ Does another program see what was written? Reads .3dm files with three.js in hea
 
 FOLDER holds node_modules. Served on localhost; the page counts objects by kind, posts them with
 all messages of the console, and draws a picture. The files: a roof in five moulds with every
-layer, and a torus of blocks.
+layer, a torus of blocks, and a torus of panels on beams.
 """
 
 import base64
@@ -24,9 +24,12 @@ from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from spheremesh import nodes
 from spheremesh.fabrication.rhino import RhinoContents, RhinoFile, write_3dm
 from spheremesh.kernel.mesh import Mesh
+from spheremesh.kernel.panels import select_panels
 
 HERE = Path(__file__).parent
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
@@ -40,6 +43,16 @@ def write_model(mesh: Mesh, path: Path, contents: RhinoContents, moulds: int) ->
     clusters = nodes.cluster_radii(optimum.sphere_mesh, k=moulds)
     made = nodes.panels(clusters.sphere_mesh, joint_gap=0.02, labels=clusters.labels)
     return write_3dm(made.panels, path, graph_json='{"steps": {}}', contents=contents)
+
+
+def write_beams(mesh: Mesh, path: Path, contents: RhinoContents, moulds: int) -> RhinoFile:
+    """Every other panel of a mesh, so that the beams below are seen."""
+    spheres = nodes.central_spheres(mesh)
+    labels = nodes.cluster_radii(spheres, k=moulds).labels
+    made = nodes.panels(spheres, edges="intersection", joint_gap=0.02, labels=labels).panels
+    shown = select_panels(made, np.arange(made.n_panels) % 2 == 0)
+    beams = nodes.beams(nodes.annulus_support(spheres).annuli).beams
+    return write_3dm(shown, path, graph_json="{}", contents=contents, beams=beams)
 
 
 class Handler(SimpleHTTPRequestHandler):
@@ -119,21 +132,22 @@ def main() -> None:
     modules = Path(sys.argv[1]).resolve() / "node_modules"
     pictures = Path(sys.argv[2] if len(sys.argv) > 2 else tempfile.mkdtemp())
     roof, torus = nodes.roof_mesh(24, 40), nodes.torus_mesh(24, 16)
-    layers = ("Edges", "Centres")
+    layers = ("Edges", "Centres", "Moulds")
     models = {
-        "roof": (roof, RhinoContents(layers=layers, reference=roof), 5),
-        "torus of blocks": (torus, RhinoContents("blocks", ()), 3),
+        "roof": (write_model, roof, RhinoContents(layers=layers, reference=roof), 5),
+        "torus of blocks": (write_model, torus, RhinoContents("blocks", ()), 3),
+        "torus on beams": (write_beams, torus, RhinoContents(), 4),
     }
     is_good = True
-    for name, (mesh, contents, moulds) in models.items():
+    for name, (write, mesh, contents, moulds) in models.items():
         with tempfile.TemporaryDirectory() as folder:
             place = Path(folder)
             shutil.copy(HERE / "index.html", place)
             (place / "node_modules").symlink_to(modules)
-            written = dict(write_model(mesh, place / "model.3dm", contents, moulds).objects)
-            if contents.shape == "blocks":
+            written = dict(write(mesh, place / "model.3dm", contents, moulds).objects)
+            n_instances = written.pop("InstanceReference", 0)
+            if n_instances:
                 # three.js sets the member of a block in place of every instance.
-                n_instances = written.pop("InstanceReference")
                 n_blocks = len({*_block_names(place / "model.3dm")})
                 written["Brep"] += n_instances - n_blocks
             found = look(place)

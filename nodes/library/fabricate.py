@@ -9,6 +9,7 @@ from ...kernel import cutting
 from ...kernel.arrays import IntArray
 from ...kernel.beams import Beams
 from ...kernel.errors import name_ids
+from ...kernel.findings import rejected_report
 from ...kernel.mesh import Mesh
 from ...kernel.panels import Panels
 from ...kernel.sphere_mesh import SphereMesh
@@ -68,8 +69,8 @@ def panels(
     report : mapping
         ``edge_gap`` (max, mean, relative_to_edge, over so many edges) between the arcs of
         neighbouring panels, at the ends and in the middle, before the joint; ``thickness``
-        (min, mean, max); ``written`` and ``rejected`` (id and reason of each panel that cannot
-        be made).
+        (min, mean, max); ``written`` and ``rejected`` (id, code and reason of each panel that
+        cannot be made).
     """
     made, rejected = cutting.cut_panels(
         sphere_mesh, edges, thickness, joint_gap, labels, side, layer
@@ -83,7 +84,7 @@ def panels(
         "edge_gap": cutting.gap_report(sphere_mesh, edges, made.face_ids),
         "thickness": cutting.thickness_report(made),
         "written": made.n_panels,
-        "rejected": [{"id": panel.id, "reason": panel.reason} for panel in rejected],
+        "rejected": rejected_report(rejected),
     }
     return PanelSet(made, report)
 
@@ -117,7 +118,7 @@ def write_step(
         A shape of its own for every panel, or one shape for identical panels: smaller files
         where panels repeat.
     beams : Beams, optional
-        The beams, with mitred ends.
+        The beams, with their node cylinders if they have any, and the node axes.
 
     Returns
     -------
@@ -138,7 +139,7 @@ def write_3dm(
     beams: Beams | None = None,
     reference: Mesh | SphereMesh | None = None,
     shape: Literal["panels", "blocks", "shell"] = "panels",
-    layers: tuple[Literal["Edges", "Centres"], ...] = ("Edges",),
+    layers: tuple[Literal["Edges", "Centres", "Moulds"], ...] = ("Edges",),
 ) -> str:
     """
     Write panels and beams to a Rhino file: exact trimmed spheres, layers per mould, user text.
@@ -154,14 +155,16 @@ def write_3dm(
     version : int
         Rhino version of the file.
     beams : Beams, optional
-        The beams, as extrusions of their flat contours, and the node axes.
+        The beams, as extrusions of their flat contours, with their drilling marks, node
+        cylinders and node axes.
     reference : Mesh or SphereMesh, optional
         The design mesh, for a layer of its own.
     shape : {"panels", "blocks", "shell"}
         A surface per panel; instances of a block wherever panels are identical; or all panels
         joined into one polysurface, which needs panels cut along intersections without joint.
-    layers : tuple of {"Edges", "Centres"}
-        Further layers: the edges of the panels, the centres of their spheres.
+    layers : tuple of {"Edges", "Centres", "Moulds"}
+        Further layers: the edges of the panels, the centres of their spheres, and the blanks
+        of the moulds as blocks under their panels.
 
     Returns
     -------
@@ -209,7 +212,8 @@ def write_dxf(
     Returns
     -------
     str
-        The path. Layers: CUT, ENGRAVE (ids, nodes, bevels of the ends in degrees) and SHEET.
+        The path. Layers: CUT, ENGRAVE (ids, nodes, bevels of the ends in degrees), DRILL
+        (drilling marks) and SHEET.
     """
     file = dxf.write_dxf(beams, path, units, sheet, spacing)
     if file.oversize:
@@ -219,25 +223,33 @@ def write_dxf(
 
 
 @node
-def write_schedule(panels: Panels, path: WritePath, units: Units = "m") -> str:
+def write_schedule(
+    panels: Panels | None = None,
+    path: WritePath = "schedule.csv",
+    units: Units = "m",
+    beams: Beams | None = None,
+) -> str:
     """
-    Write the list of panels with their moulds, sizes, edges and neighbours, in millimetres.
+    Write the list of panels or beams with sizes, edges and neighbours, in millimetres.
 
     Parameters
     ----------
-    panels : Panels
-        The panels.
+    panels : Panels, optional
+        The panels; these or beams are needed.
     path : path
-        Ends in .csv, .json or .xlsx (with the extra ``excel``).
+        Ends in .csv (panels or beams), or in .json or .xlsx (both; .xlsx with the extra
+        ``excel``).
     units : str
         Model units.
+    beams : Beams, optional
+        The beams.
 
     Returns
     -------
     str
         The path.
     """
-    return str(schedule.write_schedule(panels, path, units))
+    return str(schedule.write_schedule(panels, path, units, beams))
 
 
 @node

@@ -11,7 +11,9 @@ from ...kernel.annuli import Annuli, corner_mismatch, mean_end_depth
 from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.beam_checks import RejectedBeam
 from ...kernel.beams import Beams, beam_lengths, beam_volumes
+from ...kernel.drilling import drill_beams
 from ...kernel.errors import name_ids
+from ...kernel.findings import findings_report, rejected_report
 from ...kernel.mesh import mean_edge_length
 from ...kernel.sphere_mesh import SphereMesh
 from ..node import node, warn
@@ -107,7 +109,7 @@ def annulus_support(
         ``tilt_deg`` (p95, max), ``corner_mismatch`` between the ends at a node (max,
         relative_to_edge), ``axis_angle_deg`` (how far node axes miss the planes),
         ``end_depth`` (min, max), ``outward`` (ends that reach to the outer side), ``made``
-        and ``rejected`` (id and reason).
+        and ``rejected`` (id, code and reason).
     """
     edge = mean_edge_length(sphere_mesh.mesh)
     if depth is None and kappa is None:
@@ -154,8 +156,8 @@ def beams(
     beams : Beams
         The beams that can be made.
     report : mapping
-        ``written``, ``rejected`` (id and reason), ``volume`` in cubed model units, ``longest``
-        piece, and ``end_mismatch`` (how far the ends at a node are apart).
+        ``written``, ``rejected`` (id, code and reason), ``volume`` in cubed model units,
+        ``longest`` piece, and ``end_mismatch`` (how far the ends at a node are apart).
     """
     if thickness is None:
         thickness = mean_end_depth(annuli) / 10
@@ -163,12 +165,62 @@ def beams(
     _warn_of_rejected(rejected, "beams")
     report = {
         "written": made.n_beams,
-        "rejected": [{"id": beam.id, "reason": beam.reason} for beam in rejected],
+        "rejected": rejected_report(rejected),
         "volume": float(beam_volumes(made).sum()),
         "longest": float(beam_lengths(made).max(initial=0.0)),
         "end_mismatch": float(corner_mismatch(made.annuli).max(initial=0.0)),
     }
     return BeamSet(made, report)
+
+
+@node
+def drilling_marks(
+    beams: Beams,
+    count: Annotated[int, Port(min=1)] = 2,
+    diameter: Annotated[float | None, Port(min=0)] = None,
+    inset: Annotated[float | None, Port(min=0)] = None,
+) -> BeamSet:
+    """
+    Mark where beams are to be drilled at their ends, along the lines of the node axes.
+
+    Parameters
+    ----------
+    beams : Beams
+        The beams.
+    count : int
+        Number of holes at each end, in a row; each has the same share of it.
+    diameter : float, optional
+        Diameter of the holes, in model units; by default the thickness of the beams, and at
+        most a quarter of each hole's share of the mean depth.
+    inset : float, optional
+        Distance of their centres from the end, from where its cut reaches farthest into the
+        beam; by default one and a half diameters.
+
+    Returns
+    -------
+    beams : Beams
+        The same beams with their marks: circles in the drawing and in the Rhino file.
+    report : mapping
+        ``marked`` (number of beams), ``diameter`` and ``inset`` in model units, ``counts`` and
+        ``notes`` (code, id, message) on the beams into which they do not fit.
+    """
+    if diameter is None:
+        diameter = min(beams.thickness, mean_end_depth(beams.annuli) / (4 * count))
+    if inset is None:
+        inset = 1.5 * diameter
+    marked, findings = drill_beams(beams, count, diameter, inset)
+    if findings:
+        first = findings[0]
+        warn(f"{len(findings)} beams get no drilling marks: {first.id}: {first.message}")
+    found = findings_report(findings)
+    report = {
+        "marked": beams.n_beams - len(findings),
+        "diameter": diameter,
+        "inset": inset,
+        "counts": found["counts"],
+        "notes": found["notes"],
+    }
+    return BeamSet(marked, report)
 
 
 def _warn_of_rejected(rejected: tuple[RejectedBeam, ...], what: str) -> None:

@@ -6,12 +6,13 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from ...fabrication import audit as panel_audit
+from ...fabrication import beam_audit
 from ...kernel import congruent_panels as congruent
 from ...kernel import mould_blanks as blanks
 from ...kernel.arrays import IntArray
-from ...kernel.findings import Finding, findings_report
+from ...kernel.beams import Beams
+from ...kernel.findings import Finding, findings_report, refusals
 from ...kernel.mesh import mean_edge_length
-from ...kernel.panel_checks import RejectedPanel
 from ...kernel.panels import Panels
 from ...kernel.sphere_mesh import SphereMesh, vertex_error
 from ...kernel.tolerances import SAME_PANEL
@@ -110,8 +111,8 @@ def mould_blanks(panels: Panels, size_step: Length = 0.0) -> Mapping[str, Any]:
 
 
 @node
-def audit(
-    panels: Panels,
+def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
+    panels: Panels | None = None,
     cut: Mapping[str, Any] | None = None,
     min_corner: Degrees = 15.0,
     min_edge: Millimeters = 20.0,
@@ -119,28 +120,42 @@ def audit(
     max_step: Millimeters = 5.0,
     max_blank: Millimeters | None = None,
     units: Units = "m",
+    beams: Beams | None = None,
+    annuli_report: Mapping[str, Any] | None = None,
+    beams_report: Mapping[str, Any] | None = None,
+    max_twist: Degrees = 1.0,
+    max_length: Millimeters | None = None,
 ) -> Audit:
     """
     Look for whatever would trouble a workshop, as numbered errors and notes.
 
     Parameters
     ----------
-    panels : Panels
+    panels : Panels, optional
         The panels.
     cut : mapping, optional
         Report of the node `panels`: what it rejected is among the errors then.
     min_corner : float
-        Sharpest corner that is no finding.
+        Sharpest corner of a panel, and bevel of a beam, that is no finding.
     min_edge : float
-        Shortest edge.
+        Shortest edge, and shortest beam.
     max_wall_tilt : float
-        Largest tilt of a wall from upright.
+        Largest tilt of a wall or a beam from upright.
     max_step : float
-        Highest step between neighbours.
+        Highest step between neighbours, and largest distance of the ends of beams at a node.
     max_blank : float, optional
         Diameter of the largest blank to be had.
     units : str
         Model units.
+    beams : Beams, optional
+        The beams.
+    annuli_report, beams_report : mapping, optional
+        Reports of the nodes `annulus_support` and `beams`: what they rejected is among the
+        errors then.
+    max_twist : float
+        Largest angle between a beam and a node axis.
+    max_length : float, optional
+        Longest piece that can be cut for a beam.
 
     Returns
     -------
@@ -155,13 +170,19 @@ def audit(
         wall_tilt_deg=max_wall_tilt,
         step_mm=max_step,
         blank_mm=float("inf") if max_blank is None else max_blank,
+        twist_deg=max_twist,
+        beam_mm=float("inf") if max_length is None else max_length,
     )
-    rejected = [
-        RejectedPanel(panel["id"], -1, panel["reason"])
-        for panel in (cut or {}).get("rejected", ())
-    ]
-    findings = panel_audit.audit_panels(panels, units, rejected, limits)
-    return Audit(findings, findings_report(findings))
+    findings = refusals(
+        part
+        for report in (cut, annuli_report, beams_report)
+        for part in (report or {}).get("rejected", ())
+    )
+    if panels is not None:
+        findings += panel_audit.audit_panels(panels, units, limits=limits)
+    if beams is not None:
+        findings += beam_audit.audit_beams(beams, units, limits=limits)
+    return Audit(tuple(findings), findings_report(findings))
 
 
 @node

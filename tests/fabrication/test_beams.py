@@ -9,30 +9,37 @@ from typing import Any
 import numpy as np
 import pytest
 import rhino3dm
+from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
+from OCP.GeomAbs import GeomAbs_SurfaceType
 from OCP.GProp import GProp_GProps
 from OCP.STEPControl import STEPControl_Reader
 from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS_Shape
+from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication.beam_brep import beam_shapes
-from spheremesh.fabrication.rhino import write_3dm
+from spheremesh.fabrication.dxf import write_dxf
+from spheremesh.fabrication.part21 import check_part21
+from spheremesh.fabrication.rhino import RhinoContents, write_3dm
 from spheremesh.fabrication.step import beams_to_cadquery, write_step
 from spheremesh.kernel import beam_cutting
 from spheremesh.kernel.annuli import Annuli
 from spheremesh.kernel.annulus_support import annulus_support
 from spheremesh.kernel.arrays import FloatArray, dot, norm
 from spheremesh.kernel.beam_cutting import cut_beams
-from spheremesh.kernel.beams import Beams, beam_volumes, select_beams
+from spheremesh.kernel.beams import Beams, beam_volumes, node_axis_segments, select_beams
 from spheremesh.kernel.central import central_spheres
 from spheremesh.kernel.cutting import cut_panels
+from spheremesh.kernel.drilling import drill_beams
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.fit import face_planes
 from spheremesh.kernel.mesh import mean_edge_length
+from spheremesh.kernel.node_cylinders import node_cylinders
+from spheremesh.kernel.panels import select_panels
 from spheremesh.kernel.surfaces import roof_net, torus_net, vase_net
 
 
@@ -140,10 +147,13 @@ def read_solids(path: Path) -> list[TopoDS_Shape]:
 def test_round_trip(tmp_path: Path, case: str) -> None:
     beams = CASES[case]
     path = write_step(None, tmp_path / "b.step", beams=beams)
-    solids = read_solids(path)
-    assert len(solids) == beams.n_beams
+    solids, nodes = read_solids(path), node_cylinders(beams)
+    assert len(solids) == beams.n_beams + nodes.n_nodes
     assert all(BRepCheck_Analyzer(solid).IsValid() for solid in solids)
-    np.testing.assert_allclose(measure(solids), 1e9 * beam_volumes(beams), rtol=1e-8)
+    cylinders = np.pi * nodes.radius**2 * nodes.heights
+    volumes = np.concatenate([beam_volumes(beams), cylinders])
+    np.testing.assert_allclose(measure(solids), 1e9 * volumes, rtol=1e-8)
+    assert check_part21(path) == ()
     text = path.read_text()
     for name in beams.annuli.ids:
         assert f"PRODUCT('{name}'" in text
@@ -156,7 +166,62 @@ def test_panels_and_beams_in_one_file(tmp_path: Path) -> None:
     path = write_step(panels, tmp_path / "m.step", beams=beams)
     assert len(read_solids(path)) == panels.n_panels + beams.n_beams
     names = set(re.findall(r"PRODUCT\('(\w+)'", path.read_text()))
-    assert names == {"Model", "Panels", "Beams", *panels.ids, *beams.annuli.ids}
+    assert names == {"Model", "Panels", "Beams", "Axes", *panels.ids, *beams.annuli.ids}
+
+
+def read_shapes(path: Path, kind: TopAbs_ShapeEnum) -> list[TopoDS_Shape]:
+    """Shapes of a kind that are no part of a face."""
+    reader = STEPControl_Reader()
+    reader.ReadFile(str(path))
+    reader.TransferRoots()
+    found = TopExp_Explorer(reader.OneShape(), kind, TopAbs_ShapeEnum.TopAbs_FACE)
+    shapes: list[TopoDS_Shape] = []
+    while found.More():
+        shapes.append(found.Current())
+        found.Next()
+    return shapes
+
+
+@pytest.mark.parametrize("case", ["mitred", "square"])
+def test_node_axes_in_step(tmp_path: Path, case: str) -> None:
+    beams = CASES[case]
+    path = write_step(None, tmp_path / "a.step", beams=beams)
+    edges = read_shapes(path, TopAbs_ShapeEnum.TopAbs_EDGE)
+    _, segments = node_axis_segments(beams)
+    assert len(edges) == len(segments)
+    for edge, (start, end) in zip(edges, 1000 * segments, strict=True):
+        curve = BRepAdaptor_Curve(TopoDS.Edge_s(edge))
+        ends = [curve.Value(t) for t in (curve.FirstParameter(), curve.LastParameter())]
+        found = np.array([[p.X(), p.Y(), p.Z()] for p in ends])
+        assert np.abs(found - [start, end]).max() < 1e-8
+    assert "PRESENTATION_LAYER_ASSIGNMENT('Axes'" in path.read_text()
+
+
+def test_node_cylinders_in_step_stand_on_their_axes(tmp_path: Path) -> None:
+    beams = CASES["square"]
+    path = write_step(None, tmp_path / "n.step", beams=beams)
+    nodes = node_cylinders(beams)
+    cylinders = read_solids(path)[beams.n_beams :]
+    for i, solid in enumerate(cylinders):
+        faces = TopExp_Explorer(solid, TopAbs_ShapeEnum.TopAbs_FACE)
+        surfaces: list[BRepAdaptor_Surface] = []
+        while faces.More():
+            surfaces.append(BRepAdaptor_Surface(TopoDS.Face_s(faces.Current())))
+            faces.Next()
+        round_ = next(
+            s for s in surfaces if s.GetType() == GeomAbs_SurfaceType.GeomAbs_Cylinder
+        )
+        assert round_.Cylinder().Radius() == pytest.approx(1000 * nodes.radius, rel=1e-12)
+        axis = round_.Cylinder().Axis()
+        along, place = axis.Direction(), axis.Location()
+        direction = np.array([along.X(), along.Y(), along.Z()])
+        off = np.array([place.X(), place.Y(), place.Z()]) - 1000 * nodes.origins[i]
+        assert norm(np.cross(direction, nodes.directions[i])) < 1e-12
+        assert norm(np.cross(off, direction)) < 1e-8
+    text = path.read_text()
+    assert "PRESENTATION_LAYER_ASSIGNMENT('Nodes'" in text
+    for name in nodes.ids:
+        assert f"PRODUCT('{name}'" in text
 
 
 def test_panels_without_any_beam(tmp_path: Path) -> None:
@@ -168,14 +233,28 @@ def test_panels_without_any_beam(tmp_path: Path) -> None:
     assert on_layer(model, "Beams") == on_layer(model, "Axes") == []
 
 
-def test_far_from_the_origin_no_digit_is_lost(tmp_path: Path) -> None:
+def test_beams_without_any_panel(tmp_path: Path) -> None:
+    panels, _ = cut_panels(TORUS, "intersection", thickness=0.02)
+    none = select_panels(panels, np.zeros(panels.n_panels, bool))
+    beams = CASES["mitred"]
+    contents = RhinoContents(layers=("Edges", "Centres", "Moulds"))
+    file = write_3dm(none, tmp_path / "m.3dm", beams=beams, contents=contents)
+    assert file.objects == {"Extrusion": beams.n_beams, "LineCurve": 35}
+    assert len(read_solids(write_step(none, tmp_path / "m.step", beams=beams))) == beams.n_beams
+
+
+@pytest.mark.parametrize("ends", [{"node_gap": 0.02}, {"node_radius": 0.1}])
+def test_far_from_the_origin_no_digit_is_lost(tmp_path: Path, ends: dict[str, float]) -> None:
     mesh = TORUS.mesh
     moved = Mesh(mesh.vertices + np.array([5e5, -3e5, 2e5]), mesh.faces)
-    beams = make(SphereMesh.from_local(moved, TORUS.local_spheres), node_gap=0.02)
+    beams = make(SphereMesh.from_local(moved, TORUS.local_spheres), **ends)
     solids = read_solids(write_step(None, tmp_path / "far.step", beams=beams))
     local = [solid.Located(TopLoc_Location()) for solid in solids]
     assert all(BRepCheck_Analyzer(solid).IsValid() for solid in local)
-    np.testing.assert_allclose(measure(local), 1e9 * beam_volumes(beams), rtol=1e-8)
+    nodes = node_cylinders(beams)
+    cylinders = np.pi * nodes.radius**2 * nodes.heights
+    volumes = np.concatenate([beam_volumes(beams), cylinders])
+    np.testing.assert_allclose(measure(local), 1e9 * volumes, rtol=1e-8)
 
 
 def test_objects_of_cadquery() -> None:
@@ -191,6 +270,30 @@ def test_nothing_to_write(tmp_path: Path) -> None:
         write_step(None, tmp_path / "n.step")
     with pytest.raises(InputError, match="no panels or beams"):
         write_3dm(None, tmp_path / "n.3dm")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["b.step", "b.3dm", "b.dxf"])
+def test_beams_that_no_file_can_hold_are_refused_by_name(tmp_path: Path, name: str) -> None:
+    def write(beams: Beams) -> None:
+        if name.endswith("dxf"):
+            write_dxf(beams, tmp_path / name)
+        elif name.endswith("step"):
+            write_step(None, tmp_path / name, beams=beams)
+        else:
+            write_3dm(None, tmp_path / name, beams=beams)
+
+    beams = CASES["mitred"]
+    with pytest.raises(InputError, match=r"no (panels or )?beams to write to"):
+        write(select_beams(beams, np.zeros(beams.n_beams, bool)))
+    ids = ("A", "B", "A", *beams.annuli.ids[3:])
+    edges = re.escape(str(beams.annuli.edge_ids[[0, 2]].tolist()))
+    with pytest.raises(InputError, match=rf"2 beams are called 'A' \(edges {edges}\)"):
+        write(replace(beams, annuli=replace(beams.annuli, ids=ids)))
+    sections = beams.sections.copy()
+    sections[3] = np.inf
+    with pytest.raises(InputError, match=r"beam B0003 \(1 in all\) is not finite"):
+        write(replace(beams, sections=sections))
     assert not list(tmp_path.iterdir())
 
 
@@ -216,6 +319,7 @@ def test_extrusions_in_rhino(tmp_path: Path, case: str) -> None:
         solid = item.Geometry
         assert solid.IsValid
         assert solid.IsSolid
+        _check_render_mesh(solid, size)
         z = beams.annuli.frames[i, 2]
         brep = solid.ToBrep(False)  # noqa: FBT003
         assert len(brep.Faces) == 6
@@ -238,6 +342,61 @@ def test_extrusions_in_rhino(tmp_path: Path, case: str) -> None:
             assert on_circle or edge.IsLinear(1e-9 * size)
 
 
+def _check_render_mesh(solid: Any, size: float) -> None:  # noqa: ANN401
+    """It has the corners of the solid, and its triangles look outwards."""
+    mesh = solid.GetMesh(rhino3dm.MeshType.Render)
+    assert mesh.IsValid
+    points = [mesh.Vertices.Point3dAt(i) for i in range(len(mesh.Vertices))]
+    corners = [tuple(mesh.Faces[i][:3]) for i in range(mesh.Faces.Count)]
+    x = np.array([point(p) for p in points])
+    brep = solid.ToBrep(False)  # noqa: FBT003
+    for vertex in brep.Vertices:
+        assert norm(x - point(vertex.Location)).min() < 1e-5 * size
+    a, b, c = (x[corners] - x.mean(0)).transpose(1, 0, 2)
+    volume = dot(a, np.cross(b, c)).sum() / 6
+    assert volume > 0
+    vectors = np.array([(n.X, n.Y, n.Z) for n in mesh.Normals])[[t[0] for t in corners]]
+    assert (dot(np.cross(b - a, c - a), vectors) > 0).all()
+
+
+def test_a_model_without_render_meshes(tmp_path: Path) -> None:
+    contents = RhinoContents(render_meshes=False)
+    beams = CASES["straight"]
+    file = write_3dm(None, tmp_path / "b.3dm", beams=beams, contents=contents)
+    assert file.objects["Extrusion"] == beams.n_beams
+    solid = on_layer(rhino3dm.File3dm.Read(str(file.path)), "Beams")[0].Geometry
+    assert solid.GetMesh(rhino3dm.MeshType.Any) is None
+
+
+@pytest.mark.parametrize("version", [6, 7, 8])
+def test_every_version_of_rhino(tmp_path: Path, version: int) -> None:
+    panels, _ = cut_panels(TORUS, "intersection", labels=np.arange(35) % 3)
+    beams = CASES["mitred"]
+    contents = RhinoContents(layers=("Edges", "Centres", "Moulds"), reference=TORUS.mesh)
+    path = tmp_path / "m.3dm"
+    file = write_3dm(panels, path, version=version, beams=beams, contents=contents)
+    model = rhino3dm.File3dm.Read(str(path))
+    assert model.ArchiveVersion // 10 == version
+    objects: list[Any] = [model.Objects[i] for i in range(len(model.Objects))]
+    kinds = Counter(type(item.Geometry).__name__ for item in objects)
+    assert kinds == file.objects
+    assert kinds["Extrusion"] == beams.n_beams
+    assert kinds["InstanceReference"] == panels.n_panels
+    assert all(item.Geometry.IsValid for item in objects)
+    for item in on_layer(model, "Beams"):
+        assert item.Geometry.GetMesh(rhino3dm.MeshType.Render).IsValid
+
+
+def test_beams_far_from_the_origin_keep_precise_meshes(tmp_path: Path) -> None:
+    shift = np.array([5e5, -3e5, 2e5])
+    moved = Mesh(TORUS.mesh.vertices + shift, TORUS.mesh.faces)
+    beams = make(SphereMesh.from_local(moved, TORUS.local_spheres))
+    file = write_3dm(None, tmp_path / "far.3dm", beams=beams)
+    for item in on_layer(rhino3dm.File3dm.Read(str(file.path)), "Beams"):
+        # Float32 would miss by 0.03.
+        _check_render_mesh(item.Geometry, 1e-3)
+
+
 def test_axes_layers_and_text_in_rhino(tmp_path: Path) -> None:
     beams = CASES["mitred"]
     panels, _ = cut_panels(TORUS, "intersection")
@@ -251,6 +410,7 @@ def test_axes_layers_and_text_in_rhino(tmp_path: Path) -> None:
         assert norm(start - TORUS.mesh.vertices[vertex]) < 1e-12
         length = norm(point(item.Geometry.PointAtEnd) - start)
         assert abs(length - beams.annuli.depth) < 1e-12
+    assert on_layer(model, "Nodes") == on_layer(model, "Drilling") == []
     item = on_layer(model, "Beams")[4]
     text = dict(item.Attributes.GetUserStrings())
     assert text["id"] == beams.annuli.ids[4] == item.Attributes.Name
@@ -261,3 +421,60 @@ def test_axes_layers_and_text_in_rhino(tmp_path: Path) -> None:
     )
     ids = {str(item.Attributes.Id) for item in again.Objects}
     assert ids <= {str(item.Attributes.Id) for item in model.Objects}
+
+
+def test_node_cylinders_in_rhino(tmp_path: Path) -> None:
+    beams = CASES["square"]
+    nodes = node_cylinders(beams)
+    model = rhino3dm.File3dm.Read(str(write_3dm(None, tmp_path / "n.3dm", beams=beams).path))
+    objects = on_layer(model, "Nodes")
+    assert [item.Attributes.Name for item in objects] == list(nodes.ids)
+    assert len({str(item.Attributes.Id) for item in model.Objects}) == len(model.Objects)
+    for i, item in enumerate(objects):
+        solid = item.Geometry
+        assert solid.IsValid
+        assert solid.IsSolid
+        ends = np.array([point(solid.PathStart), point(solid.PathEnd)])
+        tip = nodes.origins[i] + nodes.heights[i] * nodes.directions[i]
+        assert np.abs(np.sort(ends, 0) - np.sort([nodes.origins[i], tip], 0)).max() < 1e-12
+        rim = point(solid.Profile3d(0, 0.0).PointAtStart)
+        assert norm(rim - ends[0]) == pytest.approx(nodes.radius, rel=1e-9)
+
+
+def test_node_cylinders_carry_render_meshes(tmp_path: Path) -> None:
+    """What viewers show: closed, outwards, on the cylinder, and nearly of its volume."""
+    beams = CASES["square"]
+    nodes = node_cylinders(beams)
+    model = rhino3dm.File3dm.Read(str(write_3dm(None, tmp_path / "n.3dm", beams=beams).path))
+    for i, item in enumerate(on_layer(model, "Nodes")):
+        mesh = item.Geometry.GetMesh(rhino3dm.MeshType.Render)
+        points = np.array([point(vertex) for vertex in mesh.Vertices])
+        faces = np.array([mesh.Faces[k][:3] for k in range(len(mesh.Faces))])
+        relative = points - nodes.origins[i]
+        along = relative @ nodes.directions[i]
+        off = norm(relative - along[:, None] * nodes.directions[i])
+        np.testing.assert_allclose(off, nodes.radius, rtol=1e-4)
+        a, b, c = np.moveaxis(relative[faces], 1, 0)
+        volume = dot(a, np.cross(b, c)).sum() / 6
+        assert volume == pytest.approx(np.pi * nodes.radius**2 * nodes.heights[i], rel=0.02)
+        assert model.Materials[item.Attributes.MaterialIndex].Name == "Nodes"
+
+
+def test_drilling_marks_in_rhino(tmp_path: Path) -> None:
+    size = mean_edge_length(TORUS.mesh)
+    beams, refused = drill_beams(CASES["mitred"], 2, 0.04 * size, 0.35 * size)
+    assert 0 < len(refused) < beams.n_beams
+    marks = beams.marks
+    assert marks is not None
+    model = rhino3dm.File3dm.Read(str(write_3dm(None, tmp_path / "d.3dm", beams=beams).path))
+    objects = on_layer(model, "Drilling")
+    expected = [name for name, fits in zip(beams.annuli.ids, marks.fits, strict=True) if fits]
+    assert [item.Attributes.Name for item in objects] == [n for n in expected for _ in range(4)]
+    lifts = beams.annuli.origins + beams.annuli.frames[:, 2] * beams.thickness / 2
+    centers = (marks.holes + lifts[:, None])[marks.fits].reshape(-1, 3)
+    for item, center in zip(objects, centers, strict=True):
+        circle = item.Geometry
+        assert circle.IsCompleteCircle
+        assert circle.Radius == pytest.approx(0.02 * size, rel=1e-12)
+        assert norm(point(circle.Arc.Center) - center) < 1e-12
+        assert circle.AngleDegrees == pytest.approx(360)

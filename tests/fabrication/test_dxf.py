@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.beam_cutting import cut_beams
 from spheremesh.kernel.beams import Beams, section_arcs, select_beams
 from spheremesh.kernel.central import central_spheres
+from spheremesh.kernel.drilling import drill_beams
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.fit import face_planes
 from spheremesh.kernel.surfaces import ellipsoid_net, torus_net
@@ -170,3 +172,43 @@ def test_ezdxf_is_loaded_when_it_is_needed() -> None:
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == "False"
+
+
+@pytest.mark.parametrize(("units", "factor"), [("m", 1000.0), ("ft", 304.8)])
+def test_law_e6_drilling_marks_in_the_file(
+    beams: Beams, tmp_path: Path, units: str, factor: float
+) -> None:
+    """Circles lie in their own contour, at the inset from the side of its end."""
+    drilled, refused = drill_beams(beams, 2, 0.03, 0.3)
+    assert 0 < len(refused) < beams.n_beams
+    drawing = ezdxf.readfile(write_dxf(drilled, tmp_path / "d.dxf", units).path)  # pyright: ignore
+    assert len(drawing.audit().errors) == 0
+    circles = drawing.modelspace().query('CIRCLE[layer=="DRILL"]')
+    assert drilled.marks is not None
+    fits = np.flatnonzero(drilled.marks.fits)
+    assert len(circles) == len(drawing.modelspace().query("CIRCLE")) == 4 * len(fits)
+    np.testing.assert_allclose([c.dxf.radius for c in circles], 0.015 * factor)
+    contours = list(drawing.modelspace().query('LWPOLYLINE[layer=="CUT"]'))
+    centers = np.array([list(c.dxf.center)[:2] for c in circles]).reshape(-1, 2, 2, 2)
+    for i, pairs in zip(fits.tolist(), centers, strict=True):
+        outline = Vec2.list(make_path(contours[i]).flattening(0.1))
+        corners = np.array(list(contours[i].get_points("xy")))
+        # Inner start, inner end, outer end, outer start.
+        for pair, (a, b) in zip(pairs, (corners[[0, 3]], corners[[1, 2]]), strict=True):
+            assert all(is_point_in_polygon_2d(Vec2(p), outline) == 1 for p in pair)
+            along = (b - a) / norm(b - a)
+            across = np.abs((pair - a) @ [-along[1], along[0]])
+            assert np.ptp(across) < 1e-8 * factor
+            # The cut leans: the contour is its section in the middle.
+            assert 0.3 * factor - 1e-6 < across[0] < 0.35 * factor
+
+
+def test_bad_beams_are_named(beams: Beams, tmp_path: Path) -> None:
+    sections = beams.sections.copy()
+    sections[4] = np.nan
+    with pytest.raises(InputError, match=r"beam B0004 \(1 in all\) is not finite"):
+        write_dxf(replace(beams, sections=sections), tmp_path / "n.dxf")
+    twice = replace(beams, annuli=replace(beams.annuli, ids=("B",) * beams.n_beams))
+    with pytest.raises(InputError, match=r"beams are called 'B' \(edges \[0, 1,"):
+        write_dxf(twice, tmp_path / "n.dxf")
+    assert not list(tmp_path.iterdir())

@@ -4,20 +4,27 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+import rhino3dm
 from OCP.BRepCheck import BRepCheck_Analyzer
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication.audit import audit_panels
 from spheremesh.fabrication.brep import panel_shapes
+from spheremesh.fabrication.dxf import write_dxf
 from spheremesh.fabrication.mould_drawings import write_mould_drawings
 from spheremesh.fabrication.part21 import check_part21
-from spheremesh.fabrication.rhino import write_3dm
+from spheremesh.fabrication.rhino import RhinoContents, write_3dm
 from spheremesh.fabrication.schedule import schedule_rows, write_schedule
 from spheremesh.fabrication.step import write_step
+from spheremesh.kernel.annulus_support import annulus_support
 from spheremesh.kernel.arrays import FloatArray, norm
+from spheremesh.kernel.beam_cutting import cut_beams
+from spheremesh.kernel.beams import select_beams
+from spheremesh.kernel.central import central_spheres
 from spheremesh.kernel.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.kernel.clustering import cluster_radii
 from spheremesh.kernel.cutting import cut_panels
@@ -25,13 +32,23 @@ from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.fit import face_planes, fit_spheres
 from spheremesh.kernel.panels import Panels, select_panels
 from spheremesh.kernel.pencil import minimize_angles
-from spheremesh.kernel.surfaces import roof_net
+from spheremesh.kernel.surfaces import roof_net, torus_net
 
 Writer = Callable[[Panels, Path], Path]
+
+
+def write_rhino(panels: Panels, path: Path) -> Path:
+    file = write_3dm(
+        panels, path, contents=RhinoContents(layers=("Edges", "Centres", "Moulds"))
+    )
+    assert file.rejected == file.notes == ()
+    return file.path
+
 
 WRITERS: dict[str, Writer] = {
     "p.step": write_step,
     "q.step": lambda panels, path: write_step(panels, path, copies="instances"),
+    "p.3dm": write_rhino,
     "p.csv": write_schedule,
     "p.json": write_schedule,
     "p.dxf": write_mould_drawings,
@@ -46,11 +63,21 @@ def write_all(panels: Panels, folder: Path) -> None:
         assert path.stat().st_size > 0
         if path.suffix == ".step":
             assert check_part21(path) == ()
-    write_3dm(panels, folder / "p.3dm")
     shapes = panel_shapes(panels, 1000.0)
     assert len(shapes) == panels.n_panels
     assert all(BRepCheck_Analyzer(shape).IsValid() for shape in shapes)
     assert not [f for f in audit_panels(panels) if f.severity == "error"]
+
+
+def step_names(path: Path) -> set[str]:
+    """Names of products, with their letters beyond ASCII."""
+    text = path.read_text("ascii").replace("\n", "")
+    names = re.findall(r"=PRODUCT\('((?:[^']|'')*)'", text)
+    letters = re.compile(r"\\X4\\([0-9A-F]{8})\\X0\\")
+    return {
+        letters.sub(lambda found: chr(int(found[1], 16)), name).replace("''", "'")
+        for name in names
+    }
 
 
 def curved(mesh: Mesh, angles: FloatArray | list[float]) -> SphereMesh:
@@ -121,6 +148,32 @@ def test_names_of_any_script(tmp_path: Path) -> None:
         assert "面板-2" in (tmp_path / name).read_text("utf-8").replace(
             "\\u9762\\u677f", "面板"
         )
+    assert step_names(tmp_path / "p.step") == {"Panels", *names}
+    model: Any = rhino3dm.File3dm.Read(str(tmp_path / "p.3dm"))
+    found = [
+        each.Attributes for each in model.Objects if isinstance(each.Geometry, rhino3dm.Brep)
+    ]
+    found = [each for each in found if not each.IsInstanceDefinitionObject]
+    assert [each.Name for each in found] == list(names)
+    assert [each.GetUserString("id") for each in found] == list(names)
+
+
+def test_names_of_beams_in_any_script(tmp_path: Path) -> None:
+    spheres = central_spheres(torus_net(7, 5, 3.0, 1.0))
+    beams = cut_beams(annulus_support(spheres, 0.3).annuli, 0.04)[0]
+    beams = select_beams(beams, np.arange(beams.n_beams) < 2)
+    names = ("Träger 1", "梁-2")
+    beams = replace(beams, annuli=replace(beams.annuli, ids=names))
+    path = write_step(None, tmp_path / "b.step", beams=beams)
+    assert step_names(path) == {"Beams", *names}
+    assert "梁-2" in write_dxf(beams, tmp_path / "b.dxf").path.read_text("utf-8")
+    path = write_3dm(None, tmp_path / "b.3dm", beams=beams).path
+    model: Any = rhino3dm.File3dm.Read(str(path))
+    found = [
+        each.Attributes for each in model.Objects if type(each.Geometry).__name__ == "Extrusion"
+    ]
+    assert [each.Name for each in found] == list(names)
+    assert [each.GetUserString("id") for each in found] == list(names)
 
 
 @pytest.mark.parametrize("name", WRITERS)

@@ -6,8 +6,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from spheremesh.fabrication.part21_assembly import string
-from spheremesh.fabrication.part21_bodies import EdgeBatch, FaceBatch, bodies, line_body, real
+from spheremesh.fabrication.part21_bodies import EdgeBatch, FaceBatch, bodies, line_body
+from spheremesh.fabrication.part21_values import real, string
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 

@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -10,12 +11,14 @@ from click.testing import CliRunner, Result
 import spheremesh as sm
 from spheremesh.fabrication.mesh_files import write_mesh
 from spheremesh.interfaces.cli import main
+from spheremesh.interfaces.panel import PanelOptions, panel_graph
 from spheremesh.kernel.mesh import Mesh
+from spheremesh.kernel.panel_facts import panel_radii
 from spheremesh.kernel.surfaces import vase_net
 
 FILES = {
-    "panels.step", "model.3dm", "schedule.csv", "schedule.json", "preview.png", "graph.json",
-    "report.json",
+    "panels.step", "model.3dm", "schedule.csv", "schedule.json", "moulds.dxf", "moulds.svg",
+    "preview.png", "graph.json", "report.json",
 }  # fmt: skip
 
 
@@ -218,6 +221,55 @@ def _assert_refused(arguments: list[str], out: Path, expected: str) -> None:
     assert not out.exists()
 
 
+# Sides of the thickness, and the drawings of moulds
+
+
+def schedule(out: Path) -> dict[str, Any]:
+    return json.loads((out / "schedule.json").read_text(encoding="utf-8"))
+
+
+def test_side_of_the_thickness(vase: Path, tmp_path: Path) -> None:
+    options = ("--thickness", "0.02", "--side", "outward", "--offset", "power")
+    result = panel(vase, tmp_path, *options, "--json")
+    assert result.exit_code == 0, result.stderr
+    rows = schedule(tmp_path)["panels"]
+    for row in rows:
+        assert row["inner_radius_mm"] == pytest.approx(row["radius_mm"])
+    powers = [abs(row["outer_radius_mm"] ** 2 - row["inner_radius_mm"] ** 2) for row in rows]
+    np.testing.assert_allclose(powers, powers[0], rtol=1e-6)
+    thickness = json.loads(result.stdout)["thickness"]
+    assert thickness["min"] < 0.02 < thickness["max"]
+    # Without a number of moulds there is nothing to draw.
+    assert not list(tmp_path.glob("moulds.*"))
+
+
+def test_sides_and_offsets_reach_the_panels(vase: Path) -> None:
+    sides: tuple[Literal["inward", "outward", "centred"], ...]
+    sides = ("inward", "outward", "centred")
+    for side, share in zip(sides, (0.0, 1.0, 0.5), strict=True):
+        graph = panel_graph(PanelOptions(mesh=vase, thickness=0.02, side=side))
+        made = graph.run("panels.panels")
+        radii = panel_radii(made)
+        outwards = np.abs(radii.outer_radii - radii.radii)
+        np.testing.assert_allclose(outwards, 0.02 * share, atol=1e-9)
+        np.testing.assert_allclose(made.thicknesses, 0.02, rtol=1e-12)
+
+
+@pytest.mark.parametrize("option", [("--side", "up"), ("--offset", "none")])
+def test_unknown_sides_and_offsets(option: tuple[str, str], vase: Path, tmp_path: Path) -> None:
+    result = panel(vase, tmp_path / "out", *option)
+    assert result.exit_code == 2
+    assert option[1] in result.stderr
+
+
+def test_drawings_of_moulds_show_every_panel(panelled: Panelled) -> None:
+    _, out = panelled
+    for name in ("moulds.dxf", "moulds.svg"):
+        text = (out / name).read_text(encoding="utf-8")
+        assert all(f"Mould {i:02d}: radius" in text for i in range(1, 5))
+        assert all(row["id"] in text for row in schedule(out)["panels"])
+
+
 # Support, tolerance, target
 
 
@@ -249,7 +301,46 @@ def test_support_writes_beams_and_says_how_straight_they_are(
     assert "PRODUCT('B0000'" in text
     assert "PRODUCT('P0000'" in text
     steps = json.loads((out / "graph.json").read_text(encoding="utf-8"))["steps"]
-    assert {"angles", "optimum", "nodes", "annuli", "beams", "drawing"} <= set(steps)
+    assert {"angles", "optimum", "nodes", "annuli", "beams", "drawing", "beam_table"} <= set(
+        steps
+    )
+    rows = (out / "beams.csv").read_text(encoding="utf-8-sig").splitlines()
+    assert len(rows) == report["beams"]["written"] + 1
+    listed = json.loads((out / "schedule.json").read_text(encoding="utf-8"))
+    assert len(listed["beams"]) == report["beams"]["written"]
+    assert len(listed["panels"]) == report["panels"]["written"]
+
+
+def test_rejected_beams_are_told_with_their_codes(vase: Path, tmp_path: Path) -> None:
+    """Nodes as large as the shortest beams: what cannot be cut is listed, and nothing lost."""
+    out = tmp_path / "out"
+    options = ("--support", "--depth", "0.1", "--node-radius", "0.26", "--strict")
+    result = panel(vase, out, *options)
+    assert result.exit_code == 5, result.stderr
+    report = json.loads((out / "report.json").read_text(encoding="utf-8"))
+    rejected = report["beams"]["rejected"]
+    assert rejected
+    assert {part["code"] for part in rejected} <= {"B100", "B101"}
+    for part in rejected:
+        assert f"rejected {part['code']}: {part['id']}: {part['reason']}" in result.stderr
+    assert sum(line.startswith("error B") for line in result.stderr.splitlines()) == 0
+    found = {error["id"] for error in report["audit"]["errors"]}
+    assert found == {part["id"] for part in rejected}
+    written = json.loads((out / "schedule.json").read_text(encoding="utf-8"))
+    ids = {row["id"] for row in written["beams"]}
+    assert len(ids) == report["beams"]["written"]
+    assert not ids & found
+    assert {name for row in written["nodes"] for name in row["beams"]} == ids
+    text = (out / "panels.step").read_text(encoding="utf-8")
+    assert all(f"PRODUCT('{row['id']}'" in text for row in written["nodes"])
+
+
+def test_no_beam_at_all_is_an_error_that_says_why(vase: Path, tmp_path: Path) -> None:
+    result = panel(vase, tmp_path / "out", "--support", "--node-radius", "5")
+    assert result.exit_code == 3
+    assert "beams can be made" in result.stderr
+    assert "make the beams thinner or the node smaller" in result.stderr
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_tolerance_brings_vertices_onto_common_spheres(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """Laws of beams and their contours (E6): ends meet at the nodes, volumes, drawings."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
 from spheremesh import Mesh, SphereMesh
-from spheremesh.kernel.annuli import Annuli
+from spheremesh.kernel.annuli import Annuli, select_annuli
 from spheremesh.kernel.annulus_support import annulus_support
 from spheremesh.kernel.arcs import Arcs, arc_circles, arc_points, segment_areas
 from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
@@ -187,18 +188,16 @@ def test_beams_that_cannot_be_cut_are_listed(annuli: Annuli) -> None:
 
 
 def test_beams_in_the_same_direction_are_listed(annuli: Annuli) -> None:
-    twice = Annuli(
-        annuli.ids[:1] * 2,
-        *(
-            np.repeat(getattr(annuli, name)[:1], 2, axis=0)
-            for name in (
-                "edge_ids", "edge_vertices", "edge_faces", "origins", "frames", "outer",
-                "inner", "corners", "end_directions", "node_axes", "tilt",
-            )
-        ),
-        0.0,
-        0.15,
-    )  # fmt: skip
+    once = select_annuli(annuli, np.arange(annuli.n_annuli) == 0)
+    arrays: dict[str, FloatArray] = {
+        name: value for name, value in vars(once).items() if isinstance(value, np.ndarray)
+    }
+    twice = replace(
+        once,
+        ids=once.ids * 2,
+        panel_ids=once.panel_ids * 2,
+        **{name: np.concatenate([array, array]) for name, array in arrays.items()},
+    )
     beams, rejected = cut_beams(twice, 0.01)
     assert beams.n_beams == 0
     assert all("same direction" in beam.reason for beam in rejected)

@@ -1,0 +1,98 @@
+"""Numbers, strings and references in the text of STEP files (ISO 10303-21)."""
+
+from collections.abc import Iterable
+
+
+def real(number: float) -> str:
+    """
+    A number as the least digits that are read back as the same.
+
+    Parameters
+    ----------
+    number : float
+        A finite number.
+
+    Returns
+    -------
+    str
+        A real number of ISO 10303-21, with a point and a capital E.
+
+    Examples
+    --------
+    >>> real(0.1), real(-2.0), real(1e-07), real(2.5e+16)
+    ('0.1', '-2.0', '1.E-07', '2.5E+16')
+    """
+    text = repr(number)
+    if "e" not in text:
+        return text
+    mantissa, exponent = text.split("e")
+    return f"{mantissa}{'' if '.' in mantissa else '.'}E{exponent}"
+
+
+def references(ids: Iterable[int]) -> str:
+    """
+    A list of references.
+
+    Parameters
+    ----------
+    ids : iterable of int
+        Numbers of entities.
+
+    Returns
+    -------
+    str
+        The references, separated by commas, ten to a line.
+
+    Examples
+    --------
+    >>> references([1, 2])
+    '#1,#2'
+    """
+    words = [f"#{entity}" for entity in ids]
+    return ",\n".join(",".join(words[i : i + 10]) for i in range(0, len(words), 10))
+
+
+def numbers(values: Iterable[float]) -> str:
+    """
+    Numbers of a point or direction.
+
+    Parameters
+    ----------
+    values : iterable of float
+        Finite numbers.
+
+    Returns
+    -------
+    str
+        The numbers, separated by commas.
+    """
+    return ",".join(map(real, values))
+
+
+def string(text: str) -> str:
+    r"""
+    A string of ISO 10303-21.
+
+    Parameters
+    ----------
+    text : str
+        Any text.
+
+    Returns
+    -------
+    str
+        The text in quotes; characters beyond ASCII as directives.
+
+    Examples
+    --------
+    >>> print(string("Dach's Höhe"))
+    'Dach''s H\X4\000000F6\X0\he'
+    """
+    quoted = text.replace("\\", "\\\\").replace("'", "''")
+    return "'" + "".join(map(_character, quoted)) + "'"
+
+
+def _character(character: str) -> str:
+    if character.isascii() and character.isprintable():
+        return character
+    return f"\\X4\\{ord(character):08X}\\X0\\"

@@ -1,0 +1,100 @@
+"""Tables of plain values as files: CSV for spreadsheets and programs, and XLSX."""
+
+import csv
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+
+from ..kernel.errors import MissingLibraryError
+
+
+def finite_or_none(value: np.float64) -> float | None:
+    """
+    A number as a plain value.
+
+    Parameters
+    ----------
+    value : float64
+        The number.
+
+    Returns
+    -------
+    float or None
+        The number, or None if it is not finite, such as the radius of a plane.
+    """
+    return float(value) if np.isfinite(value) else None
+
+
+def write_csv(rows: Iterable[Mapping[str, Any]], path: Path) -> None:
+    """
+    Write a table as CSV, in UTF-8 with byte order mark, as spreadsheets expect.
+
+    Parameters
+    ----------
+    rows : iterable of mapping
+        Rows of the same columns. Lists are separated by blanks, lists of lists by semicolons;
+        what is None is an empty cell, or a dash in a list.
+    path : Path
+        The file.
+    """
+    with path.open("w", encoding="utf-8-sig", newline="") as file:
+        writer: csv.DictWriter[str] | None = None
+        for row in rows:
+            if writer is None:
+                writer = csv.DictWriter(file, list(row))
+                writer.writeheader()
+            writer.writerow({name: _cell(value) for name, value in row.items()})
+
+
+def write_xlsx(sheets: Mapping[str, list[dict[str, Any]]], path: Path) -> None:
+    """
+    Write tables as a workbook.
+
+    Parameters
+    ----------
+    sheets : mapping of str to list of dict
+        Rows of the same columns by the title of their sheet; lists as in CSV.
+    path : Path
+        The file.
+
+    Raises
+    ------
+    MissingLibraryError
+        If openpyxl is missing.
+    """
+    try:
+        import openpyxl  # pyright: ignore[reportMissingModuleSource]
+    except ImportError as error:
+        raise MissingLibraryError(
+            "a schedule in .xlsx needs openpyxl: install spheremesh[excel], or write .csv"
+        ) from error
+    book = openpyxl.Workbook(write_only=True)
+    for title, rows in sheets.items():
+        sheet = book.create_sheet(title)
+        sheet.freeze_panes = "B2"
+        sheet.append(list(rows[0]) if rows else ["none"])
+        for row in rows:
+            sheet.append([_excel_cell(value) for value in row.values()])
+    book.save(path)
+
+
+def _excel_cell(value: object) -> str | int | float:
+    """Numbers stay numbers; text that a spreadsheet would take for a formula is quoted."""
+    if isinstance(value, int | float):
+        return value
+    text = _cell(value)
+    return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text
+
+
+def _cell(value: object) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, float):
+        return f"{value:.9g}"
+    if isinstance(value, list):
+        items = cast("list[object]", value)
+        separator = "; " if items and isinstance(items[0], list) else " "
+        return separator.join(_cell(item) or "-" for item in items)
+    return str(value)
