@@ -15,7 +15,6 @@ import warnings
 from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
 from exactness import judge_step
 
 from spheremesh.fabrication.audit import audit_panels
@@ -27,7 +26,7 @@ from spheremesh.fabrication.schedule import write_schedule
 from spheremesh.fabrication.step import write_step
 from spheremesh.kernel.congruent_panels import congruent_panels
 from spheremesh.kernel.mould_blanks import mould_blanks
-from spheremesh.kernel.panels import Panels, select_panels
+from spheremesh.kernel.panels import Panels
 from spheremesh.nodes import (
     cluster_radii,
     fit_spheres,
@@ -84,7 +83,6 @@ def main() -> None:
     rhino_files(made, folder)
     if sys.argv[1:] == ["rhino"]:
         return
-    write_step(roof_sample(made), folder / "first.step")  # load OpenCASCADE outside the clock
     clock("STEP, 5,000 shapes", lambda: write_step(made, folder / "shapes.step"))
     clock("its check", lambda: check_part21(folder / "shapes.step"))
     ring = torus()
@@ -104,11 +102,6 @@ def main() -> None:
         for side in ("inward", "centred"):
             print(side)
             judge_step(roof(side), folder / "exact.step", "m")
-
-
-def roof_sample(made: Panels) -> Panels:
-    """One panel."""
-    return select_panels(made, np.arange(made.n_panels) == 0)
 
 
 if __name__ == "__main__":
