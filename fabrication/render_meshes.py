@@ -19,8 +19,7 @@ from typing import Final
 import numpy as np
 
 from ..kernel.arrays import FloatArray, IntArray, norm
-from ..kernel.beam_triangles import beam_triangles
-from ..kernel.beams import Beams, beam_lengths
+from ..kernel.beam_triangles import BeamTriangles
 from ..kernel.panels import Panels
 from ..kernel.tessellation import tessellate
 from ..kernel.tolerances import SINGLE_EPSILON, SINGLE_IS_ENOUGH
@@ -123,24 +122,24 @@ def panel_meshes(panels: Panels, tolerance: float) -> RenderMeshes:
     )
 
 
-def beam_meshes(beams: Beams, tolerance: float) -> RenderMeshes:
+def gather_meshes(groups: Sequence[BeamTriangles], error: float) -> RenderMeshes:
     """
-    Triangulate beams as extrusions of their contours.
+    Triangulated beams or cylinders as render meshes.
 
     Parameters
     ----------
-    beams : Beams
-        B beams, at least one.
-    tolerance : float
-        Largest distance of the chords from the arcs, relative to half the length of a beam.
+    groups : sequence of BeamTriangles
+        Every piece once.
+    error : float
+        Distance of the triangles of the smallest piece from its surface, in model units.
 
     Returns
     -------
     RenderMeshes
         The triangles.
     """
-    groups = list(beam_triangles(beams, tolerance))
-    kinds, starts = np.zeros((2, beams.n_beams), np.int64)
+    n_pieces = sum(len(group.beams) for group in groups)
+    kinds, starts = np.zeros((2, n_pieces), np.int64)
     n_points = 0
     for kind, group in enumerate(groups):
         n_beams, count = group.points.shape[:2]
@@ -154,7 +153,7 @@ def beam_meshes(beams: Beams, tolerance: float) -> RenderMeshes:
         starts,
         points,
         np.concatenate([group.normals.reshape(-1, 3) for group in groups]),
-        _needs_doubles(points, tolerance * float(beam_lengths(beams).min()) / 2),
+        _needs_doubles(points, error),
     )
 
 

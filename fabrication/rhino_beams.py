@@ -11,11 +11,17 @@ import numpy as np
 
 from ..kernel.arcs import ArcCircles, Arcs, arc_circles
 from ..kernel.arrays import FloatArray
+from ..kernel.beam_triangles import beam_triangles
 from ..kernel.beams import Beams, beam_lengths, node_axis_segments, section_arcs
 from ..kernel.colors import BEAM
 from ..kernel.errors import InputError
 from ..kernel.support import node_name
-from .render_meshes import MESH_TOLERANCE, beam_meshes, extrusions_with_meshes
+from .render_meshes import (
+    MESH_TOLERANCE,
+    RenderMeshes,
+    extrusions_with_meshes,
+    gather_meshes,
+)
 from .rhino_model import RhinoModel, Untyped, add_layer, add_surface_layer, object_attributes
 
 _BLACK = (0, 0, 0)
@@ -39,7 +45,9 @@ def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: boo
     place = add_surface_layer(model, "Beams", BEAM)
     solids, texts = beam_extrusions(model.library, beams), beam_text(beams, units)
     if render_meshes and solids:
-        solids = _with_meshes(model, solids, beams)
+        error = MESH_TOLERANCE * float(beam_lengths(beams).min()) / 2
+        groups = list(beam_triangles(beams, MESH_TOLERANCE))
+        solids = with_meshes(model, solids, gather_meshes(groups, error))
     for name, solid, text in zip(beams.annuli.ids, solids, texts, strict=True):
         attributes = object_attributes(model, name, "beam", place)
         for key, value in text.items():
@@ -101,10 +109,32 @@ def beam_extrusions(library: Untyped, beams: Beams) -> list[Untyped]:
     return result
 
 
-def _with_meshes(model: RhinoModel, solids: list[Untyped], beams: Beams) -> list[Untyped]:
-    """Extrusions with render meshes, through their streams: the setter crashes at exit."""
+def with_meshes(
+    model: RhinoModel, solids: list[Untyped], meshes: RenderMeshes
+) -> list[Untyped]:
+    """
+    Extrusions with render meshes, through their streams: the setter crashes at exit.
+
+    Parameters
+    ----------
+    model : RhinoModel
+        The model.
+    solids : list of rhino3dm.Extrusion
+        The solids.
+    meshes : RenderMeshes
+        The triangles of each.
+
+    Returns
+    -------
+    list of rhino3dm.Extrusion
+        The same solids with their meshes.
+
+    Raises
+    ------
+    InputError
+        If openNURBS refuses one.
+    """
     streams = [base64.b64decode(solid.Encode()["data"]) for solid in solids]
-    meshes = beam_meshes(beams, MESH_TOLERANCE)
     found = [model.decode(stream) for stream in extrusions_with_meshes(streams, meshes)]
     if any(solid is None or not solid.IsValid for solid in found):
         raise InputError("openNURBS refuses the render meshes of beams: write them without")
