@@ -66,7 +66,8 @@ def clock(name: str, task: Callable[[], object]) -> None:
 
 def rhino_files(made: Panels, folder: Path) -> None:
     """Panels with user text and edges, with and without render meshes."""
-    write_3dm(roof_sample(made), folder / "first.3dm")  # load rhino3dm outside the clock
+    import rhino3dm  # noqa: F401 - outside the clock
+
     bare = RhinoContents(render_meshes=False)
     clock(".3dm", lambda: write_3dm(made, folder / "p.3dm").path)
     clock(

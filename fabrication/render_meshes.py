@@ -1,12 +1,11 @@
 """
-Render meshes of panels, beams and nodes as openNURBS objects.
+Render meshes of panels and beams as openNURBS objects, for viewers that cannot mesh solids.
 
-They are for viewers that cannot mesh solids, and are written into the streams of Breps and
-extrusions: the setters of rhino3dm crash it at exit. Layout of `ON_Mesh` 3.8
-(`opennurbs_mesh.cpp`): ii counts of vertices and faces, domains that are not set, three empty
-boxes of floats, i -1, flags, faces of four indices each (a triangle repeats its last), buffers
-of float32 vertices and normals, empty buffers, the tag of no texture mapping, and a chunk with
-the vertices as float64, if that is needed.
+They are written into the streams of Breps and extrusions: the setters of rhino3dm crash it at
+exit. Layout of `ON_Mesh` 3.8 (`opennurbs_mesh.cpp`): ii counts of vertices and faces, domains
+that are not set, three empty boxes of floats, i -1, flags, faces of four indices each (a
+triangle repeats its last), buffers of float32 vertices and normals, empty buffers, the tag of
+no texture mapping, and a chunk with the vertices as float64, if that is needed.
 
 An extrusion keeps meshes in a chunk of version 1.0 (`ON_MeshCache`): for each a byte 1 and a
 chunk of version 1.0 with an id that says what it is for and the mesh; in the end a byte 0.
@@ -19,10 +18,8 @@ from typing import Final
 
 import numpy as np
 
-from ..kernel.arrays import FloatArray, IntArray, norm, unit
-from ..kernel.beam_triangles import beam_triangles
-from ..kernel.beams import Beams, beam_lengths
-from ..kernel.node_cylinders import NodeCylinders
+from ..kernel.arrays import FloatArray, IntArray, norm
+from ..kernel.beam_triangles import BeamTriangles
 from ..kernel.panels import Panels
 from ..kernel.tessellation import tessellate
 from ..kernel.tolerances import SINGLE_EPSILON, SINGLE_IS_ENOUGH
@@ -58,7 +55,7 @@ _IDENTITY = doubles(*np.eye(4).ravel().tolist())
 @dataclass(frozen=True)
 class RenderMeshes:
     """
-    Triangles of panels, beams or nodes, those of the same triangulation together.
+    Triangles of panels or beams, those of the same triangulation together.
 
     Attributes
     ----------
@@ -125,24 +122,24 @@ def panel_meshes(panels: Panels, tolerance: float) -> RenderMeshes:
     )
 
 
-def beam_meshes(beams: Beams, tolerance: float) -> RenderMeshes:
+def gather_meshes(groups: Sequence[BeamTriangles], error: float) -> RenderMeshes:
     """
-    Triangulate beams as extrusions of their contours.
+    Triangulated beams or cylinders as render meshes.
 
     Parameters
     ----------
-    beams : Beams
-        B beams, at least one.
-    tolerance : float
-        Largest distance of the chords from the arcs, relative to half the length of a beam.
+    groups : sequence of BeamTriangles
+        Every piece once.
+    error : float
+        Distance of the triangles of the smallest piece from its surface, in model units.
 
     Returns
     -------
     RenderMeshes
         The triangles.
     """
-    groups = list(beam_triangles(beams, tolerance))
-    kinds, starts = np.zeros((2, beams.n_beams), np.int64)
+    n_pieces = sum(len(group.beams) for group in groups)
+    kinds, starts = np.zeros((2, n_pieces), np.int64)
     n_points = 0
     for kind, group in enumerate(groups):
         n_beams, count = group.points.shape[:2]
@@ -156,54 +153,7 @@ def beam_meshes(beams: Beams, tolerance: float) -> RenderMeshes:
         starts,
         points,
         np.concatenate([group.normals.reshape(-1, 3) for group in groups]),
-        _needs_doubles(points, tolerance * float(beam_lengths(beams).min()) / 2),
-    )
-
-
-def cylinder_meshes(cylinders: NodeCylinders, tolerance: float) -> RenderMeshes:
-    """
-    Triangulate node cylinders.
-
-    Parameters
-    ----------
-    cylinders : NodeCylinders
-        N cylinders, at least one.
-    tolerance : float
-        Largest distance of the chords from the circles, relative to the radius.
-
-    Returns
-    -------
-    RenderMeshes
-        The triangles.
-    """
-    count = int(np.ceil(np.pi / np.arccos(1 - tolerance)))
-    down = cylinders.directions
-    x = unit(np.cross(down, np.eye(3)[np.abs(down).argmin(axis=1)]))
-    y = np.cross(down, x)
-    turns = 2 * np.pi * np.arange(count) / count
-    around = np.cos(turns)[:, None] * x[:, None] + np.sin(turns)[:, None] * y[:, None]
-    first = cylinders.origins[:, None] + cylinders.radius * around
-    last = first + (cylinders.heights[:, None] * down)[:, None]
-    flat = np.broadcast_to(down[:, None], around.shape)
-    # Side and discs have vertices of their own: their normals differ.
-    points = np.stack([first, last, first, last], 1)
-    normals = np.stack([around, around, -flat, flat], 1)
-    here = np.arange(count)
-    following = (here + 1) % count
-    fan = np.stack([np.zeros(count - 2, np.int64), here[1:-1], here[2:]], 1)
-    triangles = np.concatenate([
-        np.stack([here, following, count + here], 1),
-        np.stack([following, count + following, count + here], 1),
-        2 * count + fan[:, ::-1],
-        3 * count + fan,
-    ])  # fmt: skip
-    return RenderMeshes(
-        np.zeros(cylinders.n_nodes, np.int64),
-        (triangles,),
-        4 * count * np.arange(cylinders.n_nodes),
-        points.reshape(-1, 3),
-        normals.reshape(-1, 3),
-        _needs_doubles(points, tolerance * cylinders.radius),
+        _needs_doubles(points, error),
     )
 
 

@@ -13,7 +13,8 @@ import numpy as np
 from ..kernel.arcs import ArcCircles, Arcs, arc_circles
 from ..kernel.arrays import FloatArray
 from ..kernel.beam_facts import beam_facts
-from ..kernel.beams import Beams, DrillMarks, node_axis_segments, section_arcs
+from ..kernel.beam_triangles import beam_triangles, cylinder_triangles
+from ..kernel.beams import Beams, DrillMarks, beam_lengths, node_axis_segments, section_arcs
 from ..kernel.colors import AXIS, BEAM, NODE
 from ..kernel.errors import InputError
 from ..kernel.node_cylinders import NodeCylinders, node_cylinders
@@ -21,9 +22,8 @@ from ..kernel.support import node_name
 from .render_meshes import (
     MESH_TOLERANCE,
     RenderMeshes,
-    beam_meshes,
-    cylinder_meshes,
     extrusions_with_meshes,
+    gather_meshes,
 )
 from .rhino_model import RhinoModel, Untyped, add_layer, add_surface_layer, object_attributes
 
@@ -49,7 +49,9 @@ def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: boo
     place = add_surface_layer(model, "Beams", BEAM)
     solids, texts = beam_extrusions(model.library, beams), beam_text(beams, units)
     if render_meshes and solids:
-        solids = _with_meshes(model, solids, beam_meshes(beams, MESH_TOLERANCE))
+        error = MESH_TOLERANCE * float(beam_lengths(beams).min()) / 2
+        groups = list(beam_triangles(beams, MESH_TOLERANCE))
+        solids = with_meshes(model, solids, gather_meshes(groups, error))
     for name, solid, text in zip(beams.annuli.ids, solids, texts, strict=True):
         attributes = object_attributes(model, name, "beam", place)
         for key, value in text.items():
@@ -63,7 +65,12 @@ def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: boo
         place = add_surface_layer(model, "Nodes", NODE)
         solids = cylinder_extrusions(model.library, cylinders)
         if render_meshes:
-            solids = _with_meshes(model, solids, cylinder_meshes(cylinders, MESH_TOLERANCE))
+            error = MESH_TOLERANCE * cylinders.radius
+            triangles = cylinder_triangles(
+                cylinders.origins, cylinders.directions, cylinders.heights, cylinders.radius,
+                MESH_TOLERANCE,
+            )  # fmt: skip
+            solids = with_meshes(model, solids, gather_meshes([triangles], error))
         for name, solid in zip(cylinders.ids, solids, strict=True):
             attributes = object_attributes(model, name, "node", place)
             model.file.Objects.AddExtrusion(solid, attributes)
@@ -125,10 +132,31 @@ def beam_extrusions(library: Untyped, beams: Beams) -> list[Untyped]:
     return result
 
 
-def _with_meshes(
+def with_meshes(
     model: RhinoModel, solids: list[Untyped], meshes: RenderMeshes
 ) -> list[Untyped]:
-    """Extrusions with render meshes, through their streams: the setter crashes at exit."""
+    """
+    Extrusions with render meshes, through their streams: the setter crashes at exit.
+
+    Parameters
+    ----------
+    model : RhinoModel
+        The model.
+    solids : list of rhino3dm.Extrusion
+        The solids.
+    meshes : RenderMeshes
+        The triangles of each.
+
+    Returns
+    -------
+    list of rhino3dm.Extrusion
+        The same solids with their meshes.
+
+    Raises
+    ------
+    InputError
+        If openNURBS refuses one.
+    """
     streams = [base64.b64decode(solid.Encode()["data"]) for solid in solids]
     found = [model.decode(stream) for stream in extrusions_with_meshes(streams, meshes)]
     if any(solid is None or not solid.IsValid for solid in found):

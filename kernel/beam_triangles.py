@@ -1,4 +1,4 @@
-"""Triangles of beams for viewers: points and normals exact, only the faces between flat."""
+"""Triangles of beams and cylinders for viewers: exact points and normals, flat between."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from .tessellation import MAX_STEPS
 @dataclass(frozen=True)
 class BeamTriangles:
     """
-    Triangulated beams that are cut into the same number of steps, n of them.
+    Triangulated beams (or cylinders) that are cut into the same number of steps, n of them.
 
     Attributes
     ----------
@@ -111,3 +111,59 @@ def _strip(count: int) -> IntArray:
     high = low + count
     lower = np.stack([low, low + 1, high + 1], 1)
     return np.concatenate([lower, np.stack([low, high + 1, high], 1)])
+
+
+def cylinder_triangles(
+    origins: FloatArray,
+    directions: FloatArray,
+    heights: FloatArray,
+    radius: float,
+    tolerance: float,
+) -> BeamTriangles:
+    """
+    Triangulate upright cylinders with both ends.
+
+    Parameters
+    ----------
+    origins : (n, 3) float array
+        Centres of their lower ends, in model coordinates.
+    directions : (n, 3) float array
+        Unit vectors along their axes, from the lower to the upper end.
+    heights : (n,) float array
+        Their heights.
+    radius : float
+        Their radius.
+    tolerance : float
+        Largest distance of the chords from the circles, relative to the radius.
+
+    Returns
+    -------
+    BeamTriangles
+        All cylinders, each of as many sides as the tolerance needs.
+    """
+    n_sides = int(np.ceil(np.pi / np.arccos(1 - min(tolerance, 0.5))))
+    angles: FloatArray = 2 * np.pi * np.arange(n_sides) / n_sides
+    # Any direction across the axis will do: the most distant coordinate axis gives one.
+    other = np.eye(3)[np.argmin(np.abs(directions), axis=1)]
+    x = unit(np.cross(other, directions))[:, None]
+    y = np.cross(directions[:, None], x)
+    around = np.cos(angles)[:, None] * x + np.sin(angles)[:, None] * y
+    rise = (heights[:, None] * directions)[:, None]
+    lower = origins[:, None] + radius * around
+    upper = lower + rise
+    up = np.broadcast_to(directions[:, None], around.shape)
+    ids: IntArray = np.arange(n_sides)
+    after = np.roll(ids, -1)
+    fan = np.stack([0 * ids[1:-1], ids[1:-1], ids[2:]], 1)
+    triangles = [
+        np.stack([ids, after, after + n_sides], 1),
+        np.stack([ids, after + n_sides, ids + n_sides], 1),
+        2 * n_sides + fan[:, ::-1],
+        3 * n_sides + fan,
+    ]
+    return BeamTriangles(
+        np.arange(len(origins)),
+        np.concatenate([lower, upper, lower, upper], 1),
+        np.concatenate([around, around, -up, up], 1),
+        np.concatenate(triangles),
+    )

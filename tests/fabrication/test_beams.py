@@ -24,13 +24,17 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication.beam_brep import beam_shapes
 from spheremesh.fabrication.dxf import write_dxf
 from spheremesh.fabrication.part21 import check_part21
+from spheremesh.fabrication.render_meshes import MESH_TOLERANCE, gather_meshes
 from spheremesh.fabrication.rhino import RhinoContents, write_3dm
+from spheremesh.fabrication.rhino_beams import with_meshes
+from spheremesh.fabrication.rhino_model import new_model
 from spheremesh.fabrication.step import beams_to_cadquery, write_step
 from spheremesh.kernel import beam_cutting
 from spheremesh.kernel.annuli import Annuli
 from spheremesh.kernel.annulus_support import annulus_support
 from spheremesh.kernel.arrays import FloatArray, dot, norm
 from spheremesh.kernel.beam_cutting import cut_beams
+from spheremesh.kernel.beam_triangles import cylinder_triangles
 from spheremesh.kernel.beams import Beams, beam_volumes, node_axis_segments, select_beams
 from spheremesh.kernel.central import central_spheres
 from spheremesh.kernel.cutting import cut_panels
@@ -357,6 +361,25 @@ def _check_render_mesh(solid: Any, size: float) -> None:  # noqa: ANN401
     assert volume > 0
     vectors = np.array([(n.X, n.Y, n.Z) for n in mesh.Normals])[[t[0] for t in corners]]
     assert (dot(np.cross(b - a, c - a), vectors) > 0).all()
+
+
+def test_any_extrusion_takes_a_render_mesh() -> None:
+    model = new_model("m")
+    origins = np.array([[0, 0, 0], [3.0, 1, 2]])
+    directions = np.array([[0, 0, 1.0], [0.6, 0, 0.8]])
+    solids: list[Any] = []
+    for origin, direction in zip(origins.tolist(), directions.tolist(), strict=True):
+        circle = rhino3dm.Circle(0.3)
+        circle.Plane = rhino3dm.Plane(rhino3dm.Point3d(*origin), rhino3dm.Vector3d(*direction))
+        cylinder = rhino3dm.Cylinder(circle, 0.5)
+        solids.append(rhino3dm.Extrusion.CreateCylinderExtrusion(cylinder, True, True))  # noqa: FBT003
+    shape = cylinder_triangles(origins, directions, np.full(2, 0.5), 0.3, MESH_TOLERANCE)
+    found = with_meshes(model, solids, gather_meshes([shape], MESH_TOLERANCE * 0.3))
+    for i, solid in enumerate(found):
+        assert solid.IsSolid
+        mesh = solid.GetMesh(rhino3dm.MeshType.Render)
+        points = [point(mesh.Vertices.Point3dAt(j)) for j in range(len(mesh.Vertices))]
+        assert np.abs(points - shape.points[i]).max() < 1e-6
 
 
 def test_a_model_without_render_meshes(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from spheremesh.kernel.annulus_support import annulus_support
 from spheremesh.kernel.arcs import arc_lengths, segment_areas
 from spheremesh.kernel.arrays import FloatArray, dot, norm
 from spheremesh.kernel.beam_cutting import cut_beams
-from spheremesh.kernel.beam_triangles import beam_triangles
+from spheremesh.kernel.beam_triangles import beam_triangles, cylinder_triangles
 from spheremesh.kernel.beams import Beams, section_arcs
 from spheremesh.kernel.central import central_spheres
 from spheremesh.kernel.fit import face_planes
@@ -86,6 +86,28 @@ def test_points_lie_on_the_circles_and_normals_are_theirs() -> None:
         assert np.abs(evaluate(rows, flat)).max() < 1e-12
         exact = rows[..., 1:4] - 2 * rows[..., :1] * flat
         assert np.abs(group.normals[:, outer] - exact).max() < 1e-12
+
+
+def test_cylinders_close_up_and_hold_the_volume() -> None:
+    rng = np.random.default_rng(3)
+    origins, directions = rng.normal(size=(2, 6, 3))
+    directions /= norm(directions)[:, None]
+    heights = rng.uniform(0.5, 2, 6)
+    for tolerance in (0.5, 0.05, 1e-4):
+        found = cylinder_triangles(origins, directions, heights, 0.3, tolerance)
+        relative = found.points - origins[:, None]
+        along = dot(relative, directions[:, None])
+        flat = relative - along[..., None] * directions[:, None]
+        np.testing.assert_allclose(norm(flat), 0.3)
+        assert np.minimum(np.abs(along), np.abs(along - heights[:, None])).max() < 1e-12
+        a, b, c = relative[:, found.triangles].transpose(2, 0, 1, 3)
+        areas = np.cross(b - a, c - a)
+        assert (dot(areas, found.normals[:, found.triangles[:, 0]]) > 0).all()
+        volumes = dot(a, np.cross(b, c)).sum(1) / 6
+        n_sides = found.points.shape[1] // 4
+        polygon = n_sides / 2 * np.sin(2 * np.pi / n_sides) * 0.3**2
+        np.testing.assert_allclose(volumes, polygon * heights)
+        assert 1 - np.cos(np.pi / n_sides) <= tolerance * (1 + 1e-9)
 
 
 def test_law_scale_and_place_change_nothing() -> None:
