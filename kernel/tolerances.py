@@ -203,3 +203,6 @@ FOLD_STEP: Final = 1e-3
 
 LATTICE_TIE: Final = 1e-7
 """A vertex this close to a line of a map, in steps of the map, is moved off it."""
+
+ALIKE: Final = 1e-3
+"""Squared differences of neighbours below this, relative to the mean, count no smaller."""

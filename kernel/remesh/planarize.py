@@ -27,8 +27,9 @@ from ..solvers.levenberg_marquardt import Status, levenberg_marquardt
 from ..sphere_mesh import SphereMesh
 from ..spheres import recenter, rescale
 from ..tolerances import DEGENERATE
-from .planar_steps import linearize, step_metric
+from .planar_steps import linearize
 from .planar_system import Net, PlanarSystem, energies, move, planar_system
+from .step_norm import step_norm
 
 STEPS = 60
 """Largest number of linear systems."""
@@ -120,11 +121,11 @@ def planarize(sphere_mesh: SphereMesh, fairness: float = 1.0) -> Planarization:
     if not (np.isfinite(fairness) and fairness >= 0):
         raise InputError(f"the fairness must not be negative, not {fairness}")
     system = planar_system(sphere_mesh)
-    metric = step_metric(system, fairness)
+    size = step_norm(system, fairness)
     descent = levenberg_marquardt(
         system.start,
         lambda net: energies(system, net),
-        lambda net: linearize(system, net, metric),
+        lambda net: linearize(system, net, size),
         move,
         tolerance=0.0,
         max_iterations=STEPS,

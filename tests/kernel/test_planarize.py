@@ -17,7 +17,7 @@ from spheremesh.kernel.fit import face_planes
 from spheremesh.kernel.mesh import mean_edge_length
 from spheremesh.kernel.mobius import inversion
 from spheremesh.kernel.mobius_maps import map_sphere_mesh
-from spheremesh.kernel.remesh.planar_steps import linearize, step_metric
+from spheremesh.kernel.remesh.planar_steps import linearize
 from spheremesh.kernel.remesh.planar_system import (
     Net,
     PlanarSystem,
@@ -27,6 +27,7 @@ from spheremesh.kernel.remesh.planar_system import (
     residuals,
 )
 from spheremesh.kernel.remesh.planarize import axis_angles, measure_nodes, planarize
+from spheremesh.kernel.remesh.step_norm import step_norm
 from spheremesh.kernel.sphere_mesh import vertex_error
 from spheremesh.kernel.spheres import (
     center_radius,
@@ -317,25 +318,47 @@ def differences(system: PlanarSystem, net: Net) -> FloatArray:
     return jacobian
 
 
-def dense_metric(system: PlanarSystem, fairness: float) -> FloatArray:
-    """Squared norm of steps: of each sphere, of differences of neighbours, and of each node."""
-    n_faces, n_nodes = len(system.start.rows), len(system.start.shifts)
-    among = np.eye(n_faces)
-    for left, right in system.mesh.topology.edge_faces:
-        jump = np.zeros(n_faces)
-        jump[left], jump[right] = 1, -1
-        among += fairness**2 * jump[:, None] * jump
-    metric = np.eye(5 * n_faces + 7 * n_nodes)
-    metric[: 5 * n_faces, : 5 * n_faces] = np.kron(among, np.diag(system.scales**2))
-    return metric
+def dense_metric(system: PlanarSystem, net: Net, fairness: float) -> FloatArray:
+    """Squared norm of steps: spheres, shares of their differences, nodes by their edges."""
+    mesh, n_faces, n_nodes = system.mesh, len(net.rows), len(net.shifts)
+    size = mean_edge_length(mesh)
+    result = np.eye(5 * n_faces + 7 * n_nodes)
+    result[: 5 * n_faces, : 5 * n_faces] = np.kron(np.eye(n_faces), np.diag(system.scales**2))
+    jumps: list[FloatArray] = []
+    for first, left, right in zip(
+        mesh.topology.edge_corners, *mesh.topology.edge_faces.T, strict=True
+    ):
+        ends = mesh.vertices[mesh.corners[[first, mesh.topology.next_corners[first]]]] / size
+        jump = np.zeros((5, n_faces, 5))
+        for sign, face in ((1, left), (-1, right)):
+            center = mesh.vertices[mesh.faces[face]].mean(0) / size
+            shifted = recenter(np.eye(5), ends.mean(0) - center).T
+            jump[:, face] = sign * system.scales[:, None] * shifted
+        jumps.append(jump.reshape(5, -1))
+    apart = np.array([jump @ net.rows.ravel() for jump in jumps])
+    squares = (apart**2).sum(1)
+    for square, jump in zip(squares, jumps, strict=True):
+        weight = fairness**2 * squares.mean() / (square + 1e-3 * squares.mean())
+        result[: 5 * n_faces, : 5 * n_faces] += weight * jump.T @ jump
+    points = mesh.vertices / size + net.shifts
+    for node in range(n_nodes):
+        around = [
+            norm(points[tail] - points[head])
+            for face in mesh.faces
+            for tail, head in zip(face, np.roll(face, -1), strict=True)
+            if node in (tail, head)
+        ]
+        place = 5 * n_faces + 7 * node + np.arange(7)
+        result[place, place] = min(1.0, *around) ** -2
+    return result
 
 
 @pytest.mark.parametrize("fairness", [0.0, 1.5])
 def test_steps_are_those_of_the_dense_system(fairness: float) -> None:
     system, net = small_problem()
     jacobian, residual = differences(system, net), stacked(system, net)
-    metric = dense_metric(system, fairness)
-    solve = linearize(system, net, step_metric(system, fairness))
+    metric = dense_metric(system, net, fairness)
+    solve = linearize(system, net, step_norm(system, fairness))
     for damping in (1e-1, 1e-4):
         dense = np.linalg.solve(
             jacobian.T @ jacobian + damping * metric, -jacobian.T @ residual
