@@ -7,6 +7,7 @@ system of the faces is left.
 
 from collections.abc import Callable
 from typing import Any
+
 import numpy as np
 
 from ..arrays import FloatArray, dot, sum_by

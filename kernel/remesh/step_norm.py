@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from ..arrays import FloatArray, dot, norm
+from ..arrays import FloatArray, IntArray, dot, norm
 from ..mesh import mean_edge_length
 from ..spheres import recenter
 from ..tolerances import ALIKE
@@ -77,7 +77,7 @@ def step_norm(system: PlanarSystem, fairness: float) -> StepNorm:
     return StepNorm(system, fairness, bsr_array((stacked, *places), shape=shape).tocsr())
 
 
-def _middles(system: PlanarSystem, corners: FloatArray) -> FloatArray:
+def _middles(system: PlanarSystem, corners: IntArray) -> FloatArray:
     """Middles of the edges that leave corners, local to the face of the corner."""
     following = system.mesh.topology.next_corners[corners]
     return (system.corners[corners] + system.corners[following]) / 2
