@@ -81,12 +81,13 @@ def test_files_of_a_remeshed_torus_open_elsewhere(tmp_path: Path) -> None:
     shells, bars, _ = built("grown")
     step = write_step(shells, tmp_path / "torus.step", beams=bars)
     assert check_part21(Path(step)) == ()
-    model = rhino3dm.File3dm.Read(write_3dm(shells, tmp_path / "torus.3dm", beams=bars))
-    solids = [o.Geometry for o in model.Objects if hasattr(o.Geometry, "IsSolid")]
+    model: Any = rhino3dm.File3dm.Read(write_3dm(shells, tmp_path / "torus.3dm", beams=bars))
+    solids: list[Any] = [o.Geometry for o in model.Objects if hasattr(o.Geometry, "IsSolid")]
     kinds = Counter(type(solid).__name__ for solid in solids)
     assert kinds == {"Brep": shells.n_panels, "Extrusion": bars.n_beams}
     assert all(solid.IsValid for solid in solids)
-    drawing = ezdxf.readfile(write_dxf(bars, tmp_path / "torus.dxf"))
+    reader: Any = ezdxf
+    drawing = reader.readfile(write_dxf(bars, tmp_path / "torus.dxf"))
     assert not drawing.audit().errors
     outlines = Counter(item.dxftype() for item in drawing.modelspace())
     assert outlines["LWPOLYLINE"] >= bars.n_beams
