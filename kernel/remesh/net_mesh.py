@@ -99,9 +99,9 @@ def _build(net: Net, merged: IntArray) -> NetMesh:
     degrees = np.bincount(cells[keep], minlength=len(net.offsets) - 1)
     is_face = degrees >= 3
     keep &= is_face[cells]
-    kept = corners[keep]
+    kept, degrees = _without_bends(corners[keep], degrees[is_face])
     used, renumbered = np.unique(kept, return_inverse=True)
-    faces = np.split(renumbered, np.cumsum(degrees[is_face])[:-1])
+    faces = np.split(renumbered, np.cumsum(degrees)[:-1])
     mesh = Mesh(_places(net, merged)[used], faces)
     is_digon = np.diff(net.offsets) == 2
     is_inner = used < net.n_nodes
@@ -109,6 +109,29 @@ def _build(net: Net, merged: IntArray) -> NetMesh:
         mesh, is_inner, int((merged != np.arange(len(merged))).sum()), int(is_digon.sum()),
         int((~is_face & ~is_digon).sum()),
     )  # fmt: skip
+
+
+def _without_bends(corners: IntArray, degrees: IntArray) -> tuple[IntArray, IntArray]:
+    """
+    Corners and degrees of faces, without vertices at which two faces share both edges.
+
+    Where slivers beside a node were lost, it only bends the edge of two faces. It stays if one
+    of them has no corner to spare.
+    """
+    faces = np.repeat(np.arange(len(degrees)), degrees)
+    following = _following(np.concatenate([[0], np.cumsum(degrees)]))
+    after, before = corners[following], np.empty_like(corners)
+    before[following] = corners
+    order = np.argsort(corners, kind="stable")
+    starts = np.flatnonzero(np.diff(corners[order], prepend=-1))
+    pairs = starts[np.diff(starts, append=len(order)) == 2]
+    first, second = order[pairs], order[pairs + 1]
+    bends = (after[first] == before[second]) & (before[first] == after[second])
+    ends = np.stack([first, second], axis=1)[bends]
+    spare = degrees - np.bincount(faces[ends.ravel()], minlength=len(degrees)) >= 3
+    dropped = ends[spare[faces[ends]].all(axis=1)].ravel()
+    lost = np.bincount(faces[dropped], minlength=len(degrees))
+    return np.delete(corners, dropped), degrees - lost
 
 
 def _places(net: Net, merged: IntArray) -> FloatArray:
