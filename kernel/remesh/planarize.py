@@ -28,7 +28,7 @@ from ..sphere_mesh import SphereMesh
 from ..spheres import recenter, rescale
 from ..tolerances import DEGENERATE
 from .planar_steps import linearize
-from .planar_system import Net, PlanarSystem, energies, move, planar_system
+from .planar_system import Net, PlanarSystem, energies, move, must_be_planar, planar_system
 from .step_norm import step_norm
 
 STEPS = 60
@@ -66,15 +66,17 @@ class Nodes:
     Attributes
     ----------
     is_inner : (V,) bool array
-        Nodes inside the mesh; the others have none of what follows.
+        Nodes inside the mesh.
     planarity : (V,) float array
-        Fourth singular value of the rows seen from the node, relative to the first; zero on
-        the boundary and for less than four spheres.
+        Fourth singular value of the rows seen from the node, relative to the first; zero for
+        less than four spheres.
     axes : (V, 3) float array
-        Unit directions of the node axes, through both common points; NaN where there is none,
-        as on the boundary, where spheres share a circle, and where all of them are planes.
+        Unit directions of the node axes, through both common points; NaN where there is none:
+        where spheres share a circle or all of them are planes, and at the nodes of the
+        boundary with less than four faces.
     is_real : (V,) bool array
-        Whether the spheres meet in two real points, by least squares.
+        Whether the spheres meet in two real points, by least squares; False where the boundary
+        has no axis.
     """
 
     is_inner: BoolArray
@@ -197,11 +199,11 @@ def _form(first: FloatArray, second: FloatArray) -> FloatArray:
 
 
 def _stars(mesh: Mesh) -> Iterator[tuple[IntArray, IntArray]]:
-    """Interior nodes (n,) of equal valence k > 2, with their corners (n, k)."""
+    """Nodes (n,) that must be planar, of equal valence k > 2, with their corners (n, k)."""
     valences = np.bincount(mesh.corners, minlength=mesh.n_vertices)
     order = np.argsort(mesh.corners, kind="stable")
     starts = np.cumsum(valences) - valences
-    valences = np.where(mesh.topology.is_boundary_vertex, 0, valences)
+    valences = np.where(must_be_planar(mesh), valences, 0)
     for valence in np.unique(valences[valences > 2]).tolist():
         nodes = np.flatnonzero(valences == valence)
         yield nodes, order[starts[nodes][:, None] + np.arange(valence)]
