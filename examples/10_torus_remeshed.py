@@ -16,10 +16,10 @@ from spheremesh.nodes import (
     write_step,
 )
 
-EDGE = 0.5
+EDGE = 0.6
 
 # Section 7: spheres that touch the torus grow towards its curvature spheres.
-triangles = shifted_rows(torus_mesh(n_around=96, n_across=32, minor_radius=0.9))
+triangles = shifted_rows(torus_mesh(n_around=72, n_across=24, minor_radius=0.9))
 grown = evolve_spheres(triangles, max_axis_angle=15)
 hexagons = tangent_sphere_shex(grown.mesh, grown.spheres)
 shapes = hexagons.report

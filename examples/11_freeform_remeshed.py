@@ -17,12 +17,12 @@ from spheremesh.nodes import (
     write_dxf,
 )
 
-EDGE = 1.9
+EDGE = 1.8
 
-# Two hills over a hall of 40 by 26 metres.
+# Two waves over a hall of 40 by 26 metres.
 x, y = np.meshgrid(np.linspace(-20, 20, 65), np.linspace(-13, 13, 43), indexing="ij")
-z = 6.5 * np.exp(-(((x - 7) / 9) ** 2) - ((y - 1) / 8.5) ** 2)
-z += 4.5 * np.exp(-(((x + 9) / 8) ** 2) - ((y + 1.5) / 9) ** 2)
+z = 6 * np.exp(-(((x - 8) / 8) ** 2) - ((y - 2) / 14) ** 2)
+z += 5 * np.exp(-(((x + 9) / 8) ** 2) - ((y + 3) / 15) ** 2)
 ids = np.arange(x.size).reshape(x.shape)
 faces = np.stack([ids[:-1, :-1], ids[1:, :-1], ids[1:, 1:], ids[:-1, 1:]], -1)
 roof = triangulate(sm.Mesh(np.stack([x, y, z], -1).reshape(-1, 3), faces.reshape(-1, 4)))
@@ -55,6 +55,6 @@ for found in (cut, annuli, made):
     for entry in found.report["rejected"]:
         print(f"  {entry['id']}: {entry['reason']}")
 print(f"{cut.report['written']} panels, {made.report['written']} beams")
-print(render(cut.panels, "roof_remeshed.png", color_by="radius", width=1200, height=750))
+print(render(cut.panels, "roof_remeshed.png", color_by="radius", width=1800, height=840))
 print(write_3dm(cut.panels, "roof.3dm", beams=made.beams))
-print(write_dxf(made.beams, "roof_beams.dxf"))
+print(write_dxf(made.beams, "roof_beams.dxf", sheet=(6000, 2000)))
