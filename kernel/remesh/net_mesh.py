@@ -6,11 +6,18 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, norm, sum_by
 from ..errors import InputError
-from ..mesh import Mesh
+from ..mesh import Mesh, with_vertices
 from .extraction import Net
 
 SHORT = 0.4
 """Edges at the boundary below this length, in edge lengths, are contracted."""
+
+
+NEAREST = 0.35
+"""Nodes inside that an edge below this length joins, in edge lengths, are moved apart."""
+
+SPREADS = 30
+"""Rounds of moving them."""
 
 
 class NetMesh(NamedTuple):
@@ -61,11 +68,11 @@ def net_mesh(net: Net, edge_length: float) -> NetMesh:
     """
     merged = _merge_short_edges(net, edge_length)
     try:
-        return _build(net, merged)
+        return _spread(_build(net, merged), NEAREST * edge_length)
     except InputError:
         pass
     try:
-        return _build(net, np.arange(len(net.points)))
+        return _spread(_build(net, np.arange(len(net.points))), NEAREST * edge_length)
     except InputError as error:
         raise InputError(
             "the edge length is too large for the surface: faces of the net would touch "
@@ -109,6 +116,30 @@ def _build(net: Net, merged: IntArray) -> NetMesh:
         mesh, is_inner, int((merged != np.arange(len(merged))).sum()), int(is_digon.sum()),
         int((~is_face & ~is_digon).sum()),
     )  # fmt: skip
+
+
+def _spread(built: NetMesh, least: float) -> NetMesh:
+    """
+    Move nodes apart that are too near: lines crowd around singular points.
+
+    Nodes at the ends of very short edges fall into one when they become planar.
+    """
+    mesh, topology = built.mesh, built.mesh.topology
+    tails, heads = mesh.corners, mesh.corners[topology.next_corners]
+    once = (tails < heads) | (topology.twins < 0)
+    tails, heads = tails[once], heads[once]
+    points, free = mesh.vertices.copy(), built.is_node
+    for _ in range(SPREADS):
+        sides = points[heads] - points[tails]
+        lengths = norm(sides)
+        is_short = (lengths < least) & (lengths > 0) & (free[tails] | free[heads])
+        if not is_short.any():
+            break
+        push = ((least / lengths[is_short] - 1) / 2)[:, None] * sides[is_short]
+        moves = sum_by(heads[is_short], push, len(points))
+        moves -= sum_by(tails[is_short], push, len(points))
+        points[free] += moves[free]
+    return built._replace(mesh=with_vertices(mesh, points))
 
 
 def _without_bends(corners: IntArray, degrees: IntArray) -> tuple[IntArray, IntArray]:

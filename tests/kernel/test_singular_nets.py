@@ -104,6 +104,23 @@ def test_nodes_beside_lost_slivers_leave_no_bend() -> None:
     assert built.mesh.degrees.tolist() == [4, 3]
 
 
+def test_crowded_nodes_are_moved_apart() -> None:
+    """A grid whose first two nodes inside are a tenth of a step from each other."""
+    x, y = (g.ravel() for g in np.meshgrid(np.arange(4.0), np.arange(4.0), indexing="ij"))
+    inside = (x % 3 != 0) & (y % 3 != 0)
+    order = np.concatenate([np.flatnonzero(inside), np.flatnonzero(~inside)])
+    points = np.stack([x, y, 0 * x], 1)[order]
+    rank = np.argsort(order).reshape(4, 4)
+    a, b, c, d = rank[:-1, :-1], rank[1:, :-1], rank[1:, 1:], rank[:-1, 1:]
+    corners = np.stack([a, b, c, d], -1).ravel()
+    points[0, 1], points[1, 1] = 1.45, 1.55
+    built = net_mesh(Net(points, 4, corners, np.arange(0, 37, 4), np.zeros(12, bool)), 1.0)
+    moved = built.mesh.vertices
+    assert norm(moved[0] - moved[1]) == pytest.approx(0.35)
+    np.testing.assert_allclose(moved[0] + moved[1], points[0] + points[1])
+    np.testing.assert_array_equal(moved[2:], points[2:])
+
+
 def test_planarity_of_the_rim_is_measured() -> None:
     start, result = planarized(CASES["waves"])
     mesh = start.mesh
