@@ -47,8 +47,8 @@ for what, found in {"panels": cut, "annuli": annuli, "beams": made}.items():
 print(f"{cut.report['written']} panels, {made.report['written']} beams")
 
 hexagonal = panels(hexagons.sphere_mesh, edges="intersection", joint_gap=0.012)
-print(render(hexagonal.panels, "torus_hexagons.png", color_by="radius", width=1200, height=750))
-print(render(cut.panels, "torus_remeshed.png", color_by="radius", width=1200, height=750))
+print(render(hexagonal.panels, "torus_hexagons.png", color_by="radius", width=1000, height=625))
+print(render(cut.panels, "torus_remeshed.png", color_by="radius", width=1000, height=625))
 print(write_step(cut.panels, "torus.step", beams=made.beams))
 print(write_3dm(cut.panels, "torus.3dm", beams=made.beams))
 print(write_dxf(made.beams, "torus_beams.dxf"))
