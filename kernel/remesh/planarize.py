@@ -20,9 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
-from ..curvature import vertex_normals
 from ..errors import InputError
-from ..mesh import Mesh, local_corners, mean_edge_length
+from ..mesh import Mesh, face_vector_areas, local_corners, mean_edge_length
 from ..solvers.levenberg_marquardt import Status, levenberg_marquardt
 from ..sphere_mesh import SphereMesh
 from ..spheres import recenter, rescale
@@ -223,8 +222,15 @@ def axis_angles(sphere_mesh: SphereMesh, nodes: Nodes) -> FloatArray:
     Returns
     -------
     (V,) float array
-        Radians from 0 to π/2; NaN where there is no axis.
+        Radians from 0 to π/2; NaN where there is no axis, or no normal since faces fold back.
+
+    Notes
+    -----
+    The normals are sums of the vector areas of faces: nets that went wrong have them as well.
     """
-    normals = vertex_normals(sphere_mesh.mesh)
+    mesh = sphere_mesh.mesh
+    areas = face_vector_areas(mesh)[mesh.topology.corner_faces]
+    normals = unit(sum_by(mesh.corners, areas, mesh.n_vertices))
     across = norm(np.cross(nodes.axes, normals))
-    return np.arctan2(across, np.abs(dot(nodes.axes, normals)))
+    angles = np.arctan2(across, np.abs(dot(nodes.axes, normals)))
+    return np.where(norm(normals) > 0, angles, np.nan)

@@ -85,7 +85,9 @@ def planarization_report(start: SphereMesh, result: Planarization) -> dict[str, 
         },
         "axis_angles_deg": _spread(angles[np.isfinite(angles)]),
         "moved": {"max": float(result.shifts.max()), "mean": float(result.shifts.mean())},
-        "nodes_without_axis": np.flatnonzero(nodes.is_inner & np.isnan(angles)).tolist(),
+        "nodes_without_axis": np.flatnonzero(
+            nodes.is_inner & np.isnan(nodes.axes[:, 0])
+        ).tolist(),
         "turned_faces": _turned_faces(start.mesh, after.mesh),
     }
 

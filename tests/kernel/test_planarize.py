@@ -27,6 +27,7 @@ from spheremesh.kernel.remesh.planar_system import (
     residuals,
 )
 from spheremesh.kernel.remesh.planarize import axis_angles, measure_nodes, planarize
+from spheremesh.kernel.remesh.reports import planarization_report
 from spheremesh.kernel.remesh.step_norm import step_norm
 from spheremesh.kernel.sphere_mesh import vertex_error
 from spheremesh.kernel.spheres import (
@@ -408,3 +409,14 @@ def test_nodes_whose_spheres_share_a_circle_have_no_axis() -> None:
     assert np.isnan(nodes.axes).all()
     assert not nodes.is_real.any()
     assert planarize(same).shifts.max() == 0
+
+
+def test_folded_nets_are_measured_all_the_same() -> None:
+    """Two faces back to back have no normals at their common vertices."""
+    square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    rows = np.tile([0.0, 0, 0, 1, 0], (2, 1)) * [[1], [-1]]
+    folded = SphereMesh(Mesh(square, [[0, 1, 2, 3], [3, 2, 1, 0]]), rows)
+    nodes = measure_nodes(folded)
+    assert nodes.is_inner.all()
+    assert np.isnan(axis_angles(folded, nodes)).all()
+    assert planarization_report(folded, planarize(folded))["turned_faces"] == []
