@@ -108,7 +108,7 @@ def test_small_spheres_and_leaning_axes_are_said() -> None:
         p4_remesh(surface.mesh, small, 0.4)
     x = surface.mesh.vertices[:, 0]
     leaning = sphere_congruence(surface.mesh, "tangent", 0.8 + 0.4 * x)
-    with pytest.warns(NodeWarning, match="lean up to .* relax_congruence"):
+    with pytest.warns(NodeWarning, match="lean from .* relax_congruence"):
         p4_remesh(surface.mesh, leaning, 0.4)
 
 

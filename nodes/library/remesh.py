@@ -191,8 +191,8 @@ def _warn_of_nodes(done: pipeline.Remeshing, edge_length: float) -> None:
     lean = reports.angle_report(done.axis_angles)["p95"]
     if lean is not None and lean > LEANING:
         warn(
-            f"the node axes lean up to {lean:.3g} degrees from the normals on 95 % of the "
-            "surface: beams will lie down; relax_congruence sets them up"
+            f"node axes will lean from the normals, by more than {lean:.3g} degrees at 5 % of "
+            "the vertices: beams lie down; relax_congruence sets them up"
         )
 
 
@@ -271,10 +271,10 @@ def _warn_of_damage(report: Mapping[str, Any]) -> None:
     shortest = report["shortest_edge"]["after"]
     if shortest < SHORT_EDGE or report["turned_faces"]:
         warn(
-            f"the shortest edge measures {shortest:.2g} of the mean and "
-            f"{len(report['turned_faces'])} faces turned over: nodes moved by up to "
-            f"{report['moved']['max']:.2g} edges to become planar; spheres that are larger, or "
-            "of more even size, or a finer net, need smaller moves"
+            f"the shortest edge measures {shortest:.2g} of the mean, and the number of faces "
+            f"that turned over is {len(report['turned_faces'])}: nodes moved by up to "
+            f"{report['moved']['max']:.2g} edges to become planar; larger spheres of more even "
+            "size need smaller moves, and singular points close to each other a coarser net"
         )
 
 
