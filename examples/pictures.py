@@ -127,14 +127,27 @@ def hexagons() -> Image.Image:
     return sheet
 
 
-def _made_by(example: str, picture: str) -> Image.Image:
-    """The picture that an example writes, half as large."""
+def _pictures_of(example: str, *pictures: str) -> list[Image.Image]:
+    """Pictures that an example writes, half as large."""
     with tempfile.TemporaryDirectory() as folder:
         script = Path(__file__).with_name(f"{example}.py").resolve()
         subprocess.run([sys.executable, "-W", "ignore", script], cwd=folder, check=True)  # noqa: S603
-        image = Image.open(Path(folder) / picture)
-        image.load()
-    return image.convert("RGB").reduce(2)
+        images = [Image.open(Path(folder) / picture) for picture in pictures]
+        return [image.convert("RGB").reduce(2) for image in images]
+
+
+def _made_by(example: str, picture: str) -> Image.Image:
+    """The picture that an example writes, half as large."""
+    return _pictures_of(example, picture)[0]
+
+
+def _beside(*images: Image.Image) -> Image.Image:
+    """Images of one size in a row."""
+    width, height = images[0].size
+    sheet = Image.new("RGB", (len(images) * width, height))
+    for place, image in enumerate(images):
+        sheet.paste(image, (place * width, 0))
+    return sheet
 
 
 def hybrid_dome() -> Image.Image:
@@ -157,6 +170,17 @@ def few_moulds() -> Image.Image:
     return _made_by("09_few_moulds", "few_moulds.png")
 
 
+def remeshed_torus() -> Image.Image:
+    """Spheres of Section 7 as hexagons, and along their conjugate directions (Fig. 29)."""
+    names = ("torus_hexagons.png", "torus_remeshed.png")
+    return _beside(*_pictures_of("10_torus_remeshed", *names))
+
+
+def remeshed_roof() -> Image.Image:
+    """A freeform roof with singular points."""
+    return _made_by("11_freeform_remeshed", "roof_remeshed.png")
+
+
 PICTURES = {
     "roof": roof,
     "roof-zebra": roof_zebra,
@@ -168,6 +192,8 @@ PICTURES = {
     "facade": facade,
     "strips": strips,
     "few-moulds": few_moulds,
+    "remeshed-torus": remeshed_torus,
+    "remeshed-roof": remeshed_roof,
 }
 
 

@@ -209,3 +209,6 @@ OVERLAP: Final = 1e-6
 
 SINGLE_IS_ENOUGH: Final = 0.01
 """Share of the error of a triangulation that rounding its points to float32 may add."""
+
+ALIKE: Final = 1e-3
+"""Squared differences of neighbours below this, relative to the mean, count no smaller."""

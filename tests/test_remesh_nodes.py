@@ -8,11 +8,13 @@ import pytest
 
 import spheremesh as sm
 from spheremesh.kernel.arrays import norm
+from spheremesh.kernel.errors import InputError
 from spheremesh.nodes import (
     NodeWarning,
     conjugate_directions,
     p4_remesh,
     sphere_congruence,
+    torus_mesh,
     triangulated_surface,
 )
 
@@ -97,6 +99,67 @@ def test_remeshing_in_a_graph() -> None:
     spheres = graph.add(sphere_congruence, mesh=surface.mesh, kind="tangent", offset=0.5)
     net = graph.add(p4_remesh, mesh=surface.mesh, spheres=spheres, edge_length=0.4)
     assert graph.run(net.sphere_mesh).mesh.n_faces >= 16
+
+
+def test_small_spheres_and_leaning_axes_are_said() -> None:
+    surface = triangulated_surface("hypar", 0.2)
+    small = sphere_congruence(surface.mesh, "tangent", 0.25)
+    with pytest.warns(NodeWarning, match=r"100 % of the vertices have radii below 0\.283"):
+        p4_remesh(surface.mesh, small, 0.4)
+    x = surface.mesh.vertices[:, 0]
+    leaning = sphere_congruence(surface.mesh, "tangent", 0.8 + 0.4 * x)
+    with pytest.warns(NodeWarning, match="lean from .* relax_congruence"):
+        p4_remesh(surface.mesh, leaning, 0.4)
+
+
+def test_nets_that_fall_together_are_said() -> None:
+    """Spheres much smaller than the steps of the net do not meet around its nodes."""
+    surface = triangulated_surface("waves", 0.12, seed=1)
+    spheres = sphere_congruence(surface.mesh, "tangent", 0.08)
+    with pytest.warns(NodeWarning) as caught:
+        report = p4_remesh(surface.mesh, spheres, 0.3).report
+    texts = " ".join(str(entry.message) for entry in caught)
+    assert "radii below" in texts
+    planar = report["planarized"]
+    assert planar is None or planar["shortest_edge"]["after"] < 0.2
+    assert "the shortest edge measures" in texts or "keeps some torsion" in texts
+
+
+def strip(n: int, twists: int) -> list[list[int]]:
+    """Triangles of a band, closed after half turns."""
+    heads = [[0, 1], [1, 0]][twists % 2]
+    ends = [*([2 * i, 2 * i + 1] for i in range(1, n)), heads]
+    starts = [[2 * i, 2 * i + 1] for i in range(n)]
+    pairs = zip(starts, ends, strict=True)
+    return [t for (a, b), (c, d) in pairs for t in ([a, c, d], [a, d, b])]
+
+
+def test_a_mesh_that_cannot_be_remeshed_is_one_clear_error() -> None:
+    mesh = triangulated_surface("hypar", 0.3).mesh
+    spheres = sphere_congruence(mesh, "tangent", 0.7)
+    quads = torus_mesh(12, 8)
+    around = sphere_congruence(quads, "tangent", -0.5)
+    shifted = mesh.vertices + np.array([9.0, 0, 0])
+    faces = mesh.corners.reshape(-1, 3)
+    two = sm.Mesh(
+        np.concatenate([mesh.vertices, shifted]), np.concatenate([faces, faces + len(shifted)])
+    )
+    imaginary = spheres.copy()
+    imaginary[[3, 7]] = [1.0, 0, 0, 0, 50.0]
+    cases = [
+        (quads, around, "needs triangles.*use triangulate first"),
+        (mesh, imaginary, r"vertices \[3, 7\] are imaginary"),
+        (two, np.tile(spheres, (2, 1)), "2 separate pieces: remesh them one by one"),
+    ]
+    for given, rows, words in cases:
+        with pytest.raises(InputError, match=words):
+            p4_remesh(given, rows, 0.5)
+        with pytest.raises(InputError, match=words):
+            conjugate_directions(given, rows)
+    band = np.random.default_rng(1).normal(size=(12, 3))
+    assert sm.Mesh(band, strip(6, 0)).n_faces == 12
+    with pytest.raises(InputError, match="the mesh may be non-orientable"):
+        sm.Mesh(band, strip(6, 1))
 
 
 def test_bad_input_is_one_clear_error() -> None:

@@ -6,11 +6,18 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, norm, sum_by
 from ..errors import InputError
-from ..mesh import Mesh
+from ..mesh import Mesh, with_vertices
 from .extraction import Net
 
 SHORT = 0.4
 """Edges at the boundary below this length, in edge lengths, are contracted."""
+
+
+NEAREST = 0.35
+"""Nodes inside that an edge below this length joins, in edge lengths, are moved apart."""
+
+SPREADS = 30
+"""Rounds of moving them."""
 
 
 class NetMesh(NamedTuple):
@@ -61,11 +68,11 @@ def net_mesh(net: Net, edge_length: float) -> NetMesh:
     """
     merged = _merge_short_edges(net, edge_length)
     try:
-        return _build(net, merged)
+        return _spread(_build(net, merged), NEAREST * edge_length)
     except InputError:
         pass
     try:
-        return _build(net, np.arange(len(net.points)))
+        return _spread(_build(net, np.arange(len(net.points))), NEAREST * edge_length)
     except InputError as error:
         raise InputError(
             "the edge length is too large for the surface: faces of the net would touch "
@@ -99,9 +106,9 @@ def _build(net: Net, merged: IntArray) -> NetMesh:
     degrees = np.bincount(cells[keep], minlength=len(net.offsets) - 1)
     is_face = degrees >= 3
     keep &= is_face[cells]
-    kept = corners[keep]
+    kept, degrees = _without_bends(corners[keep], degrees[is_face])
     used, renumbered = np.unique(kept, return_inverse=True)
-    faces = np.split(renumbered, np.cumsum(degrees[is_face])[:-1])
+    faces = np.split(renumbered, np.cumsum(degrees)[:-1])
     mesh = Mesh(_places(net, merged)[used], faces)
     is_digon = np.diff(net.offsets) == 2
     is_inner = used < net.n_nodes
@@ -109,6 +116,53 @@ def _build(net: Net, merged: IntArray) -> NetMesh:
         mesh, is_inner, int((merged != np.arange(len(merged))).sum()), int(is_digon.sum()),
         int((~is_face & ~is_digon).sum()),
     )  # fmt: skip
+
+
+def _spread(built: NetMesh, least: float) -> NetMesh:
+    """
+    Move nodes apart that are too near: lines crowd around singular points.
+
+    Nodes at the ends of very short edges fall into one when they become planar.
+    """
+    mesh, topology = built.mesh, built.mesh.topology
+    tails, heads = mesh.corners, mesh.corners[topology.next_corners]
+    once = (tails < heads) | (topology.twins < 0)
+    tails, heads = tails[once], heads[once]
+    points, free = mesh.vertices.copy(), built.is_node
+    for _ in range(SPREADS):
+        sides = points[heads] - points[tails]
+        lengths = norm(sides)
+        is_short = (lengths < least) & (lengths > 0) & (free[tails] | free[heads])
+        if not is_short.any():
+            break
+        push = ((least / lengths[is_short] - 1) / 2)[:, None] * sides[is_short]
+        moves = sum_by(heads[is_short], push, len(points))
+        moves -= sum_by(tails[is_short], push, len(points))
+        points[free] += moves[free]
+    return built._replace(mesh=with_vertices(mesh, points))
+
+
+def _without_bends(corners: IntArray, degrees: IntArray) -> tuple[IntArray, IntArray]:
+    """
+    Corners and degrees of faces, without vertices at which two faces share both edges.
+
+    Where slivers beside a node were lost, it only bends the edge of two faces. It stays if one
+    of them has no corner to spare.
+    """
+    faces = np.repeat(np.arange(len(degrees)), degrees)
+    following = _following(np.concatenate([[0], np.cumsum(degrees)]))
+    after, before = corners[following], np.empty_like(corners)
+    before[following] = corners
+    order = np.argsort(corners, kind="stable")
+    starts = np.flatnonzero(np.diff(corners[order], prepend=-1))
+    pairs = starts[np.diff(starts, append=len(order)) == 2]
+    first, second = order[pairs], order[pairs + 1]
+    bends = (after[first] == before[second]) & (before[first] == after[second])
+    ends = np.stack([first, second], axis=1)[bends]
+    spare = degrees - np.bincount(faces[ends.ravel()], minlength=len(degrees)) >= 3
+    dropped = ends[spare[faces[ends]].all(axis=1)].ravel()
+    lost = np.bincount(faces[dropped], minlength=len(degrees))
+    return np.delete(corners, dropped), degrees - lost
 
 
 def _places(net: Net, merged: IntArray) -> FloatArray:

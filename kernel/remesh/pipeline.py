@@ -147,7 +147,7 @@ def remesh(
     return Remeshing(
         sphere_mesh=sphere_mesh,
         n_irregular=_irregular_count(sphere_mesh.mesh),
-        shortest_edge=_shortest_edge(sphere_mesh.mesh),
+        shortest_edge=shortest_edge(sphere_mesh.mesh),
         complex_share=float(areas[~is_real].sum() / areas.sum()),
         moved_share=float(moved),
         singular_points=mesh.vertices[singular],
@@ -168,7 +168,20 @@ def _irregular_count(mesh: Mesh) -> int:
     return int((valences[~mesh.topology.is_boundary_vertex] != 4).sum())
 
 
-def _shortest_edge(mesh: Mesh) -> float:
+def shortest_edge(mesh: Mesh) -> float:
+    """
+    Length of the shortest edge.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Returns
+    -------
+    float
+        In the units of the mesh.
+    """
     ends = mesh.vertices[mesh.corners[mesh.topology.next_corners]]
     return float(norm(ends - mesh.vertices[mesh.corners]).min())
 

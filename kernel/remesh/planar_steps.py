@@ -6,7 +6,7 @@ system of the faces is left.
 """
 
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
@@ -26,42 +26,10 @@ from .planar_system import (
     split_step,
     sum_blocks,
 )
-
-Sparse: TypeAlias = Any
-"""A sparse array of SciPy, which has no types for them."""
+from .step_norm import Sparse, StepNorm, node_metric, sphere_metric
 
 
-def step_metric(system: PlanarSystem, fairness: float) -> Sparse:
-    """
-    Squared norm by which steps of the spheres are measured.
-
-    Parameters
-    ----------
-    system : PlanarSystem
-        The problem.
-    fairness : float
-        Weight of the differences between the steps of neighbouring spheres, relative to the
-        steps themselves.
-
-    Returns
-    -------
-    (5 F, 5 F) sparse array
-        Positive definite; coefficients in the units of the problem.
-    """
-    from scipy.sparse import bsr_array, csr_array, eye_array
-
-    neighbors, n_faces = system.mesh.topology.edge_faces, system.mesh.n_faces
-    edges = np.arange(len(neighbors))
-    signs = np.repeat([1.0, -1.0], len(edges))
-    places = (np.tile(edges, 2), neighbors.T.ravel())
-    differences: Sparse = csr_array((signs, places), shape=(len(edges), n_faces))
-    norm = (eye_array(n_faces) + fairness**2 * (differences.T @ differences)).tocsr()
-    blocks = norm.data[:, None, None] * np.diag(system.scales**2)
-    shape = (FACE * n_faces, FACE * n_faces)
-    return bsr_array((blocks, norm.indices, norm.indptr), shape=shape)
-
-
-def linearize(system: PlanarSystem, net: Net, metric: Sparse) -> Callable[[float], DampedStep]:
+def linearize(system: PlanarSystem, net: Net, size: StepNorm) -> Callable[[float], DampedStep]:
     """
     Gauss-Newton steps from a net.
 
@@ -71,8 +39,8 @@ def linearize(system: PlanarSystem, net: Net, metric: Sparse) -> Callable[[float
         The problem.
     net : Net
         The net.
-    metric : (5 F, 5 F) sparse array
-        What the damping multiplies, for the spheres; of nodes it is the plain norm.
+    size : StepNorm
+        The norm that the damping multiplies.
 
     Returns
     -------
@@ -94,10 +62,11 @@ def linearize(system: PlanarSystem, net: Net, metric: Sparse) -> Callable[[float
     shape = (FACE * mesh.n_faces, NODE * mesh.n_vertices)
     # Corners are stored face after face: they are the compressed rows of the coupling.
     coupling: Sparse = bsr_array((mixed, mesh.corners, mesh.offsets), shape=shape)
-    faces = _block_diagonal(face_blocks)
+    faces, metric = _block_diagonal(face_blocks), sphere_metric(size, net)
+    moving = node_metric(size, net)[:, None, None] * np.eye(NODE)
 
     def _step(damping: float) -> DampedStep:
-        nodes = np.linalg.inv(node_blocks + damping * np.eye(NODE))
+        nodes = np.linalg.inv(node_blocks + damping * moving)
         inverse = _block_diagonal(np.asarray(nodes, np.float64))
         reduction = coupling @ inverse
         matrix = faces + damping * metric - reduction @ coupling.T

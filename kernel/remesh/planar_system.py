@@ -27,6 +27,9 @@ from ..tolerances import FLATTEST, NODE_EXACT
 FACE, POINT, NODE = 5, 3, 7
 """Unknowns of a face, of the point of a node, and of a node."""
 
+ALWAYS_PLANAR = 3
+"""Spheres of a node on the boundary that have a common axis whatever they are."""
+
 
 @dataclass(frozen=True)
 class Net:
@@ -40,7 +43,7 @@ class Net:
     shifts : (V, 3) float array
         Nodes, relative to the start.
     normals : (V, 4) float array
-        Common normal m of the ``(a A, N)`` around each interior node; zero on the boundary.
+        Common normal m of the ``(a A, N)`` around each node that shall be planar; else zero.
     """
 
     rows: FloatArray
@@ -61,8 +64,8 @@ class PlanarSystem:
         The net at the start.
     corners : (H, 3) float array
         Corners at the start, local to their face.
-    is_inner : (V,) bool array
-        Nodes that shall be planar; the others just lie on their spheres.
+    is_planar : (V,) bool array
+        Nodes that shall be planar; the others, on the boundary, just lie on their spheres.
     scales : (5,) float array
         Units ``(a, 1, 1, 1, 1)`` of the coefficients of a row; 1 / a is the curvature of the
         net, its root mean square.
@@ -71,7 +74,7 @@ class PlanarSystem:
     mesh: Mesh
     start: Net
     corners: FloatArray
-    is_inner: BoolArray
+    is_planar: BoolArray
     scales: FloatArray
 
 
@@ -134,15 +137,34 @@ def planar_system(sphere_mesh: SphereMesh) -> PlanarSystem:
     size = mean_edge_length(mesh)
     rows = rescale(sphere_mesh.local_spheres, 1 / size)
     corners = local_corners(mesh) / size
-    is_inner = ~topology.is_boundary_vertex
+    is_planar = must_be_planar(mesh)
     curvature = max(2 * float(np.sqrt((rows[:, 0] ** 2).mean())), FLATTEST)
     scales = np.array([1 / curvature, 1.0, 1.0, 1.0, 1.0])
     seen = rows[topology.corner_faces]
     arrows = np.concatenate([scales[0] * seen[:, :1], normals(seen, corners)], axis=1)
     gram = sum_blocks(mesh.corners, arrows[:, :, None] * arrows[:, None], mesh.n_vertices)
-    common = np.linalg.eigh(gram)[1][..., 0] * is_inner[:, None]
+    common = np.linalg.eigh(gram)[1][..., 0] * is_planar[:, None]
     start = Net(rows, np.zeros((mesh.n_vertices, 3)), common)
-    return PlanarSystem(mesh, start, corners, is_inner, scales)
+    return PlanarSystem(mesh, start, corners, is_planar, scales)
+
+
+def must_be_planar(mesh: Mesh) -> BoolArray:
+    """
+    Nodes whose beams need a common axis.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Returns
+    -------
+    (V,) bool array
+        Those inside; and on the boundary those of more than three faces, since the planes of
+        two beams always meet in a line.
+    """
+    has_many = np.bincount(mesh.corners, minlength=mesh.n_vertices) > ALWAYS_PLANAR
+    return ~mesh.topology.is_boundary_vertex | has_many
 
 
 def residuals(system: PlanarSystem, net: Net) -> Residuals:
@@ -167,7 +189,7 @@ def residuals(system: PlanarSystem, net: Net) -> Residuals:
     return Residuals(
         np.stack([evaluate(rows, points), tilt], axis=1),
         minkowski(net.rows, net.rows) - 1,
-        (dot(net.normals, net.normals) - 1) * system.is_inner,
+        (dot(net.normals, net.normals) - 1) * system.is_planar,
     )
 
 
@@ -242,7 +264,7 @@ def corner_jacobian(system: PlanarSystem, net: Net) -> CornerJacobian:
     by_node[:, 1, :3] = -2 * rows[:, :1] * axes
     by_node[:, 1, 3] = system.scales[0] * rows[:, 0]
     by_node[:, 1, 4:] = arrows
-    by_node[:, 1] *= system.is_inner[system.mesh.corners, None]
+    by_node[:, 1] *= system.is_planar[system.mesh.corners, None]
     return CornerJacobian(by_face, by_node)
 
 

@@ -20,15 +20,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
-from ..curvature import vertex_normals
 from ..errors import InputError
-from ..mesh import Mesh, local_corners, mean_edge_length
+from ..mesh import Mesh, face_vector_areas, local_corners, mean_edge_length
 from ..solvers.levenberg_marquardt import Status, levenberg_marquardt
 from ..sphere_mesh import SphereMesh
 from ..spheres import recenter, rescale
 from ..tolerances import DEGENERATE
-from .planar_steps import linearize, step_metric
-from .planar_system import Net, PlanarSystem, energies, move, planar_system
+from .planar_steps import linearize
+from .planar_system import Net, PlanarSystem, energies, move, must_be_planar, planar_system
+from .step_norm import step_norm
 
 STEPS = 60
 """Largest number of linear systems."""
@@ -65,15 +65,17 @@ class Nodes:
     Attributes
     ----------
     is_inner : (V,) bool array
-        Nodes inside the mesh; the others have none of what follows.
+        Nodes inside the mesh.
     planarity : (V,) float array
-        Fourth singular value of the rows seen from the node, relative to the first; zero on
-        the boundary and for less than four spheres.
+        Fourth singular value of the rows seen from the node, relative to the first; zero for
+        less than four spheres.
     axes : (V, 3) float array
-        Unit directions of the node axes, through both common points; NaN where there is none,
-        as on the boundary, where spheres share a circle, and where all of them are planes.
+        Unit directions of the node axes, through both common points; NaN where there is none:
+        where spheres share a circle or all of them are planes, and at the nodes of the
+        boundary with less than four faces.
     is_real : (V,) bool array
-        Whether the spheres meet in two real points, by least squares.
+        Whether the spheres meet in two real points, by least squares; False where the boundary
+        has no axis.
     """
 
     is_inner: BoolArray
@@ -120,11 +122,11 @@ def planarize(sphere_mesh: SphereMesh, fairness: float = 1.0) -> Planarization:
     if not (np.isfinite(fairness) and fairness >= 0):
         raise InputError(f"the fairness must not be negative, not {fairness}")
     system = planar_system(sphere_mesh)
-    metric = step_metric(system, fairness)
+    size = step_norm(system, fairness)
     descent = levenberg_marquardt(
         system.start,
         lambda net: energies(system, net),
-        lambda net: linearize(system, net, metric),
+        lambda net: linearize(system, net, size),
         move,
         tolerance=0.0,
         max_iterations=STEPS,
@@ -196,11 +198,11 @@ def _form(first: FloatArray, second: FloatArray) -> FloatArray:
 
 
 def _stars(mesh: Mesh) -> Iterator[tuple[IntArray, IntArray]]:
-    """Interior nodes (n,) of equal valence k > 2, with their corners (n, k)."""
+    """Nodes (n,) that must be planar, of equal valence k > 2, with their corners (n, k)."""
     valences = np.bincount(mesh.corners, minlength=mesh.n_vertices)
     order = np.argsort(mesh.corners, kind="stable")
     starts = np.cumsum(valences) - valences
-    valences = np.where(mesh.topology.is_boundary_vertex, 0, valences)
+    valences = np.where(must_be_planar(mesh), valences, 0)
     for valence in np.unique(valences[valences > 2]).tolist():
         nodes = np.flatnonzero(valences == valence)
         yield nodes, order[starts[nodes][:, None] + np.arange(valence)]
@@ -220,8 +222,15 @@ def axis_angles(sphere_mesh: SphereMesh, nodes: Nodes) -> FloatArray:
     Returns
     -------
     (V,) float array
-        Radians from 0 to π/2; NaN where there is no axis.
+        Radians from 0 to π/2; NaN where there is no axis, or no normal since faces fold back.
+
+    Notes
+    -----
+    The normals are sums of the vector areas of faces: nets that went wrong have them as well.
     """
-    normals = vertex_normals(sphere_mesh.mesh)
+    mesh = sphere_mesh.mesh
+    areas = face_vector_areas(mesh)[mesh.topology.corner_faces]
+    normals = unit(sum_by(mesh.corners, areas, mesh.n_vertices))
     across = norm(np.cross(nodes.axes, normals))
-    return np.arctan2(across, np.abs(dot(nodes.axes, normals)))
+    angles = np.arctan2(across, np.abs(dot(nodes.axes, normals)))
+    return np.where(norm(normals) > 0, angles, np.nan)

@@ -1,11 +1,12 @@
 """Meshes to start from: read from files, or exactly circular nets."""
 
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from ...fabrication import mesh_files
-from ...kernel import surfaces
+from ...kernel import surfaces, triangulated
+from ...kernel.arrays import FloatArray
 from ...kernel.mesh import Mesh
 from ...kernel.sphere_mesh import SphereMesh
 from ..node import node
@@ -13,6 +14,13 @@ from ..ports import Port, ReadPath, WritePath
 
 Count = Annotated[int, Port(min=1, max=2000)]
 Length = Annotated[float, Port(min=0)]
+
+
+class SampledSurface(NamedTuple):
+    """A triangle mesh on a smooth surface, and the normals of that surface."""
+
+    mesh: Mesh
+    normals: FloatArray
 
 
 @node
@@ -201,3 +209,32 @@ def roof_mesh(n_span: Count = 24, n_length: Count = 60, length: Length = 80.0) -
         Quadrilaterals with exact circumcircles, of both signs of Gaussian curvature.
     """
     return surfaces.roof_net(n_span, n_length, length)
+
+
+@node
+def triangulated_surface(
+    shape: triangulated.SampleShape = "bump",
+    edge_length: Annotated[float, Port(min=0)] = 0.1,
+    seed: int | None = None,
+) -> SampledSurface:
+    """
+    A triangulated sample surface with exact normals, to try remeshing on.
+
+    Parameters
+    ----------
+    shape : {"torus", "annulus", "hypar", "bump", "ellipsoid", "waves"}
+        A torus, a ring of revolution, a saddle, a hill, a triaxial ellipsoid without its
+        poles, a wavy sheet; all measure about 2.
+    edge_length : float
+        Mean length of the edges along the parameter lines.
+    seed : int, optional
+        Moves the vertices along the surface at random; a regular grid without.
+
+    Returns
+    -------
+    mesh : Mesh
+        Triangles.
+    normals : (V, 3) float array
+        Unit normals of the smooth surface.
+    """
+    return SampledSurface(*triangulated.triangulated_surface(shape, edge_length, seed))

@@ -1,19 +1,17 @@
 """Nets of spheres with a support structure, along the conjugate directions of a congruence."""
 
-from collections import Counter
 from collections.abc import Mapping
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from ...kernel import triangulated
 from ...kernel.arrays import BoolArray, FloatArray, IntArray
 from ...kernel.errors import ConvergenceError, name_ids
 from ...kernel.mesh import Mesh, mean_edge_length
-from ...kernel.remesh import directions, pipeline, relax
-from ...kernel.remesh.planarize import Nodes, axis_angles, measure_nodes, planarize
+from ...kernel.remesh import directions, pipeline, relax, reports
+from ...kernel.remesh.planarize import measure_nodes, planarize
 from ...kernel.remesh.relax import CongruenceQuality
-from ...kernel.sphere_mesh import SphereMesh, vertex_error
+from ...kernel.sphere_mesh import SphereMesh
 from ...kernel.tolerances import NODE_ON_SPHERES, TORSION_FREE
 from ..node import node, warn
 from ..ports import Port
@@ -21,15 +19,14 @@ from ..ports import Port
 COMPLEX_SHARE = 0.05
 """A share of the area with complex directions that is worth a warning."""
 
+LEANING = 30.0
+"""Angle of the node axes with the normals, in degrees, that is worth a warning."""
+
+SHORT_EDGE = 0.2
+"""Length of an edge, relative to the mean, that is worth a warning."""
+
 Degree = Annotated[int, Port(min=2, max=6)]
 Rings = Annotated[int, Port(min=1, max=10)]
-
-
-class SampledSurface(NamedTuple):
-    """A triangle mesh on a smooth surface, and the normals of that surface."""
-
-    mesh: Mesh
-    normals: FloatArray
 
 
 class Directions(NamedTuple):
@@ -45,35 +42,6 @@ class Remeshed(NamedTuple):
 
     sphere_mesh: SphereMesh
     report: Mapping[str, Any]
-
-
-@node
-def triangulated_surface(
-    shape: triangulated.SampleShape = "bump",
-    edge_length: Annotated[float, Port(min=0)] = 0.1,
-    seed: int | None = None,
-) -> SampledSurface:
-    """
-    A triangulated sample surface with exact normals, to try remeshing on.
-
-    Parameters
-    ----------
-    shape : {"torus", "annulus", "hypar", "bump", "ellipsoid", "waves"}
-        A torus, a ring of revolution, a saddle, a hill, a triaxial ellipsoid without its
-        poles, a wavy sheet; all measure about 2.
-    edge_length : float
-        Mean length of the edges along the parameter lines.
-    seed : int, optional
-        Moves the vertices along the surface at random; a regular grid without.
-
-    Returns
-    -------
-    mesh : Mesh
-        Triangles.
-    normals : (V, 3) float array
-        Unit normals of the smooth surface.
-    """
-    return SampledSurface(*triangulated.triangulated_surface(shape, edge_length, seed))
 
 
 @node
@@ -109,13 +77,13 @@ def conjugate_directions(
     """
     found = directions.conjugate_directions(mesh, spheres, degree, rings)
     _warn_complex(found.complex_share)
-    radii = _radii(found.curvatures)
+    radii = reports.sphere_radii(found.curvatures)
     report = {
         "complex_share": found.complex_share,
         "singular": _singular(found.singular, found.indices),
-        "node_axis_deg": _axis_angles(found.axis_angles),
-        "radius_to_edge": _radius_report(radii / mean_edge_length(mesh)),
-        "largest_edge": _finite(np.sqrt(2) * np.quantile(radii, 0.05, method="lower")),
+        "node_axis_deg": reports.angle_report(found.axis_angles),
+        "radius_to_edge": reports.radius_report(radii / mean_edge_length(mesh)),
+        "largest_edge": reports.finite(np.sqrt(2) * np.quantile(radii, 0.05, method="lower")),
     }
     return Directions(found.directions, found.is_real, report)
 
@@ -129,6 +97,7 @@ def p4_remesh(
     least_angle: Annotated[float, Port(unit="deg", min=0, max=80)] = 20.0,
     degree: Degree = 5,
     rings: Rings = 3,
+    fairness: Annotated[float, Port(min=0)] = 1.0,
 ) -> Remeshed:
     """
     Remesh a congruence of spheres by quadrilaterals along its conjugate directions.
@@ -149,6 +118,8 @@ def p4_remesh(
         Degree of the polynomials that are fitted to the spheres; 3 for noisy spheres.
     rings : int
         Rings of neighbours that they are fitted to; 5 for noisy spheres.
+    fairness : float
+        As in `planarize_p4`, which ends the remeshing.
 
     Returns
     -------
@@ -171,6 +142,7 @@ def p4_remesh(
         mesh, spheres, edge_length, smoothing, float(np.radians(least_angle)), degree, rings
     )
     _warn_complex(done.complex_share)
+    _warn_of_nodes(done, edge_length)
     if done.moved_share > 0:
         warn(
             f"on {_percent(done.moved_share)} of the area the smoothed directions are complex "
@@ -187,45 +159,13 @@ def p4_remesh(
             f"the mesh, with edges of {mean_edge_length(mesh):.3g}, is coarser than the net: "
             "subdivide it"
         )
-    report = _report(done, edge_length)
+    report = reports.remeshing_report(done, edge_length)
     try:
-        planar = _planarized(done.sphere_mesh)
+        planar = _planarized(done.sphere_mesh, fairness)
     except ConvergenceError as error:
         warn(f"the net keeps some torsion: {error}")
         return Remeshed(done.sphere_mesh, {**report, "planarized": None})
     return Remeshed(planar.sphere_mesh, {**report, "planarized": planar.report})
-
-
-def _report(done: pipeline.Remeshing, edge_length: float) -> dict[str, Any]:
-    degrees: Counter[int] = Counter(done.sphere_mesh.mesh.degrees.tolist())
-    return {
-        "faces": {
-            "count": done.sphere_mesh.mesh.n_faces,
-            "degrees": {str(degree): degrees[degree] for degree in sorted(degrees)},
-        },
-        "irregular_nodes": done.n_irregular,
-        "singular": [
-            {"point": point, "half_turns": index}
-            for point, index in zip(
-                done.singular_points.tolist(), done.indices.tolist(), strict=True
-            )
-        ],
-        "complex_share": done.complex_share,
-        "moved_share": done.moved_share,
-        "edges": {
-            "target": float(edge_length),
-            "mean": mean_edge_length(done.sphere_mesh.mesh),
-            "min": done.shortest_edge,
-        },
-        "folded": done.n_folded,
-        "flipped": done.n_flipped,
-        "aligned_sides": done.n_aligned,
-        "contracted_edges": done.n_contracted,
-        "lost_cells": done.n_slivers,
-        "digons": done.n_digons,
-        "node_axis_deg": _axis_angles(done.axis_angles),
-        "radius_to_edge": _radius_report(_radii(done.curvatures) / edge_length),
-    }
 
 
 def _warn_complex(share: float) -> None:
@@ -237,31 +177,28 @@ def _warn_complex(share: float) -> None:
         )
 
 
+def _warn_of_nodes(done: pipeline.Remeshing, edge_length: float) -> None:
+    """Whether nodes will be real, and their axes upright."""
+    smallest = edge_length / np.sqrt(2)
+    radii = reports.sphere_radii(done.curvatures)
+    small = float((radii < smallest).mean())
+    if small > 0:
+        warn(
+            f"the spheres at {_percent(small)} of the vertices have radii below "
+            f"{smallest:.3g}, 0.71 edges: around a node they do not meet; choose larger "
+            f"spheres, or an edge length of {np.sqrt(2) * radii.min():.3g} at most"
+        )
+    lean = reports.angle_report(done.axis_angles)["p95"]
+    if lean is not None and lean > LEANING:
+        warn(
+            f"node axes will lean from the normals, by more than {lean:.3g} degrees at 5 % of "
+            "the vertices: beams lie down; relax_congruence sets them up"
+        )
+
+
 def _singular(vertices: IntArray, indices: IntArray) -> list[dict[str, int]]:
     pairs = zip(vertices.tolist(), indices.tolist(), strict=True)
     return [{"vertex": vertex, "half_turns": index} for vertex, index in pairs]
-
-
-def _axis_angles(angles: FloatArray) -> dict[str, float | None]:
-    known = np.degrees(angles[np.isfinite(angles)])
-    if len(known) == 0:
-        return {"median": None, "p95": None, "max": None}
-    median, p95, largest = np.quantile(known, [0.5, 0.95, 1.0]).tolist()
-    return {"median": median, "p95": p95, "max": largest}
-
-
-def _radii(curvatures: FloatArray) -> FloatArray:
-    with np.errstate(divide="ignore"):
-        return 1 / np.abs(curvatures)
-
-
-def _radius_report(radii: FloatArray) -> dict[str, float | None]:
-    ordered = np.sort(radii)
-    return {"min": _finite(ordered[0]), "median": _finite(ordered[len(ordered) // 2])}
-
-
-def _finite(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
 
 
 def _percent(share: float) -> str:
@@ -298,60 +235,47 @@ def planarize_p4(
     report : mapping
         ``status``, ``iterations``; ``planarity`` (largest fourth singular
         value of the spheres around a node, relative to the first), ``corner_gap`` (largest
-        distance of a node from its spheres, in mean edges) and ``real_nodes`` (share of the
-        interior nodes whose spheres meet in two real points), each ``before`` and ``after``;
-        ``axis_angles_deg`` (``p95`` and ``max`` of the angles between node axes and normals,
-        null if there is no axis), ``moved`` (``max`` and ``mean`` over the nodes, in mean
-        edges) and ``nodes_without_axis`` (ids).
+        distance of a node from its spheres, in mean edges), ``real_nodes`` (share of the
+        interior nodes whose spheres meet in two real points) and ``shortest_edge`` (in mean
+        edges), each ``before`` and ``after``; ``axis_angles_deg`` (``p95`` and ``max`` of the
+        angles between node axes and normals, null if there is no axis), ``moved`` (``max`` and
+        ``mean`` over the nodes, in mean edges), ``nodes_without_axis`` and ``turned_faces``
+        (ids; faces that were turned over).
     """
     return _planarized(sphere_mesh, fairness)
 
 
-def _planarized(sphere_mesh: SphereMesh, fairness: float = 1.0) -> Planarized:
+def _planarized(sphere_mesh: SphereMesh, fairness: float) -> Planarized:
     result = planarize(sphere_mesh, fairness)
-    nodes = measure_nodes(result.sphere_mesh)
-    before = _quality(sphere_mesh, measure_nodes(sphere_mesh))
-    after = _quality(result.sphere_mesh, nodes)
-    if after["planarity"] > TORSION_FREE or after["corner_gap"] > NODE_ON_SPHERES:
-        worst = np.argsort(-nodes.planarity, kind="stable")[:3].tolist()
+    report = reports.planarization_report(sphere_mesh, result)
+    planarity, gap = report["planarity"], report["corner_gap"]
+    if planarity["after"] > TORSION_FREE or gap["after"] > NODE_ON_SPHERES:
+        worst = np.argsort(-measure_nodes(result.sphere_mesh).planarity, kind="stable")
         raise ConvergenceError(
             f"the nodes are not free of torsion after {result.iterations} steps: "
-            f"planarity {after['planarity']:.1e} (from {before['planarity']:.1e}), worst at "
-            f"vertices {name_ids(worst)}; try more fairness, a finer net of conjugate "
-            "directions, or relax the congruence first"
+            f"planarity {planarity['after']:.1e} (from {planarity['before']:.1e}), worst at "
+            f"vertices {name_ids(worst[:3].tolist())}; try more fairness, a finer net of "
+            "conjugate directions, or relax the congruence first"
         )
-    angles = np.degrees(axis_angles(result.sphere_mesh, nodes))
-    lost = np.flatnonzero(nodes.is_inner & np.isnan(angles)).tolist()
-    if lost:
-        warn(
-            f"the nodes at vertices {name_ids(lost)} have no axis: their spheres share a "
-            "circle (then try more fairness), or all of them are planes"
-        )
-    report = {
-        "status": result.status,
-        "iterations": result.iterations,
-        **{key: {"before": before[key], "after": after[key]} for key in before},
-        "axis_angles_deg": _spread(angles[np.isfinite(angles)]),
-        "moved": {"max": float(result.shifts.max()), "mean": float(result.shifts.mean())},
-        "nodes_without_axis": lost,
-    }
+    _warn_of_damage(report)
     return Planarized(result.sphere_mesh, report)
 
 
-def _quality(sphere_mesh: SphereMesh, nodes: Nodes) -> dict[str, float]:
-    gap = vertex_error(sphere_mesh).max() / mean_edge_length(sphere_mesh.mesh)
-    is_real = nodes.is_real[nodes.is_inner]
-    return {
-        "planarity": float(nodes.planarity.max()),
-        "corner_gap": float(gap),
-        "real_nodes": float(is_real.mean()) if len(is_real) else 1.0,
-    }
-
-
-def _spread(angles: FloatArray) -> dict[str, float | None]:
-    if len(angles) == 0:
-        return {"p95": None, "max": None}
-    return {"p95": float(np.percentile(angles, 95)), "max": float(angles.max())}
+def _warn_of_damage(report: Mapping[str, Any]) -> None:
+    """What planar nodes cost."""
+    if report["nodes_without_axis"]:
+        warn(
+            f"the nodes at vertices {name_ids(report['nodes_without_axis'])} have no axis: "
+            "their spheres share a circle (then try more fairness), or all of them are planes"
+        )
+    shortest = report["shortest_edge"]["after"]
+    if shortest < SHORT_EDGE or report["turned_faces"]:
+        warn(
+            f"the shortest edge measures {shortest:.2g} of the mean, and the number of faces "
+            f"that turned over is {len(report['turned_faces'])}: nodes moved by up to "
+            f"{report['moved']['max']:.2g} edges to become planar; larger spheres of more even "
+            "size need smaller moves, and singular points close to each other a coarser net"
+        )
 
 
 class Relaxed(NamedTuple):
