@@ -40,13 +40,13 @@ $(INSTALLED):
 	@$(BIN)/python -m pip install -qq -e . --group dev
 	@rm -f .venv/installed-* && touch $@
 
-# OCP (the STEP kernel) needs two system libraries on Linux that slim images lack.
+# OCP (the kernel of CadQuery) needs two system libraries on Linux that slim images lack.
 system: install
 	@$(BIN)/python -c 'import OCP.gp' 2>/dev/null || { \
 	  if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
 	    apt-get update -q && apt-get install -q -y libgl1 libx11-6; \
 	  else \
-	    echo 'STEP files need libGL.so.1 and libX11.so.6: install the packages libgl1 and libx11-6 (Debian, Ubuntu) or mesa-libGL and libX11 (Fedora).' >&2; \
+	    echo 'CadQuery objects and the tests need libGL.so.1 and libX11.so.6: install the packages libgl1 and libx11-6 (Debian, Ubuntu) or mesa-libGL and libX11 (Fedora).' >&2; \
 	  fi; }
 
 clean:
