@@ -1,9 +1,10 @@
 """
 What remeshing along conjugate directions reaches.
 
-    python benchmarks/remeshing.py [directions | regular | singular | speed | complex]
+    python benchmarks/remeshing.py [directions | noise | regular | singular | speed | complex]
 """
 
+import itertools
 import sys
 import time
 import warnings
@@ -11,14 +12,20 @@ from collections import Counter
 from collections.abc import Callable
 
 import numpy as np
+from scipy.spatial import KDTree
 
-from spheremesh import Mesh
-from spheremesh.kernel.arrays import FloatArray, norm, unit
+from spheremesh import Mesh, SphereMesh
+from spheremesh.kernel.arrays import FloatArray, IntArray, norm, unit
 from spheremesh.kernel.congruence import touching_spheres
-from spheremesh.kernel.mesh import face_centroids, mean_edge_length
+from spheremesh.kernel.cutting import cut_panels
+from spheremesh.kernel.mesh import mean_edge_length
 from spheremesh.kernel.remesh.conjugate import form_roots, split_form
 from spheremesh.kernel.remesh.directions import conjugate_directions
+from spheremesh.kernel.remesh.held_nets import planarize_held
 from spheremesh.kernel.remesh.pipeline import Remeshing, remesh
+from spheremesh.kernel.remesh.planarize import axis_angles, measure_nodes
+from spheremesh.kernel.sphere_mesh import vertex_error
+from spheremesh.kernel.tessellation import tessellate
 from spheremesh.kernel.triangulated import (
     SHAPES,
     SampleShape,
@@ -213,15 +220,17 @@ def principal_frames(shape: SampleShape, edge: float) -> tuple[FloatArray, Float
     return unit(lines), mean
 
 
-def directions() -> None:
+DIRECTIONS: tuple[tuple[SampleShape, str], ...] = (
+    ("torus", "constant"), ("hypar", "constant"), ("bump", "constant"),
+    ("annulus", "constant"), ("ellipsoid", "constant"), ("hypar", "plane"),
+    ("bump", "plane"), ("annulus", "plane"), ("torus", "central"), ("annulus", "central"),
+    ("ellipsoid", "central"),
+)  # fmt: skip
+
+
+def directions(noises: tuple[float, ...] = (0.0,)) -> None:
     """Angles between computed directions and curvature lines, on meshes with edges of 0.1."""
-    cases: list[tuple[SampleShape, str]] = [
-        ("torus", "constant"), ("hypar", "constant"), ("bump", "constant"),
-        ("annulus", "constant"), ("ellipsoid", "constant"), ("hypar", "plane"),
-        ("bump", "plane"), ("annulus", "plane"), ("torus", "central"), ("annulus", "central"),
-        ("ellipsoid", "central"),
-    ]  # fmt: skip
-    for shape, kind in cases:
+    for (shape, kind), noise in itertools.product(DIRECTIONS, noises):
         mesh, normals = triangulated_surface(shape, 0.1, seed=1)
         lines, mean = principal_frames(shape, 0.1)
         curvatures = {
@@ -229,7 +238,11 @@ def directions() -> None:
             "plane": -(1 + normals[:, 2]) / (mesh.vertices[:, 2] + 3),
             "central": mean,
         }[kind]
-        found = conjugate_directions(mesh, touching_spheres(mesh.vertices, normals, curvatures))
+        moves = noise * np.random.default_rng(3).normal(size=(2, *normals.shape))
+        points = mesh.vertices + mean_edge_length(mesh) * moves[0]
+        spheres = touching_spheres(points, unit(normals + moves[1]), curvatures)
+        moved = Mesh(points, mesh.corners.reshape(-1, 3))
+        found = conjugate_directions(moved, spheres)
         sines = [
             norm(np.cross(found.directions, order)).max(1) for order in (lines, lines[:, ::-1])
         ]
@@ -237,21 +250,63 @@ def directions() -> None:
         inner = ~mesh.topology.is_boundary_vertex
         axes = np.degrees(found.axis_angles)
         print(
-            f"{shape:10s}{kind:9s} error median {np.median(errors[inner]):.4f}  "
-            f"p95 {np.quantile(errors[inner], 0.95):.3f}  with boundary p95 "
-            f"{np.quantile(errors, 0.95):.3f} degrees  "
+            f"{shape:10s}{kind:9s} noise {noise:<7g}degree {found.degree}  error median "
+            f"{np.median(errors[inner]):.4f}  p95 {np.quantile(errors[inner], 0.95):.3f}  with "
+            f"boundary p95 {np.quantile(errors, 0.95):.3f} degrees  "
             f"complex {100 * found.complex_share:.2f} %  "
             f"node axes p95 {np.nanquantile(axes, 0.95):.1f} degrees"
         )
 
 
+def noise() -> None:
+    """The same with noise of points (in mean edges) and normals (in radians)."""
+    directions((1e-5, 1e-4, 1e-3))
+
+
+REGULAR: tuple[tuple[SampleShape, float, float], ...] = (
+    ("annulus", 0.5, 0.12), ("annulus", 1.5, 0.08), ("hypar", 0.5, 0.12), ("hypar", 0.5, 0.06),
+    ("bump", 0.5, 0.12), ("bump", 0.5, 0.06), ("torus", -0.5, 0.2), ("torus", -1.1, 0.15),
+)  # fmt: skip
+"""Shapes, signed radii of the spheres and edge lengths."""
+
+
 def regular() -> None:
-    """Nets of constant radius on simple surfaces: regularity and distance to the surface."""
-    for shape, offset, edge in (
-        ("torus", -0.5, 0.2), ("annulus", 0.5, 0.12), ("hypar", 0.5, 0.12), ("bump", 0.5, 0.12)
-    ):  # fmt: skip
+    """Nets of constant radius on simple surfaces: regular, planar, on the surface."""
+    for shape, offset, edge in REGULAR:
         done, _ = timed(triangulated_surface(shape, 0.05, seed=1), offset, edge)
-        print(f"{shape:10s}{net_figures(done)}  {distances(shape, done, edge)}")
+        run, is_held = planarize_held(done.sphere_mesh, done.surface)
+        net, nodes = run.sphere_mesh, measure_nodes(run.sphere_mesh)
+        mean = mean_edge_length(net.mesh)
+        angles = np.degrees(axis_angles(net, nodes)[nodes.is_inner])
+        away = norm(net.mesh.vertices - feet(shape, net.mesh.vertices)) / mean
+        print(f"{shape:10s}radius {offset}  {net_figures(done)}")
+        print(
+            f"    planarity {nodes.planarity.max():.0e}  corner gap "
+            f"{vertex_error(net).max() / mean:.0e}  real nodes "
+            f"{100 * nodes.is_real[nodes.is_inner].mean():.0f} %  axes p95 "
+            f"{np.percentile(angles, 95):.2f} deg  nodes to surface "
+            f"{away[nodes.is_inner].max():.0e} edge  {run.iterations} steps  held {is_held}"
+        )
+        print(f"    {distances(shape, net)}", flush=True)
+
+
+def feet(shape: SampleShape, points: FloatArray) -> FloatArray:
+    """Nearest points of the smooth surface, by Gauss-Newton steps of the parameters."""
+    chosen = SHAPES[shape]
+    u, v, _ = parameter_grid(chosen, grid_counts(chosen, 0.05), None)
+    near = KDTree(chosen.patch(u, v).points).query(points)[1]
+    u, v = u[near], v[near]
+    for _ in range(8):
+        patch = chosen.patch(u, v)
+        tangents = np.stack([patch.along_u, patch.along_v], 1)
+        slopes = tangents @ (points - patch.points)[..., None]
+        step = np.linalg.solve(tangents @ tangents.transpose(0, 2, 1), slopes)[..., 0]
+        u, v = u + step[:, 0], v + step[:, 1]
+        if not chosen.closed[0]:
+            u = np.clip(u, chosen.low[0], chosen.high[0])
+        if not chosen.closed[1]:
+            v = np.clip(v, chosen.low[1], chosen.high[1])
+    return chosen.patch(u, v).points
 
 
 def triangulate(mesh: Mesh) -> Mesh:
@@ -260,25 +315,25 @@ def triangulate(mesh: Mesh) -> Mesh:
     return Mesh(mesh.vertices, fans)
 
 
-def distances(shape: SampleShape, done: Remeshing, edge: float) -> str:
-    """Largest distances of nodes to the surface, and of the surface to the flat faces."""
+def distances(shape: SampleShape, net: SphereMesh) -> str:
+    """Largest distances, both ways, between the surface and the flat and spherical faces."""
     import igl
 
-    fine, _ = triangulated_surface(shape, 0.02)
-    net = triangulate(done.sphere_mesh.mesh)
+    fine, mean = triangulated_surface(shape, 0.02)[0].vertices, mean_edge_length(net.mesh)
 
-    def _largest(points: FloatArray, mesh: Mesh) -> float:
-        faces = mesh.corners.reshape(-1, 3)
-        squares = igl.point_mesh_squared_distance(points, mesh.vertices, faces)[0]
-        return 100 * float(np.sqrt(np.max(squares))) / edge
+    def _both(points: FloatArray, triangles: IntArray) -> str:
+        corners = points[triangles]
+        inside = np.concatenate([corners.mean(1), (corners[:, 0] + corners[:, 2]) / 2])
+        there = norm(inside - feet(shape, inside)).max()
+        back = np.sqrt(igl.point_mesh_squared_distance(fine, points, triangles)[0].max())
+        return f"to surface {100 * there / mean:.2f} %, back {100 * back / mean:.2f} %"
 
-    inside = ~done.sphere_mesh.mesh.topology.is_boundary_vertex
-    nodes = done.sphere_mesh.mesh.vertices[inside]
-    centers = face_centroids(net)
+    flat = triangulate(net.mesh)
+    panels, rejected = cut_panels(net, "intersection")
+    curved = tessellate(panels, 1e-3)
     return (
-        f"nodes to surface {_largest(nodes, fine):.2f} % of the edge, flat faces to surface "
-        f"{_largest(centers, fine):.2f} %, surface to flat faces "
-        f"{_largest(fine.vertices, net):.2f} %"
+        f"flat faces {_both(flat.vertices, flat.corners.reshape(-1, 3))}; spherical faces "
+        f"{_both(curved.points + curved.origin, curved.triangles)}, {len(rejected)} rejected"
     )
 
 
@@ -317,9 +372,9 @@ def complex_directions() -> None:
     print("\n".join(f"  {entry.message}" for entry in caught))
 
 
-PARTS = {
-    "directions": directions, "regular": regular, "singular": singular, "speed": speed,
-    "complex": complex_directions,
+PARTS: dict[str, Callable[[], None]] = {
+    "directions": directions, "noise": noise, "regular": regular, "singular": singular,
+    "speed": speed, "complex": complex_directions,
 }  # fmt: skip
 
 if __name__ == "__main__":

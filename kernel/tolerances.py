@@ -183,8 +183,8 @@ OFFSET_STEP: Final = 1e-6
 FAR_CORNER: Final = 0.6
 """A corner farther from its triangle than this share of the longest side is worth a warning."""
 
-JET_RANK: Final = 1e-11
-"""Squared singular values of a polynomial fit below this, relative to the largest: noise."""
+JET_RANK: Final = 1e-14
+"""How much it counts that the coefficients of a polynomial are small, relative to its fit."""
 
 LEAST_STIFFNESS: Final = 1e-3
 """Least weight of an edge or a vertex in the smoothing of a field, relative to the ordinary."""
@@ -212,3 +212,6 @@ SINGLE_IS_ENOUGH: Final = 0.01
 
 ALIKE: Final = 1e-3
 """Squared differences of neighbours below this, relative to the mean, count no smaller."""
+
+ON_SURFACE: Final = 1e-2
+"""Nodes this close to a surface, in mean edges of their net, lie on it."""

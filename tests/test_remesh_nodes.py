@@ -70,6 +70,12 @@ def test_a_net_and_its_report() -> None:
     assert report["edges"]["mean"] == pytest.approx(0.25, rel=0.1)
     assert 0 < report["edges"]["min"] < report["edges"]["mean"]
     assert report["radius_to_edge"]["min"] == pytest.approx(2)
+    assert report["planarized"]["planarity"]["after"] < 1e-8
+    assert report["planarized"]["corner_gap"]["after"] < 1e-6
+    assert report["planarized"]["real_nodes"]["after"] == 1
+    assert report["distance"]["nodes"] < 1e-3
+    assert report["distance"]["boundary_nodes"] < 0.03
+    assert 0.01 < report["distance"]["panels_p95"] <= report["distance"]["panels"] < 0.3
 
 
 def test_complex_directions_are_said_with_their_share() -> None:

@@ -37,6 +37,8 @@ class ConjugateDirections:
         where the congruence fixes no axis, as planes.
     curvatures : (V,) float array
         Signed curvatures of the spheres, in inverse model units.
+    degree : int
+        Degree of the polynomials that were fitted to the spheres.
     """
 
     directions: FloatArray
@@ -46,10 +48,11 @@ class ConjugateDirections:
     indices: IntArray
     axis_angles: FloatArray
     curvatures: FloatArray
+    degree: int
 
 
 def conjugate_directions(
-    mesh: Mesh, spheres: ArrayLike, degree: int = 5, rings: int = 3
+    mesh: Mesh, spheres: ArrayLike, degree: int | None = None, rings: int = 4
 ) -> ConjugateDirections:
     """
     Directions in which neighbouring spheres of an SQ-mesh with support structure follow.
@@ -60,8 +63,9 @@ def conjugate_directions(
         A connected triangle mesh.
     spheres : (V, 5) array_like of float
         A real sphere or plane for every vertex, in model coordinates.
-    degree : int
-        Degree of the polynomials that are fitted to the spheres.
+    degree : int, optional
+        Degree of the polynomials that are fitted to the spheres, from 2 to 7; by default the
+        one with the least expected error.
     rings : int
         Rings of neighbours that they are fitted to.
 
@@ -80,12 +84,12 @@ def conjugate_directions(
     Meshes with Spherical Faces, Sec. 6.4, eq. (12).
     """
     surface = congruence_mesh(mesh, spheres)
-    jets, slopes = fit_jets(surface, degree, rings)
+    jets, heights, fitted = fit_jets(surface, degree, rings)
     trace, deviator = conjugate_field(jets)
     first, second, is_real = form_roots(trace, deviator)
     angles = np.stack([first, second], 1)[..., None]
     frames = surface.vertex_frames
-    tangents = frames[:, :2] + slopes[..., None] * frames[:, 2:]
+    tangents = frames[:, :2] + heights[:, 1:3, None] * frames[:, 2:]
     directions = unit(
         np.cos(angles) * tangents[:, None, 0] + np.sin(angles) * tangents[:, None, 1]
     )
@@ -95,7 +99,7 @@ def conjugate_directions(
     return ConjugateDirections(
         directions, is_real, float(areas[~is_real].sum() / areas.sum()), singular,
         indices[singular], axis_angles(surface, jets),
-        2 * surface.rows[:, 0] / surface.size,
+        2 * surface.rows[:, 0] / surface.size, fitted,
     )  # fmt: skip
 
 

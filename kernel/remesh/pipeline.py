@@ -1,7 +1,6 @@
 """From a sphere congruence to a net of spheres that can have a support structure (Sec. 6.4)."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,6 +20,7 @@ from .jets import fit_jets
 from .net_mesh import NetMesh, net_mesh
 from .parametrization import parametrize
 from .seams import find_seams
+from .smooth_surface import SmoothSurface, nearest_triangles
 
 LEAST_CELLS = 4
 """A surface with room for fewer faces is smaller than the edge length."""
@@ -63,6 +63,10 @@ class Remeshing:
         Angles of the normals with the expected node axes at the given vertices, in radians.
     curvatures : (V',) float array
         Signed curvatures of the given spheres, in inverse model units.
+    degree : int
+        Degree of the polynomials that were fitted to the spheres.
+    surface : SmoothSurface
+        The surface between the given vertices.
     """
 
     sphere_mesh: SphereMesh
@@ -80,6 +84,8 @@ class Remeshing:
     n_digons: int
     axis_angles: FloatArray
     curvatures: FloatArray
+    degree: int
+    surface: SmoothSurface
 
 
 def remesh(
@@ -88,8 +94,8 @@ def remesh(
     edge_length: float,
     smoothing: float = 0.5,
     least_angle: float = np.radians(20),
-    degree: int = 5,
-    rings: int = 3,
+    degree: int | None = None,
+    rings: int = 4,
 ) -> Remeshing:
     """
     Remesh a sphere congruence along its conjugate directions.
@@ -106,8 +112,9 @@ def remesh(
         Distance over which uncertain directions are smoothed, in edge lengths.
     least_angle : float
         Directions that meet at less, or are complex, are moved apart to it, in radians.
-    degree : int
-        Degree of the polynomials that are fitted to the spheres.
+    degree : int, optional
+        Degree of the polynomials that are fitted to the spheres, from 2 to 7; by default the
+        one with the least expected error.
     rings : int
         Rings of neighbours that they are fitted to.
 
@@ -129,7 +136,7 @@ def remesh(
     """
     surface = congruence_mesh(mesh, spheres)
     step = _checked_step(surface, edge_length)
-    jets, _ = fit_jets(surface, degree, rings)
+    jets, heights, fitted = fit_jets(surface, degree, rings)
     trace, deviator = conjugate_field(jets)
     is_real = form_roots(trace, deviator)[2]
     fans = vertex_fans(surface)
@@ -160,6 +167,8 @@ def remesh(
         n_digons=built.n_digons,
         axis_angles=axis_angles(surface, jets),
         curvatures=2 * surface.rows[:, 0] / surface.size,
+        degree=fitted,
+        surface=SmoothSurface(surface, heights),
     )
 
 
@@ -210,27 +219,12 @@ def _checked_step(surface: CongruenceMesh, edge_length: float) -> float:
 
 def _interpolated(surface: CongruenceMesh, built: NetMesh) -> SphereMesh:
     """Spheres of the congruence at the points of the triangles nearest to the face centres."""
-    import igl  # pyright: ignore[reportMissingTypeStubs]
-
     centers = face_centroids(built.mesh)
-    nearest: Any = igl.point_mesh_squared_distance  # pyright: ignore[reportUnknownMemberType, reportUnknownVariableType]
-    _, triangles, feet = nearest(centers, surface.points, surface.triangles)
-    vertices = surface.triangles[np.asarray(triangles, np.int64)]
+    vertices, weights = nearest_triangles(surface, centers)
     corners = surface.points[vertices]
-    weights = _barycentric(np.asarray(feet, np.float64), corners)
     rows = recenter(surface.rows[vertices], centers[:, None] - corners)
     mixed = np.einsum("fc,fcr->fr", weights, rows)
     mixed /= np.sqrt(minkowski(mixed, mixed))[:, None]
     points = surface.origin + surface.size * built.mesh.vertices
     mesh = Mesh(points, built.mesh.faces)
     return SphereMesh.from_local(mesh, rescale(mixed, surface.size))
-
-
-def _barycentric(points: FloatArray, corners: FloatArray) -> FloatArray:
-    """Barycentric coordinates (n, 3) of points in their triangles (n, 3, 3)."""
-    opposite = np.roll(corners, -1, axis=1) - points[:, None]
-    other = np.roll(corners, -2, axis=1) - points[:, None]
-    sides = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    normal = np.cross(*sides)
-    areas = np.einsum("nci,ni->nc", np.cross(opposite, other), normal)
-    return areas / areas.sum(axis=1, keepdims=True)

@@ -56,8 +56,11 @@ def linearize(system: PlanarSystem, net: Net, size: StepNorm) -> Callable[[float
 
     mesh = system.mesh
     jacobian, miss = corner_jacobian(system, net), residuals(system, net)
+    held = system.site(net.shifts).slopes
     face_blocks, node_blocks = _diagonal_blocks(system, net, jacobian)
+    node_blocks[:, :POINT, :POINT] += held.transpose(0, 2, 1) @ held
     face_slope, node_slope = _slopes(system, net, jacobian, miss)
+    node_slope.reshape(-1, NODE)[:, :POINT] += np.einsum("vki,vk->vi", held, miss.sites)
     mixed = jacobian.by_face.transpose(0, 2, 1) @ jacobian.by_node
     shape = (FACE * mesh.n_faces, NODE * mesh.n_vertices)
     # Corners are stored face after face: they are the compressed rows of the coupling.
@@ -72,7 +75,7 @@ def linearize(system: PlanarSystem, net: Net, size: StepNorm) -> Callable[[float
         matrix = faces + damping * metric - reduction @ coupling.T
         rows = _solve(matrix, reduction @ node_slope - face_slope)
         step = np.concatenate([rows, -(inverse @ (node_slope + coupling.T @ rows))])
-        ahead = _advanced(system, net, jacobian, miss, step)
+        ahead = _advanced(system, net, jacobian, miss, held, step)
         return DampedStep(step, float(sum((r**2).sum() for r in ahead)))
 
     return _step
@@ -111,6 +114,7 @@ def _advanced(
     net: Net,
     jacobian: CornerJacobian,
     miss: Residuals,
+    held: FloatArray,
     step: FloatArray,
 ) -> Residuals:
     """Residuals after a step, as the linear model has them."""
@@ -124,6 +128,7 @@ def _advanced(
         miss.corners + corners,
         miss.rows + 2 * minkowski(net.rows, rows),
         miss.normals + 2 * dot(net.normals, common),
+        miss.sites + np.einsum("vki,vi->vk", held, shifts),
     )
 
 

@@ -23,6 +23,7 @@ from ..mesh import Mesh, local_corners, mean_edge_length
 from ..sphere_mesh import SphereMesh
 from ..spheres import evaluate, minkowski, normals, rescale
 from ..tolerances import FLATTEST, NODE_EXACT
+from .node_sites import Site, anywhere
 
 FACE, POINT, NODE = 5, 3, 7
 """Unknowns of a face, of the point of a node, and of a node."""
@@ -69,6 +70,8 @@ class PlanarSystem:
     scales : (5,) float array
         Units ``(a, 1, 1, 1, 1)`` of the coefficients of a row; 1 / a is the curvature of the
         net, its root mean square.
+    site : callable
+        Where the nodes shall be.
     """
 
     mesh: Mesh
@@ -76,6 +79,7 @@ class PlanarSystem:
     corners: FloatArray
     is_planar: BoolArray
     scales: FloatArray
+    site: Site = anywhere
 
 
 class Residuals(NamedTuple):
@@ -91,11 +95,14 @@ class Residuals(NamedTuple):
         ``<<S, S>> - 1``.
     normals : (V,) float array
         ``|m|² - 1``.
+    sites : (V, k) float array
+        Distances of the nodes from where they shall be.
     """
 
     corners: FloatArray
     rows: FloatArray
     normals: FloatArray
+    sites: FloatArray
 
 
 class CornerJacobian(NamedTuple):
@@ -190,6 +197,7 @@ def residuals(system: PlanarSystem, net: Net) -> Residuals:
         np.stack([evaluate(rows, points), tilt], axis=1),
         minkowski(net.rows, net.rows) - 1,
         (dot(net.normals, net.normals) - 1) * system.is_planar,
+        system.site(net.shifts).lengths,
     )
 
 
@@ -206,7 +214,7 @@ def energies(system: PlanarSystem, net: Net) -> FloatArray:
 
     Returns
     -------
-    (3,) float array
+    (4,) float array
         One for each kind of residual. All are zero if no residual is above `NODE_EXACT`: on
         closed nets the constraints are nearly dependent, and the last digits come slowly.
     """

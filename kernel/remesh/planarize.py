@@ -15,23 +15,28 @@ Meshes with Spherical Faces, Prop. 4.3 and Sec. 6.4.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from ..errors import InputError
 from ..mesh import Mesh, face_vector_areas, local_corners, mean_edge_length
-from ..solvers.levenberg_marquardt import Status, levenberg_marquardt
+from ..solvers.levenberg_marquardt import Descent, Status, levenberg_marquardt
 from ..sphere_mesh import SphereMesh
 from ..spheres import recenter, rescale
 from ..tolerances import DEGENERATE
+from .node_sites import Site, on_surface
 from .planar_steps import linearize
 from .planar_system import Net, PlanarSystem, energies, move, must_be_planar, planar_system
-from .step_norm import step_norm
+from .smooth_surface import SmoothSurface
+from .step_norm import StepNorm, step_norm
 
 STEPS = 60
 """Largest number of linear systems."""
+
+APPROACH = 0.5
+"""The approach to a surface ends when a step does not halve what is missed."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +89,12 @@ class Nodes:
     is_real: BoolArray
 
 
-def planarize(sphere_mesh: SphereMesh, fairness: float = 1.0) -> Planarization:
+def planarize(
+    sphere_mesh: SphereMesh,
+    fairness: float = 1.0,
+    surface: SmoothSurface | None = None,
+    rim_steps: int = 2,
+) -> Planarization:
     """
     Make the nodes of a sphere mesh planar in P⁴, and put them on their spheres.
 
@@ -96,6 +106,11 @@ def planarize(sphere_mesh: SphereMesh, fairness: float = 1.0) -> Planarization:
     fairness : float
         How much it counts against a step that neighbouring spheres change differently,
         relative to how much the steps themselves count.
+    surface : SmoothSurface, optional
+        A surface on which the nodes shall lie, up to the last steps; those of the boundary,
+        which stay on it seen from above, lie near it.
+    rim_steps : int
+        Linear systems in which the heights of the boundary count as well.
 
     Returns
     -------
@@ -115,6 +130,13 @@ def planarize(sphere_mesh: SphereMesh, fairness: float = 1.0) -> Planarization:
 
     Fairness is of the spheres: nodes follow from them, and are coupled with nothing else.
 
+    Each edge that ends on the boundary of the surface is one condition for its two spheres.
+    Where lines of the net meet the boundary askew, all of them together are nearly more than
+    what is left free: met exactly they would move nodes by half an edge. So the first steps
+    count them, and the others do not. On closed nets planar nodes are nearly dependent
+    conditions already, and a surface is known as well as its mesh tells it: the last steps
+    make nodes planar alone, which moves them by a hair.
+
     References
     ----------
     Meshes with Spherical Faces, Prop. 4.3 and Sec. 6.4; Tang et al. 2014.
@@ -123,17 +145,37 @@ def planarize(sphere_mesh: SphereMesh, fairness: float = 1.0) -> Planarization:
         raise InputError(f"the fairness must not be negative, not {fairness}")
     system = planar_system(sphere_mesh)
     size = step_norm(system, fairness)
-    descent = levenberg_marquardt(
-        system.start,
+    start, first = system.start, 0
+    for site, steps in [] if surface is None else _approach(system.mesh, surface, rim_steps):
+        descent = _descend(replace(system, site=site), start, size, steps, APPROACH)
+        start, first = descent.state, first + descent.iterations
+    descent = _descend(system, start, size, STEPS - first, 0.0)
+    result = _assembled(system, descent.state)
+    shifts = norm(descent.state.shifts)
+    return Planarization(result, shifts, descent.status, first + descent.iterations)
+
+
+def _approach(mesh: Mesh, surface: SmoothSurface, rim_steps: int) -> list[tuple[Site, int]]:
+    """Where nodes shall be at first, and in how many steps: with the boundary, then without."""
+    is_rim = mesh.topology.is_boundary_vertex
+    meets_rim = is_rim & (np.bincount(mesh.corners, minlength=mesh.n_vertices) > 1)
+    return [
+        (on_surface(surface, mesh, np.ones_like(is_rim)), rim_steps),
+        (on_surface(surface, mesh, ~meets_rim), STEPS // 2),
+    ]
+
+
+def _descend(
+    system: PlanarSystem, start: Net, size: StepNorm, steps: int, tolerance: float
+) -> Descent[Net]:
+    return levenberg_marquardt(
+        start,
         lambda net: energies(system, net),
         lambda net: linearize(system, net, size),
         move,
-        tolerance=0.0,
-        max_iterations=STEPS,
+        tolerance=tolerance,
+        max_iterations=steps,
     )
-    result = _assembled(system, descent.state)
-    shifts = norm(descent.state.shifts)
-    return Planarization(result, shifts, descent.status, descent.iterations)
 
 
 def _assembled(system: PlanarSystem, net: Net) -> SphereMesh:

@@ -5,12 +5,16 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
+from ...kernel.analysis import deviation
 from ...kernel.arrays import BoolArray, FloatArray, IntArray
 from ...kernel.errors import ConvergenceError, name_ids
 from ...kernel.mesh import Mesh, mean_edge_length
 from ...kernel.remesh import directions, pipeline, relax, reports
-from ...kernel.remesh.planarize import measure_nodes, planarize
+from ...kernel.remesh.held_nets import planarize_held
+from ...kernel.remesh.node_sites import node_distances
+from ...kernel.remesh.planarize import Planarization, measure_nodes, planarize
 from ...kernel.remesh.relax import CongruenceQuality
+from ...kernel.remesh.smooth_surface import SmoothSurface
 from ...kernel.sphere_mesh import SphereMesh
 from ...kernel.tolerances import NODE_ON_SPHERES, TORSION_FREE
 from ..node import node, warn
@@ -25,7 +29,7 @@ LEANING = 30.0
 SHORT_EDGE = 0.2
 """Length of an edge, relative to the mean, that is worth a warning."""
 
-Degree = Annotated[int, Port(min=2, max=6)]
+Degree = Annotated[int | None, Port(min=2, max=7)]
 Rings = Annotated[int, Port(min=1, max=10)]
 
 
@@ -46,7 +50,7 @@ class Remeshed(NamedTuple):
 
 @node
 def conjugate_directions(
-    mesh: Mesh, spheres: FloatArray, degree: Degree = 5, rings: Rings = 3
+    mesh: Mesh, spheres: FloatArray, degree: Degree = None, rings: Rings = 4
 ) -> Directions:
     """
     The directions that a net of these spheres must follow to have a support structure.
@@ -57,10 +61,11 @@ def conjugate_directions(
         A connected triangle mesh.
     spheres : (V, 5) float array
         A sphere for every vertex, as from `sphere_congruence`.
-    degree : int
-        Degree of the polynomials that are fitted to the spheres; 3 for noisy spheres.
+    degree : int, optional
+        Degree of the polynomials that are fitted to the spheres; by default 3, 5 or 7, the
+        lower the noisier the spheres.
     rings : int
-        Rings of neighbours that they are fitted to; 5 for noisy spheres.
+        Rings of neighbours that they are fitted to; more for noisy spheres.
 
     Returns
     -------
@@ -73,7 +78,8 @@ def conjugate_directions(
         ``node_axis_deg`` (angle between normal and expected node axis: median, p95 and max),
         ``radius_to_edge`` (radii relative to the mean edge of the mesh: min and median) and
         ``largest_edge`` (longest edge of a net whose nodes are real on 95 % of the vertices,
-        ``sqrt(2)`` times the radius). None stands for infinite.
+        ``sqrt(2)`` times the radius) and ``degree`` of the polynomials. None stands for
+        infinite.
     """
     found = directions.conjugate_directions(mesh, spheres, degree, rings)
     _warn_complex(found.complex_share)
@@ -84,6 +90,7 @@ def conjugate_directions(
         "node_axis_deg": reports.angle_report(found.axis_angles),
         "radius_to_edge": reports.radius_report(radii / mean_edge_length(mesh)),
         "largest_edge": reports.finite(np.sqrt(2) * np.quantile(radii, 0.05, method="lower")),
+        "degree": found.degree,
     }
     return Directions(found.directions, found.is_real, report)
 
@@ -95,8 +102,8 @@ def p4_remesh(
     edge_length: Annotated[float, Port(min=0)],
     smoothing: Annotated[float, Port(min=0, max=10)] = 0.5,
     least_angle: Annotated[float, Port(unit="deg", min=0, max=80)] = 20.0,
-    degree: Degree = 5,
-    rings: Rings = 3,
+    degree: Degree = None,
+    rings: Rings = 4,
     fairness: Annotated[float, Port(min=0)] = 1.0,
 ) -> Remeshed:
     """
@@ -114,10 +121,11 @@ def p4_remesh(
         Distance over which uncertain directions are smoothed, in edge lengths.
     least_angle : float
         Directions that meet at less, or are complex, are moved apart to this angle.
-    degree : int
-        Degree of the polynomials that are fitted to the spheres; 3 for noisy spheres.
+    degree : int, optional
+        Degree of the polynomials that are fitted to the spheres; by default 3, 5 or 7, the
+        lower the noisier the spheres.
     rings : int
-        Rings of neighbours that they are fitted to; 5 for noisy spheres.
+        Rings of neighbours that they are fitted to; more for noisy spheres.
     fairness : float
         As in `planarize_p4`, which ends the remeshing.
 
@@ -136,7 +144,9 @@ def p4_remesh(
         ``node_axis_deg`` (angle between normal and expected node axis: median, p95 and max)
         and ``radius_to_edge`` (min and median; below 0.71 nodes are not real). None stands for
         infinite. ``planarized`` is the report of `planarize_p4`, which comes last; None if it
-        failed, and the net keeps some torsion.
+        failed, and the net keeps some torsion. ``distance``, in mean edges of the net, of the
+        ``nodes`` inside and of ``boundary_nodes`` from the smooth surface through the vertices,
+        and of ``panels`` (``panels_p95``: of 95 % of them) from the given mesh.
     """
     done = pipeline.remesh(
         mesh, spheres, edge_length, smoothing, float(np.radians(least_angle)), degree, rings
@@ -161,11 +171,35 @@ def p4_remesh(
         )
     report = reports.remeshing_report(done, edge_length)
     try:
-        planar = _planarized(done.sphere_mesh, fairness)
+        result, is_held = planarize_held(done.sphere_mesh, done.surface, fairness)
+        planar = _planarized(done.sphere_mesh, result)
     except ConvergenceError as error:
         warn(f"the net keeps some torsion: {error}")
-        return Remeshed(done.sphere_mesh, {**report, "planarized": None})
-    return Remeshed(planar.sphere_mesh, {**report, "planarized": planar.report})
+        distances = _distances(done.sphere_mesh, mesh, done.surface)
+        return Remeshed(done.sphere_mesh, {**report, "planarized": None, "distance": distances})
+    distances = _distances(planar.sphere_mesh, mesh, done.surface)
+    if not is_held:
+        warn(
+            f"the nodes inside are up to {distances['nodes']:.2g} edges from the surface: held "
+            "on it, edges would shrink or faces turn over; choose a smaller edge length or "
+            "larger spheres"
+        )
+    return Remeshed(
+        planar.sphere_mesh, {**report, "planarized": planar.report, "distance": distances}
+    )
+
+
+def _distances(sphere_mesh: SphereMesh, mesh: Mesh, surface: SmoothSurface) -> dict[str, float]:
+    """How far a net is from the surface, in mean edges."""
+    net = sphere_mesh.mesh
+    nodes, is_rim = node_distances(surface, net), net.topology.is_boundary_vertex
+    panels = deviation(sphere_mesh, mesh) / mean_edge_length(net)
+    return {
+        "nodes": float(nodes[~is_rim].max(initial=0.0)),
+        "boundary_nodes": float(nodes[is_rim].max(initial=0.0)),
+        "panels_p95": float(np.percentile(panels, 95)),
+        "panels": float(panels.max()),
+    }
 
 
 def _warn_complex(share: float) -> None:
@@ -242,11 +276,10 @@ def planarize_p4(
         ``mean`` over the nodes, in mean edges), ``nodes_without_axis`` and ``turned_faces``
         (ids; faces that were turned over).
     """
-    return _planarized(sphere_mesh, fairness)
+    return _planarized(sphere_mesh, planarize(sphere_mesh, fairness))
 
 
-def _planarized(sphere_mesh: SphereMesh, fairness: float) -> Planarized:
-    result = planarize(sphere_mesh, fairness)
+def _planarized(sphere_mesh: SphereMesh, result: Planarization) -> Planarized:
     report = reports.planarization_report(sphere_mesh, result)
     planarity, gap = report["planarity"], report["corner_gap"]
     if planarity["after"] > TORSION_FREE or gap["after"] > NODE_ON_SPHERES:

@@ -65,6 +65,21 @@ class Text:
             points.append(self.numbers(self.references(vertex)[0]))
         return np.array(points if self.is_true(bound) else points[::-1])
 
+    def circles(self, face: int) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
+        """Centre, a point and the direction there of each full circle in the loop of a face."""
+        bound = self.references(face)[0]
+        found: list[tuple[FloatArray, FloatArray, FloatArray]] = []
+        for use in self.references(self.references(bound)[0]):
+            edge = self.references(use)[0]
+            start, end, curve = self.references(edge)
+            if start == end:
+                assert self.is_true(edge)
+                assert self.is_true(bound)
+                center, axis, x = map(self.numbers, self.references(self.references(curve)[0]))
+                along = np.cross(axis, x) * (1 if self.is_true(use) else -1)
+                found.append((center, center + self.numbers(curve)[0] * x, along))
+        return found
+
     def normal(self, face: int, point: FloatArray) -> FloatArray:
         """Normal of a face at a point of it."""
         surface = self.references(face)[1]
@@ -80,16 +95,31 @@ def area_vector(ring: FloatArray) -> FloatArray:
     return np.cross(ring, np.roll(ring, -1, axis=0)).sum(axis=0) / 2
 
 
+def judge_cylinder(text: Text, faces: list[int]) -> None:
+    """Faces look away from the middle, and lie to the left of their circles."""
+    middles = [np.mean([c for c, _, _ in text.circles(face)], axis=0) for face in faces]
+    for face, middle in zip(faces, middles, strict=True):
+        for _, point, along in text.circles(face):
+            normal = text.normal(face, point)
+            assert normal @ (point - np.mean(middles, axis=0)) > 0
+            assert np.cross(normal, along) @ (middle - point) > 0
+
+
 def judge(path: Path) -> tuple[Text, int]:
     """Every loop runs counter-clockwise about the normal of its face; solids look outwards."""
     text = Text(path)
     faces = text.ids("ADVANCED_FACE")
     for face in faces:
         ring = text.ring(face)
-        area = area_vector(ring - ring[0])
-        assert area @ text.normal(face, ring.mean(axis=0)) > 0.5 * np.linalg.norm(area)
+        if not text.circles(face):
+            area = area_vector(ring - ring[0])
+            assert area @ text.normal(face, ring.mean(axis=0)) > 0.5 * np.linalg.norm(area)
     for shell in text.ids("CLOSED_SHELL"):
-        rings = [text.ring(face) for face in text.references(shell)]
+        members = text.references(shell)
+        if any(text.circles(face) for face in members):
+            judge_cylinder(text, members)
+            continue
+        rings = [text.ring(face) for face in members]
         assert sum(area_vector(ring) @ ring.mean(axis=0) for ring in rings) > 0
     return text, len(faces)
 

@@ -318,6 +318,46 @@ def test_directions_of_meshes_are_curvature_lines(shape: SampleShape, kind: str)
     assert np.degrees(np.quantile(np.abs(cosines), 0.95)) < 1
 
 
+def ellipsoid_curvature(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Curvature lines (V, 2, 3) of the sample ellipsoid, and its mean curvatures."""
+    squares = np.array([1.6, 1.2, 0.9]) ** 2
+    slopes = points / squares
+    across = np.eye(3) - unit(slopes)[:, :, None] * unit(slopes)[:, None]
+    lines = np.linalg.eigh(across @ np.diag(1 / squares) @ across)[1]
+    mean = dot(points, points) - squares.sum()
+    mean /= 2 * squares.prod() * norm(slopes) ** 3
+    return lines[..., 1:].transpose(0, 2, 1), mean
+
+
+def test_law_f7_central_spheres_of_an_ellipsoid_from_a_mesh() -> None:
+    mesh, normals = triangulated_surface("ellipsoid", 0.1, seed=1)
+    lines, mean = ellipsoid_curvature(mesh.vertices)
+    found = conjugate_directions(mesh, touching_spheres(mesh.vertices, normals, mean))
+    inner = ~mesh.topology.is_boundary_vertex
+    errors = np.degrees(np.arcsin(sine_between(found.directions, lines)[inner]))
+    assert np.median(errors) < 0.05
+    assert np.quantile(errors, 0.95) < 1
+
+
+def test_noise_lowers_the_degree_and_spares_the_directions() -> None:
+    mesh, normals = triangulated_surface("ellipsoid", 0.15, seed=1)
+    lines, _ = ellipsoid_curvature(mesh.vertices)
+    inner = ~mesh.topology.is_boundary_vertex
+    noise = np.random.default_rng(3).normal(size=normals.shape)
+    degrees: list[int] = []
+    for size in (0.0, 1e-3, 1e-2):
+        rows = touching_spheres(mesh.vertices, unit(normals + size * noise), -2.0)
+        runs = {d: conjugate_directions(mesh, rows, d) for d in (None, 3, 5, 7)}
+        errors = {
+            degree: float(np.median(sine_between(run.directions, lines)[inner]))
+            for degree, run in runs.items()
+        }
+        assert errors[None] < 1.5 * min(errors.values())
+        degrees.append(runs[None].degree)
+    assert degrees == sorted(degrees, reverse=True)
+    assert degrees[0] == 7 > degrees[-1]
+
+
 def test_directions_commute_with_inversions() -> None:
     mesh, normals = triangulated_surface("bump", 0.1, seed=1)
     curvatures = 0.8 + 0.2 * np.sin(mesh.vertices[:, 0])
@@ -430,7 +470,7 @@ def test_bad_input_is_refused() -> None:
     flat[mesh.corners[1]] = flat[mesh.corners[0]]
     with pytest.raises(InputError, match="no area"):
         conjugate_directions(Mesh(flat, mesh.faces), spheres)
-    for wrong, words in (({"degree": 9}, "from 2 to 6"), ({"rings": 0}, "1 to 10 rings")):
+    for wrong, words in (({"degree": 9}, "from 2 to 7"), ({"rings": 0}, "1 to 10 rings")):
         with pytest.raises(InputError, match=words):
             conjugate_directions(mesh, spheres, **wrong)
     few, few_normals = triangulated_surface("hypar", 0.7)

@@ -1,0 +1,74 @@
+"""Planar nodes on the surface that a net was made on, where the net can do it."""
+
+from ..arrays import dot, norm
+from ..mesh import Mesh, face_vector_areas
+from ..sphere_mesh import SphereMesh
+from ..tolerances import ON_SURFACE
+from .node_sites import node_distances
+from .planarize import Planarization, planarize
+from .smooth_surface import SmoothSurface
+
+RIM_STEPS = (2, 1, 0)
+"""Steps in which the boundary counts: a net that cannot do it is held inside alone."""
+
+KEPT_EDGE = 0.5
+"""Share of its shortest edge that a net must keep to be held on its surface."""
+
+FARTHEST = 0.75
+"""Mean edges by which its nodes may move at most."""
+
+
+def planarize_held(
+    sphere_mesh: SphereMesh, surface: SmoothSurface, fairness: float = 1.0
+) -> tuple[Planarization, bool]:
+    """
+    Make nodes planar and keep them on a surface if the net stays a net.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The net.
+    surface : SmoothSurface
+        The surface that it was made on.
+    fairness : float
+        As in `planarize`.
+
+    Returns
+    -------
+    result : Planarization
+        The planarised net.
+    is_held : bool
+        Whether the nodes inside lie on the surface: else, as around singular points, edges
+        would shrink or faces turn over.
+
+    Raises
+    ------
+    InputError
+        If the fairness is negative or not finite.
+    """
+    for rim_steps in RIM_STEPS:
+        held = planarize(sphere_mesh, fairness, surface, rim_steps)
+        if _is_held(sphere_mesh.mesh, held, surface):
+            return held, True
+    return planarize(sphere_mesh, fairness), False
+
+
+def _is_held(before: Mesh, held: Planarization, surface: SmoothSurface) -> bool:
+    after = held.sphere_mesh.mesh
+    inner = ~after.topology.is_boundary_vertex
+    return (
+        held.status == "converged"
+        and held.shifts.max() <= FARTHEST
+        and node_distances(surface, after)[inner].max(initial=0.0) <= ON_SURFACE
+        and _is_kept(before, after)
+    )
+
+
+def _is_kept(before: Mesh, after: Mesh) -> bool:
+    turned = dot(face_vector_areas(before), face_vector_areas(after)) <= 0
+    return not turned.any() and _shortest(after) >= KEPT_EDGE * _shortest(before)
+
+
+def _shortest(mesh: Mesh) -> float:
+    ends = mesh.vertices[mesh.corners[mesh.topology.next_corners]]
+    return float(norm(ends - mesh.vertices[mesh.corners]).min())
