@@ -89,8 +89,9 @@ def panel_graph(options: PanelOptions) -> Graph:
     Graph
         Its steps are named mesh, start, angles (before an optimum of more than angles),
         optimum, panels, audit, report, step, rhino, table, list and picture; with a number of
-        moulds also moulds, blanks, mould_drawing and mould_picture, with a support nodes,
-        annuli, beams, drawing and beam_table. Its writers write into the working directory.
+        moulds also moulds, blanks, mould_drawing and mould_picture, with a support landing
+        (without moulds or a tolerance), nodes, annuli, beams, drawing and beam_table. Its
+        writers write into the working directory.
 
     Raises
     ------
@@ -107,6 +108,10 @@ def panel_graph(options: PanelOptions) -> Graph:
         mesh = graph.add("read_mesh", "mesh", path=path, layer=options.layer)
     optimum = _optimum(graph, options, mesh)
     spheres, labels, clusters, blanks = optimum.sphere_mesh, None, None, None
+    landing = None
+    if options.support and options.tolerance is None and options.moulds is None:
+        landed = graph.add("land_nodes", "landing", sphere_mesh=spheres)
+        spheres, landing = landed.sphere_mesh, landed.report
     if options.moulds is not None:
         count = graph.param("moulds", options.moulds, min=1)
         moulds = graph.add(
@@ -133,7 +138,7 @@ def panel_graph(options: PanelOptions) -> Graph:
     audit = graph.add("audit", "audit", panels=panels.panels, cut=panels.report, **carried)
     graph.add(
         "panel_report", "report", sphere_mesh=spheres, optimum=optimum.report,
-        cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report,
+        cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report, landing=landing,
         **{name: step.report for name, step in structure.items()},
     )  # fmt: skip
     made = {"panels": panels.panels}

@@ -87,6 +87,26 @@ def beam_tilt(sphere_mesh: SphereMesh) -> FloatArray:
     return np.minimum(angles, np.pi - angles)
 
 
+def angle_summary(sphere_mesh: SphereMesh) -> dict[str, float]:
+    """
+    Angles between neighbours in two numbers.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+
+    Returns
+    -------
+    dict
+        ``mean`` and ``max`` over the interior edges, in degrees; zero if there are none.
+    """
+    angles = np.degrees(intersection_angles(sphere_mesh))
+    if len(angles) == 0:
+        return {"mean": 0.0, "max": 0.0}
+    return {"mean": float(angles.mean()), "max": float(angles.max())}
+
+
 def spiky_faces(sphere_mesh: SphereMesh) -> BoolArray:
     """
     Faces that bulge to the wrong side.

@@ -6,7 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from spheremesh import Mesh, SphereMesh
+from spheremesh.kernel.arrays import norm
 from spheremesh.kernel.errors import InputError
+from spheremesh.kernel.mesh import mean_edge_length
 from spheremesh.nodes import (
     Graph,
     annulus_support,
@@ -14,10 +17,14 @@ from spheremesh.nodes import (
     central_spheres,
     drilling_marks,
     face_planes,
+    land_nodes,
     minimize_angles,
+    optimize_spheres,
     roof_mesh,
     support_structure,
     torus_mesh,
+    vase_mesh,
+    vertex_error,
     write_3dm,
     write_dxf,
 )
@@ -38,6 +45,39 @@ def test_support_structure_warns_of_invalid_nodes() -> None:
     inside = ~sphere_mesh.mesh.topology.is_boundary_vertex
     assert found.report["torsion_deg"]["max"] == found.torsion[inside].max()
     assert found.report["valid"] == int(np.sum(found.is_valid))
+
+
+@pytest.mark.parametrize("mesh", [vase_mesh(9, 7), roof_mesh(16, 24)])
+def test_beams_of_landed_nodes_meet(mesh: Mesh) -> None:
+    start = minimize_angles(central_spheres(mesh)).sphere_mesh
+    optimum = optimize_spheres(start, regularity=3.5, support=1.0).sphere_mesh
+    landed = land_nodes(optimum)
+    assert json.loads(json.dumps(landed.report, allow_nan=False)) == landed.report
+    assert landed.report["landed"]
+    edge = mean_edge_length(mesh)
+    moves = norm(landed.sphere_mesh.mesh.vertices - mesh.vertices) / edge
+    np.testing.assert_allclose(moves.max(), landed.report["moved"]["max"], rtol=1e-6)
+    assert vertex_error(landed.sphere_mesh).max() < 1e-8 * edge
+    before, after = (ends_apart(found) / edge for found in (optimum, landed.sphere_mesh))
+    assert after < 1e-7
+    assert after < 1e-5 * before
+
+
+def ends_apart(sphere_mesh: SphereMesh) -> float:
+    """Largest distance of the ends of two beams at an inner node."""
+    annuli = annulus_support(sphere_mesh, depth=0.1).annuli
+    ends = (annuli.corners + annuli.origins[:, None, None]).reshape(-1, 2, 3)
+    vertices = annuli.edge_vertices.ravel()
+    inner = np.flatnonzero(~sphere_mesh.mesh.topology.is_boundary_vertex)
+    return max(float(np.ptp(ends[vertices == vertex], axis=0).max()) for vertex in inner)
+
+
+def test_nodes_that_are_far_stay_where_they_are() -> None:
+    start = minimize_angles(central_spheres(roof_mesh(8, 12))).sphere_mesh
+    with pytest.warns(UserWarning, match=r"beams do not meet exactly: .* 1e-06 are allowed"):
+        found = land_nodes(start, max_move=1e-6)
+    assert found.sphere_mesh is start
+    assert not found.report["landed"]
 
 
 def test_annulus_support_reports_and_warns() -> None:

@@ -1,4 +1,4 @@
-"""Planar nodes on the surface that a net was made on, where the net can do it."""
+"""Planar nodes that stay near: on the surface that a net was made on, or where they are."""
 
 from ..arrays import dot, norm
 from ..mesh import Mesh, face_vector_areas
@@ -53,10 +53,37 @@ def planarize_held(
     return planarize(sphere_mesh, fairness), False
 
 
+def planarize_near(sphere_mesh: SphereMesh, farthest: float) -> tuple[Planarization, bool]:
+    """
+    Make nodes planar if that moves them by little.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        A mesh whose nodes are nearly planar, as an optimised support structure.
+    farthest : float
+        How far nodes may move, in mean edges.
+
+    Returns
+    -------
+    result : Planarization
+        The planarised mesh.
+    is_near : bool
+        Whether its nodes are planar, none of them moved farther, and it stayed a net.
+    """
+    result = planarize(sphere_mesh)
+    is_near = (
+        result.status == "converged"
+        and result.shifts.max(initial=0.0) <= farthest
+        and _is_kept(sphere_mesh.mesh, result.sphere_mesh.mesh)
+    )
+    return result, bool(is_near)
+
+
 def _is_held(before: Mesh, held: Planarization, surface: SmoothSurface) -> bool:
     after = held.sphere_mesh.mesh
     inner = ~after.topology.is_boundary_vertex
-    return (
+    return bool(
         held.status == "converged"
         and held.shifts.max() <= FARTHEST
         and node_distances(surface, after)[inner].max(initial=0.0) <= ON_SURFACE

@@ -6,8 +6,9 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from ...kernel import clustering
+from ...kernel.analysis import angle_summary
 from ...kernel.arrays import FloatArray, IntArray
-from ...kernel.sphere_mesh import SphereMesh, intersection_angles
+from ...kernel.sphere_mesh import SphereMesh
 from ...kernel.tolerances import COMMON_VERTEX
 from ..node import node, warn
 from ..ports import Port
@@ -87,18 +88,10 @@ def cluster_radii(
         "count": len(clusters.radii),
         "radii": [float(r) if np.isfinite(r) else None for r in clusters.radii],
         "panels_per_mould": clusters.counts.tolist(),
-        "angles_deg": _angles(result),
-        "unrelaxed_angles_deg": _angles(clustered),
+        "angles_deg": angle_summary(result),
+        "unrelaxed_angles_deg": angle_summary(clustered),
         "reassigned": reassigned,
         "relaxed": result is not clustered,
         "vertex_move": move,
     }
     return Clusters(result, clusters.labels, clusters.radii, report)
-
-
-def _angles(sphere_mesh: SphereMesh) -> dict[str, float]:
-    angles = np.degrees(intersection_angles(sphere_mesh))
-    return {
-        "mean": float(angles.mean()) if len(angles) else 0.0,
-        "max": float(angles.max(initial=0.0)),
-    }

@@ -6,13 +6,13 @@ from typing import Annotated, Any, Literal, NamedTuple
 import numpy as np
 
 from ...kernel import optimization, pencil, strips
-from ...kernel.analysis import circularity
+from ...kernel.analysis import angle_summary, circularity
 from ...kernel.arrays import FloatArray
 from ...kernel.energies.table import EnergyWeights
 from ...kernel.errors import ConvergenceError, InputError, name_ids
 from ...kernel.fit import face_planes
 from ...kernel.mesh import Mesh, mean_edge_length
-from ...kernel.sphere_mesh import SphereMesh, intersection_angles, vertex_error
+from ...kernel.sphere_mesh import SphereMesh, vertex_error
 from ...kernel.tolerances import CIRCULAR, LITTLE_GAIN, VERTEX_MISS
 from ..node import node, warn
 from ..ports import Port
@@ -233,8 +233,8 @@ def _outcome(sphere_mesh: SphereMesh, design: Mesh) -> dict[str, Any]:
     miss = float(vertex_error(sphere_mesh).max())
     return {
         "angles_deg": {
-            "planar": _angles(face_planes(design)),
-            "spherical": _angles(sphere_mesh),
+            "planar": angle_summary(face_planes(design)),
+            "spherical": angle_summary(sphere_mesh),
         },
         "vertex_error": {
             "max": miss,
@@ -252,10 +252,3 @@ def _warn_of_little_gain(outcome: Mapping[str, Any]) -> None:
             f"spheres gain little over planes here ({planar:.3g} to {spherical:.3g} degrees): "
             "the surface is nearly minimal or flat"
         )
-
-
-def _angles(sphere_mesh: SphereMesh) -> dict[str, float]:
-    angles = np.degrees(intersection_angles(sphere_mesh))
-    if len(angles) == 0:
-        return {"mean": 0.0, "max": 0.0}
-    return {"mean": float(angles.mean()), "max": float(angles.max())}

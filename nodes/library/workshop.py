@@ -9,6 +9,7 @@ from ...fabrication import audit as panel_audit
 from ...fabrication import beam_audit
 from ...kernel import congruent_panels as congruent
 from ...kernel import mould_blanks as blanks
+from ...kernel.analysis import angle_summary
 from ...kernel.arrays import IntArray
 from ...kernel.beams import Beams
 from ...kernel.findings import Finding, findings_report, refusals
@@ -196,6 +197,7 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     nodes: Mapping[str, Any] | None = None,
     annuli: Mapping[str, Any] | None = None,
     beams: Mapping[str, Any] | None = None,
+    landing: Mapping[str, Any] | None = None,
     units: Units = "m",
 ) -> Mapping[str, Any]:
     """
@@ -221,6 +223,8 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         Report of `annulus_support`.
     beams : mapping, optional
         Report of `beams`.
+    landing : mapping, optional
+        Report of `land_nodes`.
     units : str
         Model units.
 
@@ -230,15 +234,15 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         ``input`` (vertices, faces, units), ``angles_deg`` (planar, spherical; with moulds
         ``unclustered`` as well, and spherical is what is built), ``vertex_error`` and
         ``edge_gap`` (max, relative_to_edge), ``thickness``, ``moulds`` (count, radii,
-        panels_per_mould, blanks), ``support`` (torsion_deg_max, beam_tilt_deg_p95; None without
-        one), ``panels`` and ``beams`` (written, rejected) and ``audit``.
+        panels_per_mould, blanks), ``support`` (torsion_deg_max, beam_tilt_deg_p95, landed; None
+        without one), ``panels`` and ``beams`` (written, rejected) and ``audit``.
     """
     mesh = sphere_mesh.mesh
-    angles = dict(optimum["angles_deg"])
+    angles = {**optimum["angles_deg"], "spherical": angle_summary(sphere_mesh)}
     found: dict[str, Any] = {"count": 0, "radii": [], "panels_per_mould": []}
     if moulds is not None:
         # What is built counts as spherical; what the moulds cost is there to compare.
-        angles |= {"spherical": moulds["angles_deg"], "unclustered": angles["spherical"]}
+        angles["unclustered"] = optimum["angles_deg"]["spherical"]
         found = {name: moulds[name] for name in found}
     miss = float(vertex_error(sphere_mesh).max())
     return {
@@ -252,6 +256,7 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         and {
             "torsion_deg_max": nodes["torsion_deg"]["max"],
             "beam_tilt_deg_p95": nodes["beam_tilt_deg"]["p95"],
+            "landed": bool(landing and landing["landed"]),
         },
         "panels": {"written": cut["written"], "rejected": list(cut["rejected"])},
         "beams": {

@@ -292,6 +292,7 @@ def test_support_writes_beams_and_says_how_straight_they_are(
     assert result.exit_code == 0, result.stderr
     report = json.loads(result.stdout)
     assert report["support"]["torsion_deg_max"] <= 0.05
+    assert report["support"]["landed"]
     assert report["support"]["beam_tilt_deg_p95"] <= 20
     assert report["beams"]["written"] > 0
     assert report["beams"]["rejected"] == []
