@@ -8,8 +8,8 @@ from .node_sites import node_distances
 from .planarize import Planarization, planarize
 from .smooth_surface import SmoothSurface
 
-RIM_STEPS = (2, 1, 0)
-"""Steps in which the boundary counts: a net that cannot do it is held inside alone."""
+RIM_WEIGHTS = (1.0, 0.1, 0.0)
+"""How much the boundary counts: less where a net cannot meet it, down to nothing."""
 
 KEPT_EDGE = 0.5
 """Share of its shortest edge that a net must keep to be held on its surface."""
@@ -46,8 +46,8 @@ def planarize_held(
     InputError
         If the fairness is negative or not finite.
     """
-    for rim_steps in RIM_STEPS:
-        held = planarize(sphere_mesh, fairness, surface, rim_steps)
+    for rim_weight in RIM_WEIGHTS:
+        held = planarize(sphere_mesh, fairness, surface, rim_weight)
         if _is_held(sphere_mesh.mesh, held, surface):
             return held, True
     return planarize(sphere_mesh, fairness), False

@@ -5,7 +5,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, dot, norm, unit
+from ..arrays import FloatArray, dot, norm, unit
 from ..mesh import Mesh, mean_edge_length
 from ..tolerances import LINE_CORNER
 from .smooth_surface import SmoothSurface, surface_heights
@@ -48,7 +48,7 @@ def anywhere(shifts: FloatArray) -> Misses:
     return Misses(np.zeros((len(shifts), 0)), np.zeros((len(shifts), 0, 3)))
 
 
-def on_surface(surface: SmoothSurface, mesh: Mesh, is_held: BoolArray) -> Site:
+def on_surface(surface: SmoothSurface, mesh: Mesh, weights: FloatArray) -> Site:
     """
     Keep nodes on a smooth surface.
 
@@ -58,8 +58,8 @@ def on_surface(surface: SmoothSurface, mesh: Mesh, is_held: BoolArray) -> Site:
         The surface.
     mesh : Mesh
         The net at the start, in model coordinates; its boundary lies on that of the surface.
-    is_held : (V,) bool array
-        Nodes whose height counts.
+    weights : (V,) float array
+        How much the height of each node counts; 0 where it does not.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def on_surface(surface: SmoothSurface, mesh: Mesh, is_held: BoolArray) -> Site:
 
     def _misses(shifts: FloatArray) -> Misses:
         heights, gradients = surface_heights(surface, points + step * shifts)
-        heights, gradients = heights * is_held, gradients * is_held[:, None]
+        heights, gradients = heights * weights, gradients * weights[:, None]
         across = np.einsum("vki,vi->vk", held, shifts)
         lengths = np.concatenate([heights[:, None] / step, across], axis=1)
         return Misses(lengths, np.concatenate([gradients[:, None], held], axis=1))

@@ -35,6 +35,9 @@ from .step_norm import StepNorm, step_norm
 STEPS = 60
 """Largest number of linear systems."""
 
+RIM_STEPS = 2
+"""Linear systems in which the boundary counts as well."""
+
 APPROACH = 0.5
 """The approach to a surface ends when a step does not halve what is missed."""
 
@@ -93,7 +96,7 @@ def planarize(
     sphere_mesh: SphereMesh,
     fairness: float = 1.0,
     surface: SmoothSurface | None = None,
-    rim_steps: int = 2,
+    rim_weight: float = 1.0,
 ) -> Planarization:
     """
     Make the nodes of a sphere mesh planar in P⁴, and put them on their spheres.
@@ -109,8 +112,8 @@ def planarize(
     surface : SmoothSurface, optional
         A surface on which the nodes shall lie, up to the last steps; those of the boundary,
         which stay on it seen from above, lie near it.
-    rim_steps : int
-        Linear systems in which the heights of the boundary count as well.
+    rim_weight : float
+        How much heights of the boundary count in the first steps, relative to those inside.
 
     Returns
     -------
@@ -146,7 +149,7 @@ def planarize(
     system = planar_system(sphere_mesh)
     size = step_norm(system, fairness)
     start, first = system.start, 0
-    for site, steps in [] if surface is None else _approach(system.mesh, surface, rim_steps):
+    for site, steps in [] if surface is None else _approach(system.mesh, surface, rim_weight):
         descent = _descend(replace(system, site=site), start, size, steps, APPROACH)
         start, first = descent.state, first + descent.iterations
     descent = _descend(system, start, size, STEPS - first, 0.0)
@@ -155,13 +158,13 @@ def planarize(
     return Planarization(result, shifts, descent.status, first + descent.iterations)
 
 
-def _approach(mesh: Mesh, surface: SmoothSurface, rim_steps: int) -> list[tuple[Site, int]]:
+def _approach(mesh: Mesh, surface: SmoothSurface, rim_weight: float) -> list[tuple[Site, int]]:
     """Where nodes shall be at first, and in how many steps: with the boundary, then without."""
     is_rim = mesh.topology.is_boundary_vertex
     meets_rim = is_rim & (np.bincount(mesh.corners, minlength=mesh.n_vertices) > 1)
     return [
-        (on_surface(surface, mesh, np.ones_like(is_rim)), rim_steps),
-        (on_surface(surface, mesh, ~meets_rim), STEPS // 2),
+        (on_surface(surface, mesh, np.where(meets_rim, rim_weight, 1.0)), RIM_STEPS),
+        (on_surface(surface, mesh, np.where(meets_rim, 0.0, 1.0)), STEPS // 2),
     ]
 
 

@@ -92,7 +92,7 @@ def test_misses_have_the_slopes_they_say() -> None:
     done = remeshed("hypar", 0.25, 1.0)
     mesh = done.sphere_mesh.mesh
     is_held = ~mesh.topology.is_boundary_vertex
-    site = on_surface(done.surface, mesh, is_held)
+    site = on_surface(done.surface, mesh, is_held.astype(float))
     rng = np.random.default_rng(1)
     shifts, step = 0.02 * rng.normal(size=(2, mesh.n_vertices, 3))
     found, ahead = site(shifts), site(shifts + 0.1 * step)
