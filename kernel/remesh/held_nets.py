@@ -1,7 +1,7 @@
 """Planar nodes that stay near: on the surface that a net was made on, or where they are."""
 
 from ..arrays import dot, norm
-from ..mesh import Mesh, face_vector_areas
+from ..mesh import Mesh, face_vector_areas, mean_edge_length
 from ..sphere_mesh import SphereMesh
 from ..tolerances import ON_SURFACE
 from .node_sites import node_distances
@@ -13,6 +13,9 @@ RIM_WEIGHTS = (1.0, 0.1, 0.0)
 
 KEPT_EDGE = 0.5
 """Share of its shortest edge that a net must keep to be held on its surface."""
+
+SHORT_EDGE = 0.2
+"""Edges shorter than this share of the mean are short: no net may get such."""
 
 FARTHEST = 0.75
 """Mean edges by which its nodes may move at most."""
@@ -93,7 +96,9 @@ def _is_held(before: Mesh, held: Planarization, surface: SmoothSurface) -> bool:
 
 def _is_kept(before: Mesh, after: Mesh) -> bool:
     turned = dot(face_vector_areas(before), face_vector_areas(after)) <= 0
-    return not turned.any() and _shortest(after) >= KEPT_EDGE * _shortest(before)
+    first, last = _shortest(before), _shortest(after)
+    least = max(KEPT_EDGE * first, min(first, SHORT_EDGE * mean_edge_length(after)))
+    return not turned.any() and last >= least
 
 
 def _shortest(mesh: Mesh) -> float:

@@ -10,7 +10,7 @@ from ...kernel.arrays import BoolArray, FloatArray, IntArray
 from ...kernel.errors import ConvergenceError, name_ids
 from ...kernel.mesh import Mesh, mean_edge_length
 from ...kernel.remesh import directions, pipeline, relax, reports
-from ...kernel.remesh.held_nets import planarize_held
+from ...kernel.remesh.held_nets import SHORT_EDGE, planarize_held
 from ...kernel.remesh.node_sites import node_distances
 from ...kernel.remesh.planarize import Planarization, measure_nodes, planarize
 from ...kernel.remesh.relax import CongruenceQuality
@@ -25,9 +25,6 @@ COMPLEX_SHARE = 0.05
 
 LEANING = 30.0
 """Angle of the node axes with the normals, in degrees, that is worth a warning."""
-
-SHORT_EDGE = 0.2
-"""Length of an edge, relative to the mean, that is worth a warning."""
 
 Degree = Annotated[int | None, Port(min=2, max=7)]
 Rings = Annotated[int, Port(min=1, max=10)]
