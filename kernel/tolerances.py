@@ -144,6 +144,9 @@ MOSTLY_EVEN: Final = 0.95
 NODE_EXACT: Final = 5e-10
 """Residuals of a node below this, in mean edges and radians, count as zero."""
 
+NODE_ROUNDED: Final = 1e-14
+"""Residuals of a node below this are rounding alone."""
+
 TORSION_FREE: Final = 1e-8
 """Fourth singular value of the spheres around a node, relative to the first, that is none."""
 

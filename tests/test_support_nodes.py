@@ -59,7 +59,7 @@ def test_beams_of_landed_nodes_meet(mesh: Mesh) -> None:
     np.testing.assert_allclose(moves.max(), landed.report["moved"]["max"], rtol=1e-6)
     assert vertex_error(landed.sphere_mesh).max() < 1e-8 * edge
     before, after = (ends_apart(found) / edge for found in (optimum, landed.sphere_mesh))
-    assert after < 1e-7
+    assert after < 1e-8
     assert after < 1e-5 * before
 
 

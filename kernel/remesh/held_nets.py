@@ -2,10 +2,10 @@
 
 from ..arrays import dot, norm
 from ..mesh import Mesh, face_vector_areas, mean_edge_length
-from ..sphere_mesh import SphereMesh
-from ..tolerances import ON_SURFACE
+from ..sphere_mesh import SphereMesh, vertex_error
+from ..tolerances import NODE_ON_SPHERES, NODE_ROUNDED, ON_SURFACE, TORSION_FREE
 from .node_sites import node_distances
-from .planarize import Planarization, planarize
+from .planarize import Planarization, measure_nodes, planarize
 from .smooth_surface import SmoothSurface
 
 RIM_WEIGHTS = (1.0, 0.1, 0.0)
@@ -73,12 +73,20 @@ def planarize_near(sphere_mesh: SphereMesh, farthest: float) -> tuple[Planarizat
         The planarised mesh.
     is_near : bool
         Whether its nodes are planar, none of them moved farther, and it stayed a net.
+
+    Notes
+    -----
+    Where neighbours meet nearly smoothly, the plane of their circle is far less exact than they
+    are. So the descent goes on to rounding, as near as it gets.
     """
-    result = planarize(sphere_mesh)
+    result = planarize(sphere_mesh, exact=NODE_ROUNDED)
+    found = result.sphere_mesh
+    gap = vertex_error(found).max() / mean_edge_length(found.mesh)
     is_near = (
-        result.status == "converged"
+        measure_nodes(found).planarity.max(initial=0.0) <= TORSION_FREE
+        and gap <= NODE_ON_SPHERES
         and result.shifts.max(initial=0.0) <= farthest
-        and _is_kept(sphere_mesh.mesh, result.sphere_mesh.mesh)
+        and _is_kept(sphere_mesh.mesh, found.mesh)
     )
     return result, bool(is_near)
 

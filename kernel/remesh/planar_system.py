@@ -72,6 +72,8 @@ class PlanarSystem:
         net, its root mean square.
     site : callable
         Where the nodes shall be.
+    exact : float
+        Residuals below this count as zero.
     """
 
     mesh: Mesh
@@ -80,6 +82,7 @@ class PlanarSystem:
     is_planar: BoolArray
     scales: FloatArray
     site: Site = anywhere
+    exact: float = NODE_EXACT
 
 
 class Residuals(NamedTuple):
@@ -215,11 +218,11 @@ def energies(system: PlanarSystem, net: Net) -> FloatArray:
     Returns
     -------
     (4,) float array
-        One for each kind of residual. All are zero if no residual is above `NODE_EXACT`: on
+        One for each kind of residual. All are zero if no residual is above `exact`: on
         closed nets the constraints are nearly dependent, and the last digits come slowly.
     """
     miss = residuals(system, net)
-    is_exact = all((np.abs(r) <= NODE_EXACT).all() for r in miss)
+    is_exact = all((np.abs(r) <= system.exact).all() for r in miss)
     return np.array([0.0 if is_exact else (r**2).sum() for r in miss])
 
 

@@ -25,7 +25,7 @@ from ..mesh import Mesh, face_vector_areas, local_corners, mean_edge_length
 from ..solvers.levenberg_marquardt import Descent, Status, levenberg_marquardt
 from ..sphere_mesh import SphereMesh
 from ..spheres import recenter, rescale
-from ..tolerances import DEGENERATE
+from ..tolerances import DEGENERATE, NODE_EXACT
 from .node_sites import Site, on_surface
 from .planar_steps import linearize
 from .planar_system import Net, PlanarSystem, energies, move, must_be_planar, planar_system
@@ -54,7 +54,7 @@ class Planarization:
     shifts : (V,) float array
         How far each node moved, in mean edges.
     status : {"converged", "stalled", "exhausted"}
-        How the descent ended; if it converged, nodes are planar to `NODE_EXACT`.
+        How the descent ended; if it converged, nodes are planar as exactly as asked for.
     iterations : int
         Linear systems solved.
     """
@@ -97,6 +97,7 @@ def planarize(
     fairness: float = 1.0,
     surface: SmoothSurface | None = None,
     rim_weight: float = 1.0,
+    exact: float = NODE_EXACT,
 ) -> Planarization:
     """
     Make the nodes of a sphere mesh planar in P⁴, and put them on their spheres.
@@ -114,6 +115,8 @@ def planarize(
         which stay on it seen from above, lie near it.
     rim_weight : float
         How much heights of the boundary count in the first steps, relative to those inside.
+    exact : float
+        Residuals of a node, in mean edges and radians, that count as zero.
 
     Returns
     -------
@@ -146,7 +149,7 @@ def planarize(
     """
     if not (np.isfinite(fairness) and fairness >= 0):
         raise InputError(f"the fairness must not be negative, not {fairness}")
-    system = planar_system(sphere_mesh)
+    system = replace(planar_system(sphere_mesh), exact=exact)
     size = step_norm(system, fairness)
     start, first = system.start, 0
     for site, steps in [] if surface is None else _approach(system.mesh, surface, rim_weight):
