@@ -18,7 +18,8 @@ import numpy as np
 from .analysis import beam_tilt
 from .arrays import BoolArray, FloatArray, IntArray, batches_by_count, dot, norm, sum_by, unit
 from .cutting import flatten_nearly_plane
-from .mesh import local_corners, mean_edge_length
+from .mesh import Mesh, local_corners, mean_edge_length
+from .rim_axes import rim_axes
 from .sphere_mesh import SphereMesh
 from .spheres import angle, recenter, signed_distance
 from .tolerances import (
@@ -152,7 +153,9 @@ def support_structure(sphere_mesh: SphereMesh) -> SupportStructure:
     vertex: the last right singular vector of their unit normals. Neighbours on the same sphere
     have no arc plane and are skipped. Where fewer than two different planes are left, as at
     most vertices of the boundary, the normal of the vertex completes them: the axis is the
-    direction of the plane nearest to it, or the normal itself.
+    direction of the plane nearest to it, or the normal itself. Along sides of the boundary,
+    from corner to corner, axes then turn by a little until the beams there are flat
+    (`rim_axes`).
 
     The mirror image is ``v + t a`` with t the least squares solution of ``A t = N·a`` over the
     spheres of the vertex.
@@ -170,7 +173,7 @@ def support_structure(sphere_mesh: SphereMesh) -> SupportStructure:
     vertex_normals = unit(sum_by(mesh.corners, rows[:, 1:4], mesh.n_vertices))
     planes = arc_planes(sphere_mesh)
     directions, torsion = _axes(
-        mesh.topology.edge_vertices[planes.exists], planes.normals[planes.exists],
+        mesh, mesh.topology.edge_vertices[planes.exists], planes.normals[planes.exists],
         vertex_normals,
     )  # fmt: skip
     reach, has_mirror, miss = _mirror(rows, mesh.corners, directions)
@@ -184,11 +187,12 @@ def support_structure(sphere_mesh: SphereMesh) -> SupportStructure:
 
 
 def _axes(
-    ends: IntArray, plane_normals: FloatArray, vertex_normals: FloatArray
+    mesh: Mesh, ends: IntArray, plane_normals: FloatArray, vertex_normals: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Axis directions (V, 3) of arc planes between the vertices `ends` (E, 2), and torsion."""
     nodes, around = ends.T.ravel(), np.concatenate([plane_normals, plane_normals])
     result = -vertex_normals
+    only = np.zeros_like(result)
     for vertices, ids in batches_by_count(nodes, len(vertex_normals)):
         _, values, basis = np.linalg.svd(around[ids])
         normal, first = vertex_normals[vertices], basis[:, 0]
@@ -197,6 +201,8 @@ def _axes(
         is_line = spread > PARALLEL_PLANES * values[:, 0]
         found = np.where(is_line[:, None], basis[:, 2], unit(within))
         result[vertices] = np.where(dot(found, normal)[:, None] > 0, -found, found)
+        only[vertices] = np.where(is_line[:, None], np.nan, first)
+    result = rim_axes(mesh, result, only)
     torsion = np.zeros(len(vertex_normals))
     sines = np.abs(dot(around, result[nodes]))
     np.maximum.at(torsion, nodes, np.arcsin(np.minimum(sines, 1.0)))

@@ -218,3 +218,6 @@ ALIKE: Final = 1e-3
 
 ON_SURFACE: Final = 1e-2
 """Nodes this close to a surface, in mean edges of their net, lie on it."""
+
+RIM_LEAN: Final = 0.3490658503988659
+"""Axes of the boundary may lean by this (20 degrees) to make the beams there flat."""

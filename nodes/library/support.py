@@ -96,7 +96,8 @@ def support_structure(sphere_mesh: SphereMesh) -> Nodes:
         Two points of each node axis: the vertex and its mirror image in the plane of the
         centres of its spheres. Where that is farther than 100,000 mean edges (planes) or
         at the vertex itself, the point of the axis one mean edge inside. On the boundary the
-        axis lies in the planes of the beams that are there, as near to the normal as they let.
+        axis lies in the planes of the beams from inside, as near to the normal as they let, or
+        turned until the beams of the boundary are flat.
     torsion : (V,) float array
         Largest angle between the plane of a beam and the axis, in degrees.
     is_valid : (V,) bool array
