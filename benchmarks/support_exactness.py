@@ -68,7 +68,7 @@ def job(name: str, folder: Path) -> tuple[SphereMesh, Panels, Beams]:
         made = found.get("written", found.get("made"))
         codes = [each.get("code", each["reason"]) for each in found["rejected"]]
         print(f"{step}: {made} made, {len(codes)} rejected {sorted(set(codes))}")
-    names = ("optimum.sphere_mesh", "panels.panels", "beams.beams")
+    names = ("landing.sphere_mesh", "panels.panels", "beams.beams")
     sphere_mesh, panels, beams = (graph.run(each) for each in names)
     return sphere_mesh, panels, beams
 
