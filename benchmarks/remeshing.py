@@ -265,8 +265,8 @@ def noise() -> None:
 
 REGULAR: tuple[tuple[SampleShape, float, float], ...] = (
     ("annulus", 0.5, 0.12), ("annulus", 1.5, 0.08), ("hypar", 0.5, 0.12), ("hypar", 0.5, 0.06),
-    ("bump", 0.5, 0.12), ("bump", 0.5, 0.06), ("torus", -0.5, 0.2), ("torus", -1.1, 0.15),
-    ("torus", -0.5, 0.07),
+    ("bump", 0.5, 0.12), ("bump", 1.0, 0.08), ("bump", 1.0, 0.06), ("torus", -0.5, 0.2),
+    ("torus", -1.1, 0.15), ("torus", -0.5, 0.07),
 )  # fmt: skip
 """Shapes, signed radii of the spheres and edge lengths."""
 

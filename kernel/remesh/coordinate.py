@@ -15,8 +15,16 @@ from .congruence_mesh import CongruenceMesh
 from .integers import IntegerSolutions, Quadratic, relaxed_minimum, round_minimum
 from .seams import Seams
 
-ACROSS = 30.0
-"""Weight of the direction in which a coordinate shall not change."""
+ACROSS = 100.0
+"""
+Weight of the direction in which a coordinate shall not change.
+
+Where lines leave the directions, planar nodes move; with less weight those near the boundary
+move off the surface, with more the lines around singular points crowd.
+"""
+
+ACROSS_HELD = 30.0
+"""The same where sides of the boundary hold lines: they leave the directions more gently."""
 
 MOST_STRETCH = 1.5
 """Largest factor by which steps that come out too long are shortened."""
@@ -92,10 +100,12 @@ def eliminate(
 
     Notes
     -----
-    Least squares of ``|grad u · t1 h - 1|² + 30 |grad u · t2 h|²`` over the area.
+    Least squares of ``|grad u · t1 h - 1|² + w |grad u · t2 h|²`` over the area, with the
+    weight w of `ACROSS` or `ACROSS_HELD`.
     """
     corner_map = _corner_map(surface, seams, alignment)
-    jacobian, target = _least_squares(surface, corner_map, along, across)
+    weight = ACROSS_HELD if len(alignment.vertices) else ACROSS
+    jacobian, target = _least_squares(surface, corner_map, along, np.sqrt(weight) * across)
     is_free = seams.is_free and len(alignment.vertices) == 0
     fixed, expressions, constants = _fixed_vertices(seams, alignment, int(is_free))
     is_fixed = np.zeros(len(surface.points), bool)
@@ -186,8 +196,10 @@ def _least_squares(
     corners = np.arange(along.size)
     scale = np.sqrt(surface.face_areas / surface.face_areas.sum())
     shape = (len(scale), len(corners))
-    weights = (scale[:, None] * along, np.sqrt(ACROSS) * scale[:, None] * across)
-    slopes = [csr_array((w.ravel(), (corners // 3, corners)), shape=shape) for w in weights]
+    slopes = [
+        csr_array(((scale[:, None] * derivative).ravel(), (corners // 3, corners)), shape=shape)
+        for derivative in (along, across)
+    ]
     target = np.concatenate([scale, np.zeros(len(scale))])
     return (vstack(slopes) @ corner_map).tocsc(), target
 

@@ -83,7 +83,7 @@ def parametrize(
 
     Notes
     -----
-    Least squares of ``|grad u · t1 h - 1|² + 30 |grad u · t2 h|²``, the same for v. The real
+    Least squares of ``|grad u · t1 h - 1|² + w |grad u · t2 h|²``, the same for v. The real
     unknowns are eliminated once; what is left is a small quadratic function of the integers.
 
     References
