@@ -4,12 +4,16 @@ Node axes along the boundary: where one plane is given at a node, and edges ask 
 A beam on the boundary is flat if the axes at its two ends lie in one plane with its edge. At a
 node where one beam comes from inside, the axis lies in the plane of that beam, so an axis at
 one node leaves one direction at the next: along a side, from corner to corner, all follow from
-the first, which is chosen such that none leans more than needed.
+the first, which is chosen such that none leans more than needed. Around a boundary without
+corners the last must lead to the first again: as each step is linear in the axis, the first is
+an eigenvector of all steps together, and there are two of them or none.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
-from .arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
+from .arrays import BoolArray, FloatArray, IntArray, dot, unit
 from .mesh import Mesh
 from .tolerances import RIM_LEAN
 
@@ -35,19 +39,42 @@ def rim_axes(mesh: Mesh, directions: FloatArray, planes: FloatArray) -> FloatArr
     -------
     (V, 3) float array
         Axes. Sides that would need an axis to lean by more than `RIM_LEAN` from the direction
-        given, and boundaries without corners, stay as they are.
+        given, and boundaries without corners that no axes fit, stay as they are.
     """
     result = directions.copy()
     is_given = np.asarray(planes.any(axis=1))
-    for side in _sides(mesh, ~is_given):
-        inner = side[1:-1]
-        if len(inner) == 0 or not np.isfinite(planes[inner]).all():
+    following = _next_on_boundary(mesh)
+    sides = [(side[1:-1], _side_angles) for side in _sides(following, ~is_given)]
+    loops = [(loop, _loop_angles) for loop in _loops(following, is_given)]
+    for nodes, find in (*sides, *loops):
+        if len(nodes) == 0 or not np.isfinite(planes[nodes]).all():
             continue
-        along = mesh.vertices[side[2:-1]] - mesh.vertices[side[1:-2]]
-        turned = _turned(directions[inner], planes[inner], along)
-        if turned is not None:
-            result[inner] = turned
-    return _corner_axes(mesh, result, is_given)
+        given, along = directions[nodes], mesh.vertices[following[nodes]] - mesh.vertices[nodes]
+        across = np.cross(planes[nodes], given)
+        angles = find(_Side(given, across, planes[nodes], along))
+        if angles is not None and np.abs(angles).max() <= RIM_LEAN:
+            result[nodes] = np.cos(angles)[:, None] * given + np.sin(angles)[:, None] * across
+    return _corner_axes(mesh, result, is_given, following)
+
+
+class _Side(NamedTuple):
+    """
+    Nodes of a side, one after the other.
+
+    Attributes
+    ----------
+    given, across : (n, 3) float array
+        Unit vectors of the plane of each node: the axis given, and the direction across it.
+    planes : (n, 3) float array
+        Unit normals of these planes.
+    along : (n, 3) float array
+        Edges to the next node.
+    """
+
+    given: FloatArray
+    across: FloatArray
+    planes: FloatArray
+    along: FloatArray
 
 
 def _next_on_boundary(mesh: Mesh) -> IntArray:
@@ -58,9 +85,8 @@ def _next_on_boundary(mesh: Mesh) -> IntArray:
     return result
 
 
-def _sides(mesh: Mesh, is_corner: BoolArray) -> list[IntArray]:
+def _sides(following: IntArray, is_corner: BoolArray) -> list[IntArray]:
     """Vertices of the boundary from corner to corner."""
-    following = _next_on_boundary(mesh)
     steps: list[int] = following.tolist()
     ends: list[bool] = is_corner.tolist()
     sides: list[IntArray] = []
@@ -72,44 +98,70 @@ def _sides(mesh: Mesh, is_corner: BoolArray) -> list[IntArray]:
     return sides
 
 
-def _turned(given: FloatArray, planes: FloatArray, along: FloatArray) -> FloatArray | None:
-    """Axes (n, 3) of the nodes of a side that are coplanar one after the other."""
-    across = np.cross(planes, given)
+def _loops(following: IntArray, is_given: BoolArray) -> list[IntArray]:
+    """Vertices of each boundary that has no corner."""
+    steps: list[int] = following.tolist()
+    left = set(np.flatnonzero(is_given & (following >= 0)).tolist())
+    loops: list[IntArray] = []
+    while left:
+        loop = [left.pop()]
+        while (ahead := steps[loop[-1]]) in left:
+            left.remove(ahead)
+            loop.append(ahead)
+        if steps[loop[-1]] == loop[0]:
+            loops.append(np.array(loop))
+    return loops
+
+
+def _side_angles(side: _Side) -> FloatArray:
+    """Angles (n,) by which the axes of a side turn, the largest as small as can be."""
     low, high, best = -RIM_LEAN, RIM_LEAN, 0.0
     for _ in range(2):
         first = np.linspace(low, high, TRIALS)
-        angles = _followed(first, given, across, planes, along)
-        worst = np.abs(angles).max(axis=0)
+        worst = np.abs(_followed(first, side)).max(axis=0)
         best = float(first[worst.argmin()])
         step = (high - low) / (TRIALS - 1)
         low, high = best - step, best + step
-    angles = _followed(np.array([best]), given, across, planes, along)[:, 0]
-    if np.abs(angles).max() > RIM_LEAN:
+    return _followed(np.array([best]), side)[:, 0]
+
+
+def _loop_angles(loop: _Side) -> FloatArray | None:
+    """Angles (n,) by which the axes of a closed side turn; None where no axes fit."""
+    around = np.eye(2)
+    for i in range(len(loop.along)):
+        around = _step(loop, i) @ around
+        around /= np.abs(around).max()
+    values, vectors = np.linalg.eig(around)
+    if np.iscomplex(values).any():
         return None
-    return np.cos(angles)[:, None] * given + np.sin(angles)[:, None] * across
+    first = np.arctan2(vectors[1].real, vectors[0].real)
+    angles = _followed((first + np.pi / 2) % np.pi - np.pi / 2, loop)
+    return angles[:, np.abs(angles).max(axis=0).argmin()]
 
 
-def _followed(
-    first: FloatArray,
-    given: FloatArray,
-    across: FloatArray,
-    planes: FloatArray,
-    along: FloatArray,
-) -> FloatArray:
+def _step(side: _Side, i: int) -> FloatArray:
+    """The linear map (2, 2) from the axis at a node to the axis at the next."""
+    ahead = (i + 1) % len(side.along)
+    bases = np.stack([side.given, side.across], 1)
+    found = np.cross(side.planes[ahead], np.cross(side.along[i], bases[i]))
+    return bases[ahead] @ found.T
+
+
+def _followed(first: FloatArray, side: _Side) -> FloatArray:
     """Angles (n, m) by which the axes of a side turn in their planes, for m first ones."""
+    axes = np.stack([np.cos(first), np.sin(first)])
     angles = [first]
-    for i, edge in enumerate(along):
-        turn = angles[-1][:, None]
-        axis = np.cos(turn) * given[i] + np.sin(turn) * across[i]
-        found = np.cross(planes[i + 1], np.cross(edge, axis))
-        found *= np.where(dot(found, given[i + 1]) < 0, -1.0, 1.0)[:, None]
-        angles.append(np.arctan2(dot(found, across[i + 1]), dot(found, given[i + 1])))
+    for i in range(len(side.along) - 1):
+        axes = _step(side, i) @ axes
+        axes *= np.where(axes[0] < 0, -1.0, 1.0) / np.hypot(*axes)
+        angles.append(np.arctan2(axes[1], axes[0]))
     return np.array(angles)
 
 
-def _corner_axes(mesh: Mesh, directions: FloatArray, is_given: BoolArray) -> FloatArray:
+def _corner_axes(
+    mesh: Mesh, directions: FloatArray, is_given: BoolArray, following: IntArray
+) -> FloatArray:
     """At corners the axis is the line in which the planes of the two beams meet."""
-    following = _next_on_boundary(mesh)
     corners = np.flatnonzero(~is_given & (following >= 0))
     previous = np.full(mesh.n_vertices, -1)
     on_rim = np.flatnonzero(following >= 0)
@@ -117,11 +169,9 @@ def _corner_axes(mesh: Mesh, directions: FloatArray, is_given: BoolArray) -> Flo
     beside = np.stack([previous[corners], following[corners]])
     edges = mesh.vertices[beside] - mesh.vertices[corners]
     normals = unit(np.cross(edges, directions[beside]))
-    lines = np.cross(normals[0], normals[1])
-    use = is_given[beside].all(axis=0) & (norm(lines) > np.sin(RIM_LEAN))
-    lines = unit(lines)
+    lines = unit(np.cross(normals[0], normals[1]))
     lines *= np.where(dot(lines, directions[corners]) < 0, -1.0, 1.0)[:, None]
-    use &= dot(lines, directions[corners]) > np.cos(RIM_LEAN)
+    use = is_given[beside].all(axis=0) & (dot(lines, directions[corners]) > np.cos(RIM_LEAN))
     result = directions.copy()
     result[corners[use]] = lines[use]
     return result

@@ -221,3 +221,9 @@ ON_SURFACE: Final = 1e-2
 
 RIM_LEAN: Final = 0.3490658503988659
 """Axes of the boundary may lean by this (20 degrees) to make the beams there flat."""
+
+ALIKE_NEIGHBORS: Final = 5e-5
+"""Spheres of neighbours that meet at a smaller angle (radians) are turned apart to it."""
+
+NODE_LANDED: Final = 1e-7
+"""Torsion (radians) of a node whose beams meet exactly, up to rounding."""

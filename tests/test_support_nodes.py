@@ -82,6 +82,25 @@ def test_nodes_that_are_far_stay_where_they_are() -> None:
     assert not found.report["landed"]
 
 
+def test_spheres_that_are_built_as_planes_do_not_land_by_their_far_centers() -> None:
+    """They share two points, one of them beyond a billion edges: no beam knows of that."""
+    rows = vase_mesh(9, 7).vertices
+    sheared = rows * [1, 1.2, 1] + 0.3 * rows[:, 2:] ** 2 * [1, 0, 0]
+    mesh = Mesh(sheared, [list(face) for face in vase_mesh(9, 7).faces])
+    nearly_plane = planes_on_far_centers(face_planes(mesh))
+    with pytest.warns(UserWarning, match="too large to tell from planes"):
+        found = land_nodes(nearly_plane)
+    assert found.sphere_mesh is nearly_plane
+    assert ends_apart(found.sphere_mesh) > 1e-3 * mean_edge_length(mesh)
+
+
+def planes_on_far_centers(planes: SphereMesh) -> SphereMesh:
+    """The planes bent to spheres of a billion edges."""
+    rows = planes.local_spheres.copy()
+    rows[:, 0] = 1e-10 / mean_edge_length(planes.mesh)
+    return SphereMesh.from_local(planes.mesh, rows)
+
+
 def test_annulus_support_reports_and_warns() -> None:
     sphere_mesh = minimize_angles(central_spheres(roof_mesh())).sphere_mesh
     with pytest.warns(UserWarning, match="annuli cannot be made"):

@@ -3,12 +3,15 @@
 from ..arrays import dot, norm
 from ..mesh import Mesh, face_vector_areas, mean_edge_length
 from ..sphere_mesh import SphereMesh, vertex_error
-from ..tolerances import NODE_ON_SPHERES, NODE_ROUNDED, ON_SURFACE, TORSION_FREE
+from ..support import support_structure
+from ..tolerances import NODE_LANDED, NODE_ON_SPHERES, NODE_ROUNDED, ON_SURFACE
 from .node_sites import node_distances
-from .planarize import Planarization, measure_nodes, planarize
+from .planar_system import must_be_planar
+from .planarize import Planarization, planarize
 from .smooth_surface import SmoothSurface
+from .turned_neighbors import turn_apart
 
-RIM_WEIGHTS = (1.0, 0.1, 0.0)
+RIM_WEIGHTS = (1.0, 0.5, 0.3, 0.2, 0.1, 0.0)
 """How much the boundary counts: less where a net cannot meet it, down to nothing."""
 
 KEPT_EDGE = 0.5
@@ -72,18 +75,21 @@ def planarize_near(sphere_mesh: SphereMesh, farthest: float) -> tuple[Planarizat
     result : Planarization
         The planarised mesh.
     is_near : bool
-        Whether its nodes are planar, none of them moved farther, and it stayed a net.
+        Whether its beams meet, none of its nodes moved farther, and it stayed a net.
 
     Notes
     -----
     Where neighbours meet nearly smoothly, the plane of their circle is far less exact than they
-    are. So the descent goes on to rounding, as near as it gets.
+    are. So the descent goes on to rounding, as near as it gets; and neighbours that are all but
+    one sphere are turned apart before (`turn_apart`). Spheres so large that they are built as
+    planes can share points far off, and their beams share nothing: beams are the judge.
     """
-    result = planarize(sphere_mesh, exact=NODE_ROUNDED)
+    result = planarize(turn_apart(sphere_mesh), exact=NODE_ROUNDED)
     found = result.sphere_mesh
     gap = vertex_error(found).max() / mean_edge_length(found.mesh)
+    torsion = support_structure(found).torsion[must_be_planar(found.mesh)]
     is_near = (
-        measure_nodes(found).planarity.max(initial=0.0) <= TORSION_FREE
+        torsion.max(initial=0.0) <= NODE_LANDED
         and gap <= NODE_ON_SPHERES
         and result.shifts.max(initial=0.0) <= farthest
         and _is_kept(sphere_mesh.mesh, found.mesh)

@@ -75,7 +75,8 @@ def land_nodes(
         return LandedNodes(result.sphere_mesh, report)
     warn(
         f"beams do not meet exactly: the nodes would have to move by {farthest:.2g} edges or "
-        f"more, or turn faces over; {max_move:g} are allowed"
+        f"more, where {max_move:g} are allowed, or turn faces over, or the spheres are too large "
+        "to tell from planes"
     )
     return LandedNodes(sphere_mesh, report)
 
