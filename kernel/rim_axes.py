@@ -169,7 +169,7 @@ def _corner_axes(
     beside = np.stack([previous[corners], following[corners]])
     edges = mesh.vertices[beside] - mesh.vertices[corners]
     normals = unit(np.cross(edges, directions[beside]))
-    lines = unit(np.cross(normals[0], normals[1]))
+    lines: FloatArray = unit(np.asarray(np.cross(normals[0], normals[1]), np.float64))
     lines *= np.where(dot(lines, directions[corners]) < 0, -1.0, 1.0)[:, None]
     use = is_given[beside].all(axis=0) & (dot(lines, directions[corners]) > np.cos(RIM_LEAN))
     result = directions.copy()

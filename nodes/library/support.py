@@ -74,9 +74,9 @@ def land_nodes(
     if is_near:
         return LandedNodes(result.sphere_mesh, report)
     warn(
-        f"beams do not meet exactly: the nodes would have to move by {farthest:.2g} edges or "
-        f"more, where {max_move:g} are allowed, or turn faces over, or the spheres are too large "
-        "to tell from planes"
+        f"beams do not meet exactly: nodes would have to move by {farthest:.2g} edges or more, "
+        f"where {max_move:g} are allowed, or turn faces over, or spheres are too large to tell "
+        "from planes"
     )
     return LandedNodes(sphere_mesh, report)
 
