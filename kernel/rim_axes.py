@@ -6,7 +6,7 @@ node where one beam comes from inside, the axis lies in the plane of that beam, 
 one node leaves one direction at the next: along a side, from corner to corner, all follow from
 the first, which is chosen such that none leans more than needed. Around a boundary without
 corners the last must lead to the first again: as each step is linear in the axis, the first is
-an eigenvector of all steps together, and there are two of them or none.
+an eigenvector of all steps together, and there are two of them or none, or all will do.
 """
 
 from typing import NamedTuple
@@ -15,7 +15,7 @@ import numpy as np
 
 from .arrays import BoolArray, FloatArray, IntArray, dot, unit
 from .mesh import Mesh
-from .tolerances import RIM_LEAN
+from .tolerances import RIM_CLOSED, RIM_LEAN
 
 TRIALS = 361
 """Directions of the first axis that are tried, twice: over all, then around the best."""
@@ -131,6 +131,10 @@ def _loop_angles(loop: _Side) -> FloatArray | None:
     for i in range(len(loop.along)):
         around = _step(loop, i) @ around
         around /= np.abs(around).max()
+    mean = around.trace() / 2
+    if np.abs(around - mean * np.eye(2)).max() <= RIM_CLOSED * abs(mean):
+        # Whatever the first axis is, it returns: as on a surface of revolution.
+        return _side_angles(loop)
     values, vectors = np.linalg.eig(around)
     if np.iscomplex(values).any():
         return None

@@ -227,3 +227,6 @@ ALIKE_NEIGHBORS: Final = 5e-5
 
 NODE_LANDED: Final = 1e-7
 """Torsion (radians) of a node whose beams meet exactly, up to rounding."""
+
+RIM_CLOSED: Final = 1e-7
+"""Axes around a boundary that return this closely (radians), whatever the first is, fit."""

@@ -35,7 +35,8 @@ class NetMesh(NamedTuple):
     n_digons : int
         Cells of two corners, around lemon singularities, that became edges.
     n_slivers : int
-        Cells that were lost with a contracted edge.
+        Cells at the boundary that were lost: with a contracted edge, or since they had but two
+        corners.
     """
 
     mesh: Mesh
@@ -110,7 +111,9 @@ def _build(net: Net, merged: IntArray) -> NetMesh:
     used, renumbered = np.unique(kept, return_inverse=True)
     faces = np.split(renumbered, np.cumsum(degrees)[:-1])
     mesh = Mesh(_places(net, merged)[used], faces)
-    is_digon = np.diff(net.offsets) == 2
+    # A line that grazes the boundary cuts off cells of two corners as well.
+    reaches = np.bincount(cells, net.corners >= net.n_nodes, len(is_face)) > 0
+    is_digon = (np.diff(net.offsets) == 2) & ~reaches
     is_inner = used < net.n_nodes
     return NetMesh(
         mesh, is_inner, int((merged != np.arange(len(merged))).sum()), int(is_digon.sum()),

@@ -56,7 +56,7 @@ class Remeshing:
     n_aligned : int
         Sides of the boundary that are lines of the net.
     n_contracted, n_slivers : int
-        Short edges at the boundary that were contracted, and the cells lost with them.
+        Short edges at the boundary that were contracted, and cells lost there.
     n_digons : int
         Cells of two corners, which became edges.
     axis_angles : (V',) float array

@@ -129,3 +129,13 @@ def test_planarity_of_the_rim_is_measured() -> None:
     assert rim.any()
     assert measure_nodes(start).planarity[rim].max() > 1e-4
     assert measure_nodes(result.sphere_mesh).planarity[rim].max() < 1e-9
+
+
+def test_a_cell_cut_off_by_a_grazing_line_is_lost_and_no_digon() -> None:
+    """A square with a cell of two corners beside it, both on the boundary."""
+    points = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], float)
+    corners, offsets = np.array([0, 1, 2, 3, 1, 0]), np.array([0, 4, 6])
+    built = net_mesh(Net(points, 0, corners, offsets, np.zeros(4, bool)), 1.0)
+    assert (built.n_digons, built.n_slivers) == (0, 1)
+    built = net_mesh(Net(points, 4, corners, offsets, np.zeros(0, bool)), 1.0)
+    assert (built.n_digons, built.n_slivers) == (1, 0)
