@@ -1,6 +1,7 @@
 """The nodes of the category Support."""
 
 import json
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import norm
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.mesh import mean_edge_length
+from spheremesh.kernel.tolerances import VERTEX_MISS
 from spheremesh.nodes import (
     Graph,
     annulus_support,
@@ -17,6 +19,7 @@ from spheremesh.nodes import (
     central_spheres,
     drilling_marks,
     face_planes,
+    fit_spheres,
     land_nodes,
     minimize_angles,
     optimize_spheres,
@@ -61,6 +64,21 @@ def test_beams_of_landed_nodes_meet(mesh: Mesh) -> None:
     before, after = (ends_apart(found) / edge for found in (optimum, landed.sphere_mesh))
     assert after < 1e-8
     assert after < 1e-5 * before
+
+
+def test_misses_that_landing_takes_away_are_no_warning() -> None:
+    mesh = roof_mesh(6, 8)
+    noise = 0.01 * mean_edge_length(mesh) * np.random.default_rng(0).normal(size=(63, 3))
+    rough = Mesh(mesh.vertices + noise, [list(face) for face in mesh.faces])
+    start = minimize_angles(fit_spheres(rough)).sphere_mesh
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        optimum = optimize_spheres(start, regularity=3.5, support=1.0)
+        landed = land_nodes(optimum.sphere_mesh)
+    assert optimum.report["vertex_error"]["relative_to_edge"] > VERTEX_MISS
+    assert landed.report["landed"]
+    assert vertex_error(landed.sphere_mesh).max() < 1e-9
+    assert not caught
 
 
 def ends_apart(sphere_mesh: SphereMesh) -> float:
