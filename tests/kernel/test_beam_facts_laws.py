@@ -250,7 +250,7 @@ def test_law_e6_mitres_leave_the_gap_between_neighbours(gap: float) -> None:
         clearances = beam_facts(beams).clearances
         is_alone = (neighbor_angles(beams.annuli) > MITRE_LIMIT).all(axis=2)
         assert (np.isinf(clearances) == is_alone).all()
-        assert is_alone.sum() < len(clearances) / 8
+        assert is_alone.sum() <= len(clearances) / 8
         np.testing.assert_allclose(clearances[~is_alone], beams.node_gap, atol=1e-12)
 
 
