@@ -51,6 +51,9 @@ def test_names_numbers_and_refusals_are_errors() -> None:
     outer[7] = np.inf
     (found,) = audit_beams(replace(beams, annuli=replace(ANNULI, outer=outer)))
     assert (found.code, found.id, found.severity) == ("B002", "B0007", "error")
+    insets = beams.insets.copy()
+    insets[4] = np.nan
+    assert of("B002", audit_beams(replace(beams, insets=insets))) == {"B0004": None}
     support = annulus_support(central_spheres(NET), depth=0.5)
     made, rejected = cut_beams(support.annuli, 0.4, node_radius=1.3)
     assert support.rejected
