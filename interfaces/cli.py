@@ -104,11 +104,20 @@ def panel(  # numpydoc ignore=PR01
     """
     from .panel import PanelOptions, panel_graph, run_job
 
+    _warn_of_no_beams(options)
     with _errors(), _progress() as progress:
         report, files = run_job(panel_graph(PanelOptions(**options)), out, progress)
     _print_report(report, out, files, as_json=as_json)
     if strict and (report["panels"]["rejected"] or report["beams"]["rejected"]):
         sys.exit(GATE_FAILED)
+
+
+def _warn_of_no_beams(options: Mapping[str, Any]) -> None:
+    """Options of beams say nothing where no beams are asked for."""
+    names = [name for name in ("depth", "beam_thickness", "node_radius") if options[name]]
+    if names and not options["support"]:
+        given = ", ".join(f"--{name.replace('_', '-')}" for name in names)
+        click.echo(f"warning: without --support there are no beams: {given} unused", err=True)
 
 
 @main.command()
@@ -282,8 +291,9 @@ def _print_report(
     if report["support"]:
         support, beams = report["support"], report["beams"]
         click.echo(
-            f"torsion of nodes at most {support['torsion_deg_max']:.2g} degrees, tilt of beams "
-            f"mostly below {support['beam_tilt_deg_p95']:.2g} degrees"
+            f"torsion of inner nodes at most {support['torsion_deg_max']:.2g} degrees, tilt of "
+            f"inner beams mostly below {support['beam_tilt_deg_p95']:.2g}, of all at most "
+            f"{support['beam_tilt_deg_max']:.2g} degrees"
         )
         click.echo(f"beams {beams['written']} written, {len(beams['rejected'])} rejected")
     if report["audit"]:

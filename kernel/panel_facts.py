@@ -65,7 +65,8 @@ class PanelFacts(PanelRadii):
         Heights of the outer arcs over their chords.
     wall_tilts : (H,) float array
         Angle, in radians, between the cutting plane and the surface normal in the middle of
-        the edge, averaged with the neighbour's. Beams along the edge are tilted as much.
+        the edge, averaged with the neighbour's. That of a beam is measured against the faces
+        of the mesh, and on the boundary a beam has a plane of its own.
     steps : (H,) float array
         Height of the step from an outer edge to the neighbour's, in the middle; NaN where there
         is no neighbour.

@@ -140,7 +140,9 @@ def test_a_large_mould_keeps_its_radius_where_small_panels_are_planes() -> None:
     height = -np.sum(corners**2, axis=1) / (2 * radius)
     mesh = Mesh(np.column_stack([corners, height]), [[0, 1, 4, 3], [1, 2, 5, 4]])
     ball = np.array([-1 / (2 * radius), 0.0, 0.0, 1.0, 0.0])
-    panels, _ = cut_panels(SphereMesh(mesh, np.tile(ball, (2, 1))), labels=np.zeros(2, np.int64))
+    panels, _ = cut_panels(
+        SphereMesh(mesh, np.tile(ball, (2, 1))), labels=np.zeros(2, np.int64)
+    )
     assert (panels.design_spheres[:, 0] == 0).tolist() == [False, True]
     blanks = mould_blanks(panels, congruent_panels(panels))
     np.testing.assert_allclose(blanks.radii, radius, rtol=1e-9)
