@@ -6,7 +6,8 @@ node where one beam comes from inside, the axis lies in the plane of that beam, 
 one node leaves one direction at the next: along a side, from corner to corner, all follow from
 the first, which is chosen such that none leans more than needed. Around a boundary without
 corners the last must lead to the first again: as each step is linear in the axis, the first is
-an eigenvector of all steps together, and there are two of them or none.
+an eigenvector of all steps together, and there are two of them or none; or any does, where
+all steps together lead every axis to itself, as on a rim of a surface of revolution.
 """
 
 from typing import NamedTuple
@@ -15,10 +16,13 @@ import numpy as np
 
 from .arrays import BoolArray, FloatArray, IntArray, dot, unit
 from .mesh import Mesh
-from .tolerances import RIM_LEAN
+from .tolerances import LEADS_BACK, RIM_LEAN
 
 TRIALS = 361
-"""Directions of the first axis that are tried, twice: over all, then around the best."""
+"""Directions of the first axis that are tried: over all, then around the best."""
+
+SCANS = 4
+"""How often they are tried: to a billionth of a radian."""
 
 
 def rim_axes(mesh: Mesh, directions: FloatArray, planes: FloatArray) -> FloatArray:
@@ -116,7 +120,7 @@ def _loops(following: IntArray, is_given: BoolArray) -> list[IntArray]:
 def _side_angles(side: _Side) -> FloatArray:
     """Angles (n,) by which the axes of a side turn, the largest as small as can be."""
     low, high, best = -RIM_LEAN, RIM_LEAN, 0.0
-    for _ in range(2):
+    for _ in range(SCANS):
         first = np.linspace(low, high, TRIALS)
         worst = np.abs(_followed(first, side)).max(axis=0)
         best = float(first[worst.argmin()])
@@ -131,6 +135,8 @@ def _loop_angles(loop: _Side) -> FloatArray | None:
     for i in range(len(loop.along)):
         around = _step(loop, i) @ around
         around /= np.abs(around).max()
+    if np.abs(around - np.trace(around) / 2 * np.eye(2)).max() < LEADS_BACK:
+        return _side_angles(loop)
     values, vectors = np.linalg.eig(around)
     if np.iscomplex(values).any():
         return None

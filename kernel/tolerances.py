@@ -227,3 +227,6 @@ ALIKE_NEIGHBORS: Final = 5e-5
 
 NODE_LANDED: Final = 1e-7
 """Torsion (radians) of a node whose beams meet exactly, up to rounding."""
+
+LEADS_BACK: Final = 1e-8
+"""A map of axes around a boundary that is nearer to a multiple of 1 leads all to themselves."""
