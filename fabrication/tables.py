@@ -106,7 +106,7 @@ def _cell(value: object) -> str:
 
 
 def _number(value: float) -> str:
-    """Nine digits, and more where coordinates are large: none is rounded by over a nanometre."""
+    """Nine digits, and more where coordinates are large: in millimetres, a nanometre."""
     if abs(value) < LARGE:
         return f"{value:.9g}"
     return f"{value:.6f}".rstrip("0").rstrip(".")

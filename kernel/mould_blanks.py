@@ -156,7 +156,7 @@ def mould_blanks(panels: Panels, same: CongruentPanels, size_step: float = 0.0) 
     labels, diameters = panels.labels[members], 2 * panel_caps(panels).radii[members]
     moulds, which = np.unique(labels, return_inverse=True)
     curvatures = 2 * np.abs(panels.design_spheres[members, 0])
-    # Small panels of a very large mould are built as planes, but the mould is no flatter for it.
+    # Small panels of a very large mould are built as planes; the mould is no flatter for it.
     bends = np.zeros(len(moulds))
     np.maximum.at(bends, which, curvatures)
     if size_step > 0:

@@ -194,7 +194,7 @@ def test_a_beam_that_is_left_alone_runs_into_nobody() -> None:
     rim = np.stack([np.cos(turns), np.sin(turns), 0 * turns], 1)
     fan = Mesh(np.vstack([np.zeros(3), rim]), [[0, i + 1, (i + 1) % 6 + 1] for i in range(6)])
     beams = cut_beams(annulus_support(face_planes(fan), depth=0.2).annuli, 0.05)[0]
-    # On the rim the next beam is 240 degrees away on one side: the mitre reaches beyond the node.
+    # On the rim the next beam is 240 degrees away on one side: mitres reach beyond the node.
     assert beams.insets.min() < -0.01
     assert codes(audit_beams(beams)) == set()
     np.testing.assert_allclose(beam_facts(beams).clearances, 0, atol=1e-12)

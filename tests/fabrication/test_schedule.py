@@ -108,7 +108,7 @@ def test_csv_opens_in_spreadsheets_and_programs(panels: Panels, tmp_path: Path) 
 
 def test_csv_keeps_the_digits_of_site_coordinates(panels: Panels, tmp_path: Path) -> None:
     """A thousand kilometres from the origin, corners are still told to a micrometre."""
-    far = replace(panels, origins=panels.origins + [1e6, -2e6, 5e5])
+    far = replace(panels, origins=panels.origins + np.array([1e6, -2e6, 5e5]))
     path = write_schedule(far, tmp_path / "schedule.csv")
     with path.open(encoding="utf-8-sig", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -144,7 +144,7 @@ def test_xlsx_has_numbers_as_numbers(panels: Panels, tmp_path: Path) -> None:
 
 
 def test_xlsx_has_text_as_it_is(panels: Panels, tmp_path: Path) -> None:
-    """Lists that begin with a minus or a dash, and names like formulas, are text and no more."""
+    """Lists that begin with a minus or a dash, and names like formulas, are just text."""
     openpyxl = pytest.importorskip("openpyxl")
     names = ("=A1+1", "Glas-Träger \u2116 7", *panels.ids[2:])
     path = write_schedule(replace(panels, ids=names), tmp_path / "schedule.xlsx")

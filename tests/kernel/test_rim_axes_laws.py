@@ -181,7 +181,7 @@ def test_a_ring_that_all_axes_fit_takes_those_that_lean_least(seed: int, count: 
     through = unit(np.array([0, 0, 1.0]) * heights[:, None, None] - rim.mesh.vertices[1:])
     cosines = np.abs(dot(through, rim.directions[1:])).min(axis=1)
     assert leans(rim, axes).max() < np.arccos(cosines.max()) + 1e-9
-    far = Mesh(rim.mesh.vertices + [6e5, -6.4e5, 4.8e5], rim.mesh.faces)
+    far = Mesh(rim.mesh.vertices + np.array([6e5, -6.4e5, 4.8e5]), rim.mesh.faces)
     np.testing.assert_allclose(rim_axes(far, rim.directions, rim.planes), axes, atol=1e-6)
 
 
