@@ -88,7 +88,7 @@ def main() -> None:
     default=0.0,
     help="Radius of cylinders at the nodes, before which beams end square; 0 for mitres.",
 )
-@click.option("--strict", is_flag=True, help="Exit with 5 if a panel or beam is rejected.")
+@click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report alone.")
 def panel(  # numpydoc ignore=PR01
     out: Path,
@@ -108,7 +108,7 @@ def panel(  # numpydoc ignore=PR01
     with _errors(), _progress() as progress:
         report, files = run_job(panel_graph(PanelOptions(**options)), out, progress)
     _print_report(report, out, files, as_json=as_json)
-    if strict and (report["panels"]["rejected"] or report["beams"]["rejected"]):
+    if strict and _has_errors(report):
         sys.exit(GATE_FAILED)
 
 
@@ -127,7 +127,7 @@ def _warn_of_no_beams(options: Mapping[str, Any]) -> None:
 @click.option(
     "-o", "--out", default=".", type=click.Path(path_type=Path), help="Folder for its files."
 )
-@click.option("--strict", is_flag=True, help="Exit with 5 if a panel or beam is rejected.")
+@click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
 @click.option("--json", "as_json", is_flag=True, help="Print the targets' values as JSON.")
 def run(  # numpydoc ignore=PR01
     graph_file: Path, settings: tuple[str, ...], targets: tuple[str, ...], out: Path, *,
@@ -155,7 +155,7 @@ def run(  # numpydoc ignore=PR01
             return
         report, files = run_job(graph, out, progress)
     _print_report(report, out, files, as_json=as_json)
-    if strict and (report["panels"]["rejected"] or report["beams"]["rejected"]):
+    if strict and _has_errors(report):
         sys.exit(GATE_FAILED)
 
 
@@ -298,6 +298,12 @@ def _print_report(
         click.echo(f"beams {beams['written']} written, {len(beams['rejected'])} rejected")
     if report["audit"]:
         _print_audit(report["audit"])
+
+
+def _has_errors(report: Mapping[str, Any]) -> bool:
+    """Whether a panel or beam is rejected, or made but of no use."""
+    rejected = report["panels"]["rejected"] or report["beams"]["rejected"]
+    return bool(rejected or (report["audit"] and report["audit"]["errors"]))
 
 
 def _print_audit(audit: Mapping[str, Any]) -> None:

@@ -341,6 +341,15 @@ def test_rejected_beams_are_told_with_their_codes(vase: Path, tmp_path: Path) ->
     assert all(f"PRODUCT('{row['id']}'" in text for row in written["nodes"])
 
 
+def test_strict_fails_where_beams_run_into_each_other(vase: Path, tmp_path: Path) -> None:
+    """They are made and written, and cannot be built."""
+    options = ("--support", "--depth", "0.1", "--beam-thickness", "0.05")
+    result = panel(vase, tmp_path / "out", *options, "--node-radius", "0.01", "--strict")
+    assert "error B102: B0000: runs into a neighbour" in result.stderr
+    assert "0 rejected" in result.stdout
+    assert result.exit_code == 5
+
+
 def test_no_beam_at_all_is_an_error_that_says_why(vase: Path, tmp_path: Path) -> None:
     result = panel(vase, tmp_path / "out", "--support", "--node-radius", "5")
     assert result.exit_code == 3
