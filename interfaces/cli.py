@@ -292,8 +292,8 @@ def _print_report(
         support, beams = report["support"], report["beams"]
         click.echo(
             f"torsion of inner nodes at most {support['torsion_deg_max']:.2g} degrees, tilt of "
-            f"inner beams mostly below {support['beam_tilt_deg_p95']:.2g}, of all at most "
-            f"{support['beam_tilt_deg_max']:.2g} degrees"
+            f"inner edges mostly below {support['beam_tilt_deg_p95']:.2g}, of beams made at "
+            f"most {support['beam_tilt_deg_max']:.2g} degrees"
         )
         click.echo(f"beams {beams['written']} written, {len(beams['rejected'])} rejected")
     if report["audit"]:

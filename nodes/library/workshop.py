@@ -235,7 +235,7 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         ``unclustered`` as well, and spherical is what is built), ``vertex_error`` and
         ``edge_gap`` (max, relative_to_edge), ``thickness``, ``moulds`` (count, radii,
         panels_per_mould, blanks), ``support`` (torsion_deg_max of inner nodes,
-        beam_tilt_deg_p95 of inner edges, beam_tilt_deg_max of all beams, landed; None without
+        beam_tilt_deg_p95 of inner edges, beam_tilt_deg_max of annuli made, landed; None without
         one), ``panels`` and ``beams`` (written, rejected) and ``audit``.
     """
     mesh = sphere_mesh.mesh
