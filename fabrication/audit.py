@@ -119,7 +119,8 @@ def audit_panels(
         that are not finite, P100 cannot be made, P101 cap beyond 80 degrees. Notes: P102 sharp
         corner, P103 short edge, P104 thick against its radius, P105 tilted wall, P106 other
         thickness than asked for, P107 blank too large, P201 step to a neighbour, P202 neighbour
-        missing. Of each code a panel has one finding, the worst.
+        missing. Of each code a panel has one finding, the worst. Checks from P101 on need
+        finite numbers: where there is a P002 they wait until it is mended.
 
     Raises
     ------

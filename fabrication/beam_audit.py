@@ -72,7 +72,8 @@ def audit_beams(
         into a neighbour. Notes: B201 tilted against the surface, B202 twisted against a node
         axis, B203 ends at a node lie apart, B204 shallow, B205 short, B206 sharp bevel, B207
         too long a piece, B208 drilling marks do not fit. Of each code a beam has one finding,
-        the worst.
+        the worst. Checks from B102 on need finite numbers: where there is a B002 they wait
+        until it is mended.
 
     Raises
     ------

@@ -42,8 +42,9 @@ def beam_rows(beams: Beams, units: str) -> list[dict[str, Any]]:
         ``volume_m3``, ``bevels_deg`` (of the cuts at both ends, on the lower and the upper
         side; 90 is square), ``tilt_deg`` (against the surface), ``twists_deg`` (against the
         node axes), ``mismatches_mm`` (between the ends at a node), ``clearances_mm`` (to
-        neighbours that are cut alike), ``ends_mm`` (outer corners on the node axes), ``holes``
-        (number of drilling marks) and ``warnings`` (findings of the audit).
+        neighbours that are cut alike; None where there is none), ``ends_mm`` (outer corners on
+        the node axes), ``holes`` (number of drilling marks) and ``warnings`` (findings of the
+        audit).
     """
     made = scale_beams(beams, millimeters_per(units))
     annuli, facts = made.annuli, beam_facts(made)
@@ -72,7 +73,7 @@ def beam_rows(beams: Beams, units: str) -> list[dict[str, Any]]:
             "tilt_deg": float(np.degrees(facts.tilts[i])),
             "twists_deg": twists[i].tolist(),
             "mismatches_mm": facts.mismatches[i].tolist(),
-            "clearances_mm": facts.clearances[i].tolist(),
+            "clearances_mm": [finite_or_none(gap) for gap in facts.clearances[i]],
             "ends_mm": facts.ends[i].tolist(),
             "holes": holes[i],
             "warnings": warning_text(warnings.get(name, ())),

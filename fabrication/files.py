@@ -145,7 +145,8 @@ def replacing_all(folder: str | os.PathLike[str]) -> Generator[Path]:
     Raises
     ------
     InputError
-        If the folder cannot be made or written to.
+        If the folder cannot be made or written to, or has a folder in the place of a file:
+        none of the files is moved then.
     """
     target = Path(folder)
     made = [path for path in (target, *target.parents) if not path.exists()]
@@ -160,6 +161,11 @@ def replacing_all(folder: str | os.PathLike[str]) -> Generator[Path]:
     try:
         yield temporary
         written = sorted(temporary.iterdir(), key=lambda path: path.stat().st_mtime_ns)
+        for each in written:
+            if (target / each.name).is_dir():
+                raise InputError(
+                    f"cannot write {target / each.name}: it is a folder; choose another folder"
+                )
         for each in written:
             each.replace(target / each.name)
     finally:

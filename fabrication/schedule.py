@@ -51,7 +51,7 @@ def schedule_rows(panels: Panels, units: str) -> list[dict[str, Any]]:
         holds the panel, ``edge_lengths_mm``, ``arc_radii_mm`` (None for straight edges),
         ``sagittas_mm``, ``wall_tilts_deg``, ``corner_angles_deg``, ``neighbors`` (ids; None
         where there is none), ``corners_mm`` and ``warnings`` (findings of the audit). Edge i
-        runs from corner i to the next; tilts are those of beams along the edges as well.
+        runs from corner i to the next; tilts are those of the cutting planes.
     """
     made = scale_panels(panels, millimeters_per(units))
     facts, names = panel_facts(made), neighbor_ids(made)

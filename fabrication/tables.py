@@ -9,6 +9,9 @@ import numpy as np
 
 from ..kernel.errors import MissingLibraryError
 
+LARGE = 1e3
+"""Numbers from here on are written with six decimals."""
+
 
 def finite_or_none(value: np.float64) -> float | None:
     """
@@ -66,6 +69,7 @@ def write_xlsx(sheets: Mapping[str, list[dict[str, Any]]], path: Path) -> None:
     """
     try:
         import openpyxl  # pyright: ignore[reportMissingModuleSource]
+        from openpyxl.cell import WriteOnlyCell  # pyright: ignore[reportMissingModuleSource]
     except ImportError as error:
         raise MissingLibraryError(
             "a schedule in .xlsx needs openpyxl: install spheremesh[excel], or write .csv"
@@ -76,25 +80,33 @@ def write_xlsx(sheets: Mapping[str, list[dict[str, Any]]], path: Path) -> None:
         sheet.freeze_panes = "B2"
         sheet.append(list(rows[0]) if rows else ["none"])
         for row in rows:
-            sheet.append([_excel_cell(value) for value in row.values()])
+            cells = [WriteOnlyCell(sheet, _excel_value(value)) for value in row.values()]
+            for cell in cells:
+                # A name such as =A1 is text as well, and never a formula.
+                cell.data_type = "s" if isinstance(cell.value, str) else cell.data_type
+            sheet.append(cells)
     book.save(path)
 
 
-def _excel_cell(value: object) -> str | int | float:
-    """Numbers stay numbers; text that a spreadsheet would take for a formula is quoted."""
-    if isinstance(value, int | float):
-        return value
-    text = _cell(value)
-    return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text
+def _excel_value(value: object) -> str | int | float:
+    """Numbers stay numbers; all else is text."""
+    return value if isinstance(value, int | float) else _cell(value)
 
 
 def _cell(value: object) -> str:
     if value is None:
         return ""
     if isinstance(value, float):
-        return f"{value:.9g}"
+        return _number(value)
     if isinstance(value, list):
         items = cast("list[object]", value)
         separator = "; " if items and isinstance(items[0], list) else " "
         return separator.join(_cell(item) or "-" for item in items)
     return str(value)
+
+
+def _number(value: float) -> str:
+    """Nine digits, and more where coordinates are large: in millimetres, a nanometre."""
+    if abs(value) < LARGE:
+        return f"{value:.9g}"
+    return f"{value:.6f}".rstrip("0").rstrip(".")

@@ -88,7 +88,7 @@ def main() -> None:
     default=0.0,
     help="Radius of cylinders at the nodes, before which beams end square; 0 for mitres.",
 )
-@click.option("--strict", is_flag=True, help="Exit with 5 if a panel or beam is rejected.")
+@click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report alone.")
 def panel(  # numpydoc ignore=PR01
     out: Path,
@@ -104,11 +104,20 @@ def panel(  # numpydoc ignore=PR01
     """
     from .panel import PanelOptions, panel_graph, run_job
 
+    _warn_of_no_beams(options)
     with _errors(), _progress() as progress:
         report, files = run_job(panel_graph(PanelOptions(**options)), out, progress)
     _print_report(report, out, files, as_json=as_json)
-    if strict and (report["panels"]["rejected"] or report["beams"]["rejected"]):
+    if strict and _has_errors(report):
         sys.exit(GATE_FAILED)
+
+
+def _warn_of_no_beams(options: Mapping[str, Any]) -> None:
+    """Options of beams say nothing where no beams are asked for."""
+    names = [name for name in ("depth", "beam_thickness", "node_radius") if options[name]]
+    if names and not options["support"]:
+        given = ", ".join(f"--{name.replace('_', '-')}" for name in names)
+        click.echo(f"warning: without --support there are no beams: {given} unused", err=True)
 
 
 @main.command()
@@ -118,7 +127,7 @@ def panel(  # numpydoc ignore=PR01
 @click.option(
     "-o", "--out", default=".", type=click.Path(path_type=Path), help="Folder for its files."
 )
-@click.option("--strict", is_flag=True, help="Exit with 5 if a panel or beam is rejected.")
+@click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
 @click.option("--json", "as_json", is_flag=True, help="Print the targets' values as JSON.")
 def run(  # numpydoc ignore=PR01
     graph_file: Path, settings: tuple[str, ...], targets: tuple[str, ...], out: Path, *,
@@ -146,7 +155,7 @@ def run(  # numpydoc ignore=PR01
             return
         report, files = run_job(graph, out, progress)
     _print_report(report, out, files, as_json=as_json)
-    if strict and (report["panels"]["rejected"] or report["beams"]["rejected"]):
+    if strict and _has_errors(report):
         sys.exit(GATE_FAILED)
 
 
@@ -282,12 +291,19 @@ def _print_report(
     if report["support"]:
         support, beams = report["support"], report["beams"]
         click.echo(
-            f"torsion of nodes at most {support['torsion_deg_max']:.2g} degrees, tilt of beams "
-            f"mostly below {support['beam_tilt_deg_p95']:.2g} degrees"
+            f"torsion of inner nodes at most {support['torsion_deg_max']:.2g} degrees, tilt of "
+            f"inner edges mostly below {support['beam_tilt_deg_p95']:.2g}, of beams made at "
+            f"most {support['beam_tilt_deg_max']:.2g} degrees"
         )
         click.echo(f"beams {beams['written']} written, {len(beams['rejected'])} rejected")
     if report["audit"]:
         _print_audit(report["audit"])
+
+
+def _has_errors(report: Mapping[str, Any]) -> bool:
+    """Whether a panel or beam is rejected, or made but of no use."""
+    rejected = report["panels"]["rejected"] or report["beams"]["rejected"]
+    return bool(rejected or (report["audit"] and report["audit"]["errors"]))
 
 
 def _print_audit(audit: Mapping[str, Any]) -> None:

@@ -251,6 +251,9 @@ def run_job(
                 graph.run("panels.report", on_step=clock.note, read_from=here), "panels"
             )
             _refuse_unfinished(graph.run("optimum.report", read_from=here))
+            if "annuli" in graph.steps:
+                annuli = graph.run("annuli.report", on_step=clock.note, read_from=here)
+                _refuse_nothing({**annuli, "written": annuli["made"]}, "beams")
             found = graph.run("report", on_step=clock.note, read_from=here)
             if found["support"]:
                 _refuse_nothing(found["beams"], "beams")

@@ -134,13 +134,14 @@ def finite_beams(beams: "Beams") -> BoolArray:
     Returns
     -------
     (B,) bool array
-        Whether origins, circles and corners are finite.
+        Whether origins, frames, circles, axes, cuts and corners are finite.
     """
     annuli = beams.annuli
     numbers = [
         array.reshape(beams.n_beams, np.prod(array.shape[1:], dtype=int))
         for array in (
-            annuli.origins, annuli.outer, annuli.inner, annuli.corners, beams.corners,
+            annuli.origins, annuli.frames, annuli.outer, annuli.inner, annuli.corners,
+            annuli.end_directions, annuli.node_axes, beams.levels, beams.insets, beams.corners,
             beams.sections,
         )
     ]  # fmt: skip

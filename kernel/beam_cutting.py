@@ -107,6 +107,26 @@ def _outer_side_up(annuli: Annuli) -> Annuli:
 
 def mitre_angles(annuli: Annuli) -> FloatArray:
     """
+    Half angles at which mitres are cut.
+
+    Parameters
+    ----------
+    annuli : Annuli
+        B annuli.
+
+    Returns
+    -------
+    (B, 2, 2) float array
+        At both ends, to the lower and to the upper side of the plane, in radians: those of
+        `neighbor_angles`, and a right angle where the neighbour is farther than twice
+        `MITRE_LIMIT`.
+    """
+    half = neighbor_angles(annuli)
+    return np.where(half > MITRE_LIMIT, np.pi / 2, half)
+
+
+def neighbor_angles(annuli: Annuli) -> FloatArray:
+    """
     Half the angles to the neighbouring beams around the node axes.
 
     Parameters
@@ -117,8 +137,8 @@ def mitre_angles(annuli: Annuli) -> FloatArray:
     Returns
     -------
     (B, 2, 2) float array
-        At both ends, to the lower and to the upper side of the plane, in radians; a right
-        angle where the neighbour is farther than twice `MITRE_LIMIT`.
+        At both ends, to the lower and to the upper side of the plane, in radians; half a turn
+        for a single beam.
     """
     axes = annuli.node_axes.reshape(-1, 3)
     away = inward_directions(annuli).reshape(-1, 3)
@@ -141,8 +161,7 @@ def mitre_angles(annuli: Annuli) -> FloatArray:
     normals = np.repeat(annuli.frames[:, 2], 2, axis=0)
     is_upper = dot(np.cross(axes, away), normals) > 0
     half = np.stack([np.where(is_upper, before, after), np.where(is_upper, after, before)], 1)
-    half = half / 2
-    return np.where(half > MITRE_LIMIT, np.pi / 2, half).reshape(-1, 2, 2)
+    return half.reshape(-1, 2, 2) / 2
 
 
 def _end_cuts(

@@ -7,9 +7,10 @@ import numpy as np
 from .annuli import axis_angles, corner_mismatch, end_depths
 from .arcs import Arcs, arc_circles, arc_lengths, arc_reaches
 from .arrays import FloatArray, norm
-from .beam_cutting import mitre_angles
+from .beam_cutting import neighbor_angles
 from .beams import Beams, beam_lengths, beam_volumes, level_arcs, section_arcs
 from .contours import beam_contours
+from .tolerances import MITRE_LIMIT
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ class BeamFacts:
     clearances : (B, 2) float array
         Gaps to neighbours that are cut alike: twice the distances of the ends from the half
         planes through the node axes that bisect the angles to their neighbours. Negative where
-        beams run into each other.
+        beams run into each other; infinite where no neighbour is near on either side.
     ends : (B, 2, 3) float array
         Outer corners on the node axes.
     """
@@ -113,10 +114,13 @@ def beam_facts(beams: Beams) -> BeamFacts:
 
 def _clearances(beams: Beams) -> FloatArray:
     """Twice the distances (B, 2) from the bisecting half planes, the smaller of both sides."""
-    half_angles = mitre_angles(beams.annuli)
+    half_angles = neighbor_angles(beams.annuli)
     reach = beams.insets[..., ::2] * np.sin(half_angles)
     side = beams.thickness / 2 * np.cos(half_angles)
-    return 2 * (reach - side).min(axis=2)
+    # Beyond the limit of mitres there is nobody to run into, also where a beam that was there
+    # when the end was cut could not be made.
+    is_near = half_angles <= MITRE_LIMIT
+    return 2 * np.where(is_near, reach - side, np.inf).min(axis=2)
 
 
 def _rectangle_sizes(beams: Beams) -> FloatArray:

@@ -264,12 +264,14 @@ def gap_report(
     -------
     dict of str to float
         ``max`` and ``mean`` in model units, ``relative_to_edge`` the maximum over the mean
-        edge length, ``edges`` the number of edges measured; zeros if there are none.
+        edge length, ``edges`` the number of edges measured; zeros if there are none. Edges
+        whose arcs exist with a joint only are not measured.
     """
     is_made = np.zeros(sphere_mesh.mesh.n_faces, bool)
     is_made[face_ids] = True
     between = is_made[sphere_mesh.mesh.topology.edge_faces].all(axis=1)
     gaps = edge_gaps(sphere_mesh, edges)[between]
+    gaps = gaps[np.isfinite(gaps)]
     largest = float(gaps.max(initial=0.0))
     return {
         "max": largest,

@@ -156,7 +156,9 @@ def mould_blanks(panels: Panels, same: CongruentPanels, size_step: float = 0.0) 
     labels, diameters = panels.labels[members], 2 * panel_caps(panels).radii[members]
     moulds, which = np.unique(labels, return_inverse=True)
     curvatures = 2 * np.abs(panels.design_spheres[members, 0])
-    mean = np.bincount(which, curvatures) / np.bincount(which) if len(which) else np.zeros(0)
+    # Small panels of a very large mould are built as planes; the mould is no flatter for it.
+    bends = np.zeros(len(moulds))
+    np.maximum.at(bends, which, curvatures)
     if size_step > 0:
         # A diameter that is a multiple itself needs no larger blank, give or take rounding.
         sizes = size_step * np.ceil(diameters / size_step * (1 - 4 * ENCLOSING))
@@ -169,7 +171,7 @@ def mould_blanks(panels: Panels, same: CongruentPanels, size_step: float = 0.0) 
     kind: IntArray = keys[:, 0].astype(np.int64)
     sizes: FloatArray = keys[:, 1].astype(np.float64)
     shapes = np.unique(np.stack([row, same.labels[members]], 1), axis=0)[:, 0]
-    curvature = mean[kind]
+    curvature = bends[kind]
     sine = np.minimum(curvature * sizes / 2, 1.0)
     radii = np.divide(1.0, curvature, out=np.full(len(kind), np.inf), where=curvature > 0)
     return MouldBlanks(

@@ -80,10 +80,17 @@ def finite_panels(panels: Panels) -> BoolArray:
     Returns
     -------
     (P,) bool array
-        Whether spheres, origins and corners are finite.
+        Whether origins, spheres, thicknesses, cutting planes and corners are finite.
     """
-    rows = np.column_stack([panels.origins, panels.spheres, panels.inner_spheres])
-    numbers = np.column_stack([panels.corners, panels.inner_corners, panels.plane_normals])
+    rows = np.column_stack(
+        [
+            panels.origins, panels.spheres, panels.inner_spheres, panels.design_spheres,
+            panels.thicknesses,
+        ]
+    )  # fmt: skip
+    numbers = np.column_stack(
+        [panels.corners, panels.inner_corners, panels.plane_normals, panels.plane_offsets]
+    )
     finite = np.all(np.isfinite(rows), axis=1)
     broken = panels.corner_panels[~np.isfinite(numbers).all(axis=1)]
     finite[broken] = False

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arcs import arc_circles, arc_lengths, arc_points, arc_tangents
+from .arcs import arc_circles, arc_lengths, arc_points, arc_reaches, arc_tangents
 from .arrays import FloatArray, IntArray, dot, norm, unit
 from .mould_blanks import PanelCaps, panel_caps
 from .panels import (
@@ -65,10 +65,11 @@ class PanelFacts(PanelRadii):
         Heights of the outer arcs over their chords.
     wall_tilts : (H,) float array
         Angle, in radians, between the cutting plane and the surface normal in the middle of
-        the edge, averaged with the neighbour's. Beams along the edge are tilted as much.
+        the edge, averaged with the neighbour's. That of a beam is measured against the faces
+        of the mesh, and on the boundary a beam has a plane of its own.
     steps : (H,) float array
-        Height of the step from an outer edge to the neighbour's, in the middle; NaN where there
-        is no neighbour.
+        Height of the step from an outer edge to the neighbour's, the largest of those at its
+        ends and in the middle; NaN where there is no neighbour.
     caps : PanelCaps
         Smallest caps of the moulds that hold the panels.
     """
@@ -162,8 +163,10 @@ def _neighborhood(panels: Panels) -> tuple[FloatArray, FloatArray]:
     tilts = np.arcsin(np.clip(np.abs(dot(unit(mean), panels.plane_normals)), 0.0, 1.0))
     # Neighbours differ by the shift of their origins, which is exact, and little else.
     shift = panels.origins[owners][twins] - panels.origins[owners]
-    apart = middles[twins] + shift - middles
-    steps = np.abs(dot(apart, arcs.rises))
+    points = np.stack([arcs.starts, middles, arcs.ends], 1)
+    apart = points[twins][:, ::-1] + shift[:, None] - points
+    # Along the rise of the arc, so that the joint does not count.
+    steps = np.abs(dot(apart, arcs.rises[:, None])).max(axis=1)
     return tilts, np.where(has_twin, steps, np.nan)
 
 
@@ -174,11 +177,24 @@ def _bounding_sizes(panels: Panels) -> FloatArray:
     along = panels.corners[panels.next_corners[first]] - panels.corners[first]
     along = unit(along - dot(along, up)[:, None] * up)
     axes = np.stack([along, np.cross(up, along), up], 1)
-    samples = arc_points(panel_arcs(panels), np.linspace(-1, 1, 9))
-    coordinates = np.einsum("hij,hnj->hni", axes[panels.corner_panels], samples)
-    low = np.minimum.reduceat(coordinates.min(1), first)
-    high = np.maximum.reduceat(coordinates.max(1), first)
+    directions = axes[panels.corner_panels]
+    low = -np.maximum.reduceat(_reaches(panels, -directions), first)
+    high = np.maximum.reduceat(_reaches(panels, directions), first)
     # The crown of the patch, above (or below) the local origin, belongs to the box as well.
     crown = panels.spheres[:, 4] * 2 / (1 + norm(panels.spheres[:, 1:4]))
     low[:, 2], high[:, 2] = np.minimum(low[:, 2], crown), np.maximum(high[:, 2], crown)
     return high - low
+
+
+def _reaches(panels: Panels, directions: FloatArray) -> FloatArray:
+    """How far outer edges reach in directions (H, 3, 3) of their own."""
+    arcs, planes = panel_arcs(panels), panels.plane_normals
+    reaches: list[FloatArray] = []
+    for direction in np.moveaxis(directions, 1, 0):
+        across = dot(direction, planes)
+        within = direction - across[:, None] * planes
+        share = norm(within)
+        reaches.append(
+            share * arc_reaches(arcs, unit(within)) + across * dot(arcs.starts, planes)
+        )
+    return np.stack(reaches, 1)

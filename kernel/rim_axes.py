@@ -18,7 +18,10 @@ from .mesh import Mesh
 from .tolerances import RIM_CLOSED, RIM_LEAN
 
 TRIALS = 361
-"""Directions of the first axis that are tried, twice: over all, then around the best."""
+"""Directions of the first axis that are tried: over all, then around the best."""
+
+SCANS = 4
+"""How often they are tried: to a billionth of a radian."""
 
 
 def rim_axes(mesh: Mesh, directions: FloatArray, planes: FloatArray) -> FloatArray:
@@ -116,7 +119,7 @@ def _loops(following: IntArray, is_given: BoolArray) -> list[IntArray]:
 def _side_angles(side: _Side) -> FloatArray:
     """Angles (n,) by which the axes of a side turn, the largest as small as can be."""
     low, high, best = -RIM_LEAN, RIM_LEAN, 0.0
-    for _ in range(2):
+    for _ in range(SCANS):
         first = np.linspace(low, high, TRIALS)
         worst = np.abs(_followed(first, side)).max(axis=0)
         best = float(first[worst.argmin()])

@@ -78,7 +78,8 @@ def panels(
     if rejected:
         warn(
             f"{len(rejected)} panels cannot be made: faces "
-            f"{name_ids([panel.face_id for panel in rejected])} ({rejected[0].reason})"
+            f"{name_ids([panel.face_id for panel in rejected])} "
+            f"({rejected[0].id}: {rejected[0].reason})"
         )
     report = {
         "edge_gap": cutting.gap_report(sphere_mesh, edges, made.face_ids),

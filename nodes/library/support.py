@@ -12,7 +12,7 @@ from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.beam_checks import RejectedBeam
 from ...kernel.beams import Beams, beam_lengths, beam_volumes
 from ...kernel.drilling import drill_beams
-from ...kernel.errors import name_ids
+from ...kernel.errors import InputError, name_ids
 from ...kernel.findings import findings_report, rejected_report
 from ...kernel.mesh import mean_edge_length
 from ...kernel.remesh.held_nets import planarize_near
@@ -118,7 +118,7 @@ def support_structure(sphere_mesh: SphereMesh) -> Nodes:
         is_valid[bad] = False
         warn(
             f"{len(bad)} of {len(is_valid)} nodes are not valid: vertices {name_ids(bad)} "
-            f"({report['invalid'][0]['reason']})"
+            f"({report['invalid'][0]['id']}: {report['invalid'][0]['reason']})"
         )
     return Nodes(found.axes, np.degrees(found.torsion), is_valid, report)
 
@@ -213,6 +213,11 @@ def beams(
         ``longest`` piece, and ``end_mismatch`` (how far the ends at a node are apart).
     """
     if thickness is None:
+        if annuli.n_annuli == 0:
+            raise InputError(
+                "there is no annulus to make a beam of: see what the report of annulus_support "
+                "rejected, and why"
+            )
         thickness = mean_end_depth(annuli) / 10
     made, rejected = beam_cutting.cut_beams(annuli, thickness, node_gap, node_radius)
     _warn_of_rejected(rejected, "beams")
@@ -280,5 +285,6 @@ def _warn_of_rejected(rejected: tuple[RejectedBeam, ...], what: str) -> None:
     if rejected:
         warn(
             f"{len(rejected)} {what} cannot be made: edges "
-            f"{name_ids([beam.edge_id for beam in rejected])} ({rejected[0].reason})"
+            f"{name_ids([beam.edge_id for beam in rejected])} "
+            f"({rejected[0].id}: {rejected[0].reason})"
         )

@@ -234,8 +234,9 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         ``input`` (vertices, faces, units), ``angles_deg`` (planar, spherical; with moulds
         ``unclustered`` as well, and spherical is what is built), ``vertex_error`` and
         ``edge_gap`` (max, relative_to_edge), ``thickness``, ``moulds`` (count, radii,
-        panels_per_mould, blanks), ``support`` (torsion_deg_max, beam_tilt_deg_p95, landed; None
-        without one), ``panels`` and ``beams`` (written, rejected) and ``audit``.
+        panels_per_mould, blanks), ``support`` (torsion_deg_max of inner nodes,
+        beam_tilt_deg_p95 of inner edges, beam_tilt_deg_max of annuli made, landed; None without
+        one), ``panels`` and ``beams`` (written, rejected) and ``audit``.
     """
     mesh = sphere_mesh.mesh
     angles = {**optimum["angles_deg"], "spherical": angle_summary(sphere_mesh)}
@@ -256,6 +257,9 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         and {
             "torsion_deg_max": nodes["torsion_deg"]["max"],
             "beam_tilt_deg_p95": nodes["beam_tilt_deg"]["p95"],
+            "beam_tilt_deg_max": (annuli["tilt_deg"] if annuli else nodes["beam_tilt_deg"])[
+                "max"
+            ],
             "landed": bool(landing and landing["landed"]),
         },
         "panels": {"written": cut["written"], "rejected": list(cut["rejected"])},

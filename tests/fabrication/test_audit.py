@@ -48,6 +48,14 @@ def test_names_numbers_and_refusals_are_errors() -> None:
     corners[5] = np.nan
     broken = audit_panels(replace(sound(), corners=corners))
     assert codes(broken) == {("P002", "P0001")}
+    for name, row, panel in (
+        ("origins", 1, 1), ("design_spheres", 2, 2), ("thicknesses", 0, 0),
+        ("plane_offsets", 9, 2), ("inner_corners", 0, 0),
+    ):  # fmt: skip
+        values = getattr(sound(), name).copy()
+        values[row] = np.inf
+        broken = replace(sound(), **{name: values})
+        assert codes(audit_panels(broken)) == {("P002", f"P000{panel}")}
     panels, rejected = cut_panels(squares(0.2, 1.5, 0.2))
     findings = audit_panels(panels, "m", rejected)
     assert codes(findings) == {("P100", "P0001"), ("P202", "P0000"), ("P202", "P0002")}

@@ -9,6 +9,7 @@ import pytest
 from spheremesh import Mesh
 from spheremesh.fabrication.audit import AuditLimits
 from spheremesh.fabrication.beam_audit import audit_beams
+from spheremesh.fabrication.beam_schedule import beam_rows
 from spheremesh.kernel.annulus_support import annulus_support
 from spheremesh.kernel.beam_cutting import cut_beams
 from spheremesh.kernel.beam_facts import beam_facts
@@ -50,6 +51,9 @@ def test_names_numbers_and_refusals_are_errors() -> None:
     outer[7] = np.inf
     (found,) = audit_beams(replace(beams, annuli=replace(ANNULI, outer=outer)))
     assert (found.code, found.id, found.severity) == ("B002", "B0007", "error")
+    insets = beams.insets.copy()
+    insets[4] = np.nan
+    assert of("B002", audit_beams(replace(beams, insets=insets))) == {"B0004": None}
     support = annulus_support(central_spheres(NET), depth=0.5)
     made, rejected = cut_beams(support.annuli, 0.4, node_radius=1.3)
     assert support.rejected
@@ -182,3 +186,20 @@ def test_beams_that_run_into_each_other_are_errors() -> None:
     expected = -1000 * beam_facts(beams).clearances.min(axis=1)
     np.testing.assert_allclose([f.size for f in findings], expected, rtol=1e-9)  # pyright: ignore
     assert audit_beams(cut_beams(ANNULI, 0.05)[0]) == ()
+
+
+def test_a_beam_that_is_left_alone_runs_into_nobody() -> None:
+    """Mitres between beams of which all others at the node cannot be made."""
+    turns = np.arange(6) * np.pi / 3
+    rim = np.stack([np.cos(turns), np.sin(turns), 0 * turns], 1)
+    fan = Mesh(np.vstack([np.zeros(3), rim]), [[0, i + 1, (i + 1) % 6 + 1] for i in range(6)])
+    beams = cut_beams(annulus_support(face_planes(fan), depth=0.2).annuli, 0.05)[0]
+    # On the rim the next beam is 240 degrees away on one side: mitres reach beyond the node.
+    assert beams.insets.min() < -0.01
+    assert codes(audit_beams(beams)) == set()
+    np.testing.assert_allclose(beam_facts(beams).clearances, 0, atol=1e-12)
+    for row in range(beams.n_beams):
+        alone = select_beams(beams, np.arange(beams.n_beams) == row)
+        assert codes(audit_beams(alone)) == set()
+        assert np.isinf(beam_facts(alone).clearances).all()
+        assert beam_rows(alone, "m")[0]["clearances_mm"] == [None, None]

@@ -105,7 +105,8 @@ def test_law_millimetres_do_not_depend_on_units(units: str, scale: float) -> Non
                 if name in {"panels", "nodes", "beams", "id", "warnings"}:
                     assert value == b[name]
                 else:
-                    np.testing.assert_allclose(value, b[name], rtol=1e-9, atol=1e-8)
+                    found, expected = (np.array(v, np.float64) for v in (value, b[name]))
+                    np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-8)
 
 
 def test_csv_opens_in_spreadsheets_and_programs(tmp_path: Path) -> None:

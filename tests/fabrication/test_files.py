@@ -80,3 +80,18 @@ def test_a_target_that_cannot_be(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no folder"):
         check_target(tmp_path / "none" / "p.step")
     check_target(tmp_path / "p.step")
+
+
+def test_a_folder_in_the_place_of_one_file_keeps_all_others(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("old")
+    (tmp_path / "b.txt").mkdir()
+
+    def _write() -> None:
+        with replacing_all(tmp_path) as staging:
+            for name in ("a.txt", "b.txt"):
+                (staging / name).write_text("new")
+
+    with pytest.raises(InputError, match=r"b\.txt: it is a folder"):
+        _write()
+    assert (tmp_path / "a.txt").read_text() == "old"
+    assert {path.name for path in tmp_path.iterdir()} == {"a.txt", "b.txt"}

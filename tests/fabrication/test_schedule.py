@@ -3,6 +3,7 @@
 import csv
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -105,6 +106,19 @@ def test_csv_opens_in_spreadsheets_and_programs(panels: Panels, tmp_path: Path) 
         assert row["neighbors"].split() == [name or "-" for name in other["neighbors"]]
 
 
+def test_csv_keeps_the_digits_of_site_coordinates(panels: Panels, tmp_path: Path) -> None:
+    """A thousand kilometres from the origin, corners are still told to a micrometre."""
+    far = replace(panels, origins=panels.origins + np.array([1e6, -2e6, 5e5]))
+    path = write_schedule(far, tmp_path / "schedule.csv")
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        rows = list(csv.DictReader(file))
+    for row, other in zip(rows, schedule_rows(far, "m"), strict=True):
+        points = [[float(x) for x in point.split()] for point in row["corners_mm"].split(";")]
+        np.testing.assert_allclose(points, other["corners_mm"], rtol=0, atol=1e-3)
+        center = [float(x) for x in row["center_mm"].split()]
+        np.testing.assert_allclose(center, other["center_mm"], rtol=0, atol=1e-3)
+
+
 def test_json_is_strict(panels: Panels, tmp_path: Path) -> None:
     path = write_schedule(panels, tmp_path / "schedule.json")
     content = json.loads(path.read_text("utf-8"))
@@ -127,6 +141,21 @@ def test_xlsx_has_numbers_as_numbers(panels: Panels, tmp_path: Path) -> None:
         [row[column] for row in rows], [row["radius_mm"] for row in expected]
     )
     assert book["Moulds"].max_row == 4
+
+
+def test_xlsx_has_text_as_it_is(panels: Panels, tmp_path: Path) -> None:
+    """Lists that begin with a minus or a dash, and names like formulas, are just text."""
+    openpyxl = pytest.importorskip("openpyxl")
+    names = ("=A1+1", "Glas-Träger \u2116 7", *panels.ids[2:])
+    path = write_schedule(replace(panels, ids=names), tmp_path / "schedule.xlsx")
+    header, *rows = openpyxl.load_workbook(path)["Panels"].iter_rows()
+    columns = {cell.value: i for i, cell in enumerate(header)}
+    assert [row[columns["id"]].value for row in rows] == list(names)
+    expected = schedule_rows(panels, "m")
+    found = [[float(x) for x in row[columns["center_mm"]].value.split()] for row in rows]
+    np.testing.assert_allclose(found, [row["center_mm"] for row in expected], atol=1e-4)
+    assert min(point[0] for point in found) < 0
+    assert {cell.data_type for row in rows for cell in row} == {"n", "s"}
 
 
 def test_xlsx_without_openpyxl_names_the_extra(

@@ -310,6 +310,11 @@ def test_support_writes_beams_and_says_how_straight_they_are(
     listed = json.loads((out / "schedule.json").read_text(encoding="utf-8"))
     assert len(listed["beams"]) == report["beams"]["written"]
     assert len(listed["panels"]) == report["panels"]["written"]
+    tilts = np.array([beam["tilt_deg"] for beam in listed["beams"]])
+    is_inner = np.array([None not in beam["panels"] for beam in listed["beams"]])
+    support = report["support"]
+    assert support["beam_tilt_deg_p95"] == pytest.approx(np.percentile(tilts[is_inner], 95))
+    assert support["beam_tilt_deg_max"] == pytest.approx(tilts.max())
 
 
 def test_rejected_beams_are_told_with_their_codes(vase: Path, tmp_path: Path) -> None:
@@ -336,12 +341,32 @@ def test_rejected_beams_are_told_with_their_codes(vase: Path, tmp_path: Path) ->
     assert all(f"PRODUCT('{row['id']}'" in text for row in written["nodes"])
 
 
+def test_strict_fails_where_beams_run_into_each_other(vase: Path, tmp_path: Path) -> None:
+    """They are made and written, and cannot be built."""
+    options = ("--support", "--depth", "0.1", "--beam-thickness", "0.05")
+    result = panel(vase, tmp_path / "out", *options, "--node-radius", "0.01", "--strict")
+    assert "error B102: B0000: runs into a neighbour" in result.stderr
+    assert "0 rejected" in result.stdout
+    assert result.exit_code == 5
+
+
 def test_no_beam_at_all_is_an_error_that_says_why(vase: Path, tmp_path: Path) -> None:
     result = panel(vase, tmp_path / "out", "--support", "--node-radius", "5")
     assert result.exit_code == 3
     assert "beams can be made" in result.stderr
     assert "make the beams thinner or the node smaller" in result.stderr
+    deep = panel(vase, tmp_path / "out", "--support", "--depth", "100")
+    assert deep.exit_code == 3
+    assert "beams can be made: B0000: the depth 100 is not less than the radius" in deep.stderr
     assert not (tmp_path / "out").exists()
+
+
+def test_options_of_beams_without_beams_are_told(vase: Path, tmp_path: Path) -> None:
+    options = ("--depth", "0.1", "--node-radius", "0.02", "--json")
+    result = panel(vase, tmp_path / "out", *options)
+    assert result.exit_code == 0
+    assert "without --support there are no beams: --depth, --node-radius" in result.stderr
+    assert json.loads(result.stdout)["beams"]["written"] == 0
 
 
 def test_a_tolerance_brings_vertices_onto_common_spheres(tmp_path: Path) -> None:

@@ -134,6 +134,20 @@ def test_a_diameter_on_a_step_needs_no_larger_blank() -> None:
     assert blanks.diameters.tolist() == [2.0]
 
 
+def test_a_large_mould_keeps_its_radius_where_small_panels_are_planes() -> None:
+    corners = np.array([[0, 0], [3, 0], [4, 0], [0, 3], [3, 3], [4, 3]]) - [2.0, 1.5]
+    radius = 4.5e5
+    height = -np.sum(corners**2, axis=1) / (2 * radius)
+    mesh = Mesh(np.column_stack([corners, height]), [[0, 1, 4, 3], [1, 2, 5, 4]])
+    ball = np.array([-1 / (2 * radius), 0.0, 0.0, 1.0, 0.0])
+    panels, _ = cut_panels(
+        SphereMesh(mesh, np.tile(ball, (2, 1))), labels=np.zeros(2, np.int64)
+    )
+    assert (panels.design_spheres[:, 0] == 0).tolist() == [False, True]
+    blanks = mould_blanks(panels, congruent_panels(panels))
+    np.testing.assert_allclose(blanks.radii, radius, rtol=1e-9)
+
+
 def test_panels_without_moulds_need_no_blanks() -> None:
     panels, _ = cut_panels(on_regular_face(4, 0.2))
     for found in (panels, select_panels(panels, np.zeros(1, bool))):

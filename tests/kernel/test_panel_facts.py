@@ -7,9 +7,14 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arcs import Arcs, arc_points, arc_tangents
 from spheremesh.kernel.arrays import dot, norm, unit
 from spheremesh.kernel.cutting import cut_panels, edge_gaps
-from spheremesh.kernel.fit import face_planes
+from spheremesh.kernel.fit import face_planes, fit_spheres
 from spheremesh.kernel.panel_facts import panel_facts
-from spheremesh.kernel.panels import opposite_corners, scale_panels, select_panels
+from spheremesh.kernel.panels import (
+    opposite_corners,
+    panel_arcs,
+    scale_panels,
+    select_panels,
+)
 from spheremesh.kernel.pencil import minimize_angles
 
 
@@ -80,6 +85,40 @@ def test_steps_are_the_gaps_in_the_middle_of_edges(nets: dict[str, Mesh]) -> Non
     np.testing.assert_allclose(facts.steps[twins[first]], gaps, atol=1e-9)
     np.testing.assert_array_equal(twins[first], found.mesh.topology.twins[first])
     assert gaps.max() > 1e-4
+
+
+def test_steps_at_the_ends_of_edges_count_as_well(nets: dict[str, Mesh]) -> None:
+    """Quadrilaterals that are not circular: panels differ most at the nodes."""
+    net = nets["egg"]
+    noise = 0.02 * np.random.default_rng(3).normal(size=net.vertices.shape)
+    found = fit_spheres(Mesh(net.vertices + noise, net.faces))
+    first, gaps = found.mesh.topology.edge_corners, edge_gaps(found, "bisector")
+    panels, rejected = cut_panels(found)
+    assert not rejected
+    steps = panel_facts(panels).steps[first]
+    # Gaps are distances, steps their heights alone.
+    assert np.percentile(np.abs(steps / gaps - 1), 90) < 0.05
+    joined, rejected = cut_panels(found, joint_gap=0.01)
+    assert not rejected
+    np.testing.assert_allclose(panel_facts(joined).steps[first], steps, atol=0.1 * gaps.max())
+
+
+def test_boxes_are_tight(nets: dict[str, Mesh]) -> None:
+    """Corners of boxes from 4,000 points of each edge, and the crown."""
+    for name in ("egg", "vase", "roof"):
+        panels, _ = cut_panels(minimize_angles(fit_spheres(nets[name]))[0])
+        sizes, first = panel_facts(panels).sizes, panels.offsets[:-1]
+        up = unit(panels.spheres[:, 1:4])
+        along = panels.corners[panels.next_corners[first]] - panels.corners[first]
+        along = unit(along - dot(along, up)[:, None] * up)
+        axes = np.stack([along, np.cross(up, along), up], 1)
+        points = arc_points(panel_arcs(panels), np.linspace(-1, 1, 4001))
+        found = np.einsum("hij,hnj->hni", axes[panels.corner_panels], points)
+        low = np.minimum.reduceat(found.min(axis=1), first)
+        high = np.maximum.reduceat(found.max(axis=1), first)
+        boxes = (high - low)[:, :2]
+        assert (sizes[:, :2] >= boxes * (1 - 1e-12)).all()
+        np.testing.assert_allclose(sizes[:, :2], boxes, rtol=1e-6)
 
 
 def test_law_facts_do_not_depend_on_units(nets: dict[str, Mesh]) -> None:

@@ -286,6 +286,21 @@ def test_meshes_without_interior_edges_have_no_gap() -> None:
     assert report == {"max": 0.0, "mean": 0.0, "relative_to_edge": 0.0, "edges": 0}
 
 
+def test_edges_that_only_a_joint_lets_exist_have_no_gap() -> None:
+    """The sphere does not reach the corners of its square, but those that a joint leaves."""
+    points = [[i, j, 0] for i in range(4) for j in range(4)]
+    corners = [4 * i + j for i in range(3) for j in range(3)]
+    mesh = Mesh(points, [[k, k + 4, k + 5, k + 1] for k in corners])
+    rows = face_planes(mesh).spheres.copy()
+    radius, center = 0.706, np.array([1.5, 1.5, -0.2])
+    rows[4] = [-0.5 / radius, *-center / radius, (radius**2 - center @ center) / (2 * radius)]
+    found = SphereMesh(mesh, rows)
+    panels, rejected = cut_panels(found, joint_gap=0.03)
+    assert not rejected
+    report = gap_report(found, "bisector", panels.face_ids)
+    assert report == {"max": 0.0, "mean": 0.0, "relative_to_edge": 0.0, "edges": 8}
+
+
 # Joints, thickness, measures
 
 

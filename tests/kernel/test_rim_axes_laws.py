@@ -171,6 +171,20 @@ def test_axes_through_one_point_are_found() -> None:
     assert leans(start, axes).max() <= turn + 1e-9
 
 
+@given(SEEDS, st.integers(5, 12))
+def test_a_ring_that_all_axes_fit_takes_those_that_lean_least(seed: int, count: int) -> None:
+    """Planes through a common line: axes fit that go through any one point of it."""
+    rim = ring(seed, 0.0, count)
+    axes = rim_axes(*rim)
+    assert bends(rim, axes).max() < 1e-9
+    heights = np.linspace(-60, 60, 4001)
+    through = unit(np.array([0, 0, 1.0]) * heights[:, None, None] - rim.mesh.vertices[1:])
+    cosines = np.abs(dot(through, rim.directions[1:])).min(axis=1)
+    assert leans(rim, axes).max() < np.arccos(cosines.max()) + 1e-9
+    far = Mesh(rim.mesh.vertices + np.array([6e5, -6.4e5, 4.8e5]), rim.mesh.faces)
+    np.testing.assert_allclose(rim_axes(far, rim.directions, rim.planes), axes, atol=1e-6)
+
+
 def test_a_side_that_would_lean_too_far_stays() -> None:
     rim = roof(3, 0.02)
     side = np.array([5, 10, 15, 20])
