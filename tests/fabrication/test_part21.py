@@ -59,7 +59,7 @@ def swap(pattern: str, change: str) -> tuple[str, str]:
 DEFECTS = {
     "S101": [swap("ENDSEC;\nEND-ISO", "END-ISO"), swap("ISO-10303-21;\nHEADER", "HEADER")],
     "S102": [swap("AUTOMOTIVE_DESIGN", "CONFIG_CONTROL"), swap("FILE_NAME", "NAME")],
-    "S103": [swap("'Panels','Panels'", "'Pänels','Panels'"), swap(r"\\X4\\0", r"\\X4\\")],
+    "S103": [swap("'Panels','Panels'", "'Pänels','Panels'"), swap(r"\\X2\\0", r"\\X2\\")],
     "S104": [
         swap(r"CIRCLE\('',(#\d+),([^)]*)\)", r"CIRCLE('',\1,\2"),
         swap(r"DIRECTION\('',\(([^,]*),([^,]*),", r"DIRECTION('',(nan,\2,"),
