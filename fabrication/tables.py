@@ -1,13 +1,17 @@
 """Tables of plain values as files: CSV for spreadsheets and programs, and XLSX."""
 
 import csv
+import io
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 
 from ..kernel.errors import MissingLibraryError
+
+# What comes from openpyxl is not typed.
+_Untyped: TypeAlias = Any
 
 
 def finite_or_none(value: np.float64) -> float | None:
@@ -48,16 +52,19 @@ def write_csv(rows: Iterable[Mapping[str, Any]], path: Path) -> None:
             writer.writerow({name: _cell(value) for name, value in row.items()})
 
 
-def write_xlsx(sheets: Mapping[str, list[dict[str, Any]]], path: Path) -> None:
+def format_xlsx(sheets: Mapping[str, list[dict[str, Any]]]) -> bytes:
     """
-    Write tables as a workbook.
+    Tables as a workbook.
 
     Parameters
     ----------
     sheets : mapping of str to list of dict
         Rows of the same columns by the title of their sheet; lists as in CSV.
-    path : Path
-        The file.
+
+    Returns
+    -------
+    bytes
+        Content of the file.
 
     Raises
     ------
@@ -76,16 +83,24 @@ def write_xlsx(sheets: Mapping[str, list[dict[str, Any]]], path: Path) -> None:
         sheet.freeze_panes = "B2"
         sheet.append(list(rows[0]) if rows else ["none"])
         for row in rows:
-            sheet.append([_excel_cell(value) for value in row.values()])
-    book.save(path)
+            sheet.append([_excel_cell(sheet, value) for value in row.values()])
+    stream = io.BytesIO()
+    book.save(stream)
+    return stream.getvalue()
 
 
-def _excel_cell(value: object) -> str | int | float:
-    """Numbers stay numbers; text that a spreadsheet would take for a formula is quoted."""
+def _excel_cell(sheet: _Untyped, value: object) -> object:
+    """Numbers stay numbers, and text stays text, whatever it begins with."""
     if isinstance(value, int | float):
         return value
     text = _cell(value)
-    return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text
+    if not text.startswith("="):
+        return text
+    from openpyxl.cell import WriteOnlyCell  # pyright: ignore[reportMissingModuleSource]
+
+    cell: _Untyped = WriteOnlyCell(sheet, text)
+    cell.data_type = "s"
+    return cell
 
 
 def _cell(value: object) -> str:

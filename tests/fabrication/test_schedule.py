@@ -3,6 +3,7 @@
 import csv
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -127,6 +128,23 @@ def test_xlsx_has_numbers_as_numbers(panels: Panels, tmp_path: Path) -> None:
         [row[column] for row in rows], [row["radius_mm"] for row in expected]
     )
     assert book["Moulds"].max_row == 4
+
+
+def test_text_in_xlsx_is_what_it_is(panels: Panels, tmp_path: Path) -> None:
+    """Neighbours begin with a dash at the boundary; names may look like formulas."""
+    openpyxl = pytest.importorskip("openpyxl")
+    some = select_panels(panels, panels.face_ids % 8 > 2)
+    names = ("=1+1", "-1", "+2", "@A", *some.ids[4:])
+    named = replace(some, ids=names)
+    book = openpyxl.load_workbook(write_schedule(named, tmp_path / "schedule.xlsx"))
+    header, *rows = book["Panels"].iter_rows()
+    cells = [{key.value: cell for key, cell in zip(header, row, strict=True)} for row in rows]
+    assert [row["id"].value for row in cells] == list(names)
+    assert {row["id"].data_type for row in cells} == {"s"}
+    for row, expected in zip(cells, schedule_rows(named, "m"), strict=True):
+        neighbors = " ".join(name or "-" for name in expected["neighbors"])
+        assert row["neighbors"].value == neighbors
+    assert any(row["neighbors"].value.startswith("- ") for row in cells)
 
 
 def test_xlsx_without_openpyxl_names_the_extra(
