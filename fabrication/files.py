@@ -60,7 +60,8 @@ def check_target(path: str | os.PathLike[str]) -> None:
     Raises
     ------
     InputError
-        If its folder does not exist, or it is a folder itself.
+        If its folder does not exist, it is a folder itself, or there is such a file and it is
+        read-only.
     """
     target = Path(path)
     folder = target.parent
@@ -68,6 +69,9 @@ def check_target(path: str | os.PathLike[str]) -> None:
         raise InputError(f"cannot write {target}: there is no folder {folder}; create it first")
     if target.is_dir():
         raise InputError(f"cannot write {target}: it is a folder; name a file in it")
+    # A rename would pass over the mark of a file that is to stay.
+    if target.exists() and not os.access(target, os.W_OK):
+        raise InputError(f"cannot write {target}: it is read-only; choose another name")
 
 
 @contextmanager
@@ -89,7 +93,8 @@ def replacing(path: str | os.PathLike[str]) -> Generator[Path]:
     Raises
     ------
     InputError
-        If the folder does not exist or cannot be written to.
+        If the folder does not exist, or the file cannot be written: no rights, a full disk, a
+        program that holds it.
     """
     check_target(path)
     target = Path(path)
@@ -106,6 +111,11 @@ def replacing(path: str | os.PathLike[str]) -> Generator[Path]:
         with temporary.open("rb") as written:
             os.fsync(written.fileno())
         temporary.replace(target)
+    except OSError as error:
+        raise InputError(
+            f"cannot write {target}: {error.strerror or error}; check the disk, and whether a "
+            "program has the file open"
+        ) from error
     finally:
         temporary.unlink(missing_ok=True)
     _tidy(target.parent, prefix, suffix)

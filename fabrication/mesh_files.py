@@ -117,14 +117,11 @@ def write_mesh(mesh: Mesh, path: str | os.PathLike[str]) -> Path:
     """
     target = Path(path)
     suffix = _suffix(target, "write")
-    try:
-        with replacing(target) as temporary:
-            try:
-                _write(mesh, suffix, temporary)
-            except InputError as error:
-                raise InputError(f"cannot write {target}: {error}") from error
-    except OSError as error:
-        raise InputError(f"cannot write {target}: {error.strerror}; check the disk") from error
+    with replacing(target) as temporary:
+        try:
+            _write(mesh, suffix, temporary)
+        except InputError as error:
+            raise InputError(f"cannot write {target}: {error}") from error
     return target
 
 

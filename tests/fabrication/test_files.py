@@ -80,3 +80,33 @@ def test_a_target_that_cannot_be(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no folder"):
         check_target(tmp_path / "none" / "p.step")
     check_target(tmp_path / "p.step")
+
+
+def test_a_read_only_file_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = tmp_path / "p.step"
+    target.write_text("released")
+    target.chmod(0o444)
+    # Nothing is read-only for an administrator.
+    monkeypatch.setattr(os, "access", lambda path, _: bool(path.stat().st_mode & 0o200))
+    with pytest.raises(InputError, match="it is read-only"), replacing(target):
+        pass
+    assert target.read_text() == "released"
+
+
+@pytest.mark.parametrize("place", ["write_bytes", "replace"])
+def test_a_full_disk_and_a_file_that_is_held_are_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, place: str
+) -> None:
+    target = tmp_path / "p.step"
+    target.write_text("old")
+
+    def fail(*_: object) -> None:
+        raise PermissionError(13, "The process cannot access the file")
+
+    monkeypatch.setattr(Path, place, fail)
+    with (
+        pytest.raises(InputError, match=r"cannot write .*p\.step: The process cannot access"),
+        replacing(target) as temporary,
+    ):
+        temporary.write_bytes(b"new")
+    assert [path.read_text() for path in tmp_path.iterdir()] == ["old"]
