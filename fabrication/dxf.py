@@ -8,10 +8,11 @@ the outlines of the sheets.
 
 import io
 import os
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final, NamedTuple, TypeAlias
+from unicodedata import east_asian_width
 
 import numpy as np
 
@@ -42,7 +43,8 @@ _LABEL = 25.0
 
 _LABEL_SHARE = 0.35
 _LETTER = 0.9
-"""Labels are at most this share of the width of their beam; letters are this wide."""
+"""Labels are at most this share of the width of their beam; letters are this wide, and twice
+as wide in the scripts of East Asia."""
 
 
 class DxfFile(NamedTuple):
@@ -118,8 +120,8 @@ def write_dxf(
     places, sheets, oversize = shelves(sizes, sheet, spacing)
     corners = _sheet_corners(sizes, sheets, oversize, sheet, spacing)
     shifts = places - boxes[:, 0] + corners[sheets, 0]
-    with _ezdxf() as library:
-        document = _new_document(library)
+    with fixed_ezdxf() as library:
+        document = millimeter_drawing(library, LAYERS)
         space = document.modelspace()
         for low, high in corners.tolist():
             ring = [low, [high[0], low[1]], high, [low[0], high[1]]]
@@ -152,13 +154,46 @@ def _sheet_corners(
     return np.stack([low, low + extents], 1)
 
 
-def _new_document(library: _Untyped) -> _Untyped:
+def millimeter_drawing(library: _Untyped, layers: Mapping[str, int]) -> _Untyped:
+    """
+    An empty drawing in millimetres.
+
+    Parameters
+    ----------
+    library : module
+        What `fixed_ezdxf` gives.
+    layers : mapping of str to int
+        Layers and their colours, by AutoCAD's index.
+
+    Returns
+    -------
+    ezdxf.document.Drawing
+        The drawing.
+    """
     document = library.new("R2010")
     document.units = _MILLIMETERS
     document.header["$MEASUREMENT"] = 1
-    for name, color in LAYERS.items():
+    for name, color in layers.items():
         document.layers.add(name, color=color)
     return document
+
+
+def text_width(text: str) -> float:
+    """
+    Width of a line of text, on the safe side.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+
+    Returns
+    -------
+    float
+        In heights of its capitals.
+    """
+    wide = sum(east_asian_width(letter) in "WF" for letter in text)
+    return _LETTER * (len(text) + wide)
 
 
 def _add_contours(space: _Untyped, contours: Contours, shifts: FloatArray) -> None:
@@ -186,8 +221,8 @@ def _add_labels(space: _Untyped, beams: Beams, contours: Contours, shifts: Float
             for vertex, (low, high) in zip(ends, cuts, strict=True)
         ]
         texts = [(marks[0], 0.5), (name, 1.0), (marks[1], 0.5)]
-        letters = sum(len(text) * share for text, share in texts)
-        size = min(height, span / (_LETTER * letters))
+        width = sum(text_width(text) * share for text, share in texts)
+        size = min(height, span / width)
         for (text, share), point in zip(texts, points, strict=True):
             entity = space.add_text(text, height=share * size, dxfattribs={"layer": "ENGRAVE"})
             entity.set_placement(point, align=middle)
@@ -200,8 +235,20 @@ def _add_marks(space: _Untyped, beams: Beams, marks: DrillMarks, shifts: FloatAr
 
 
 @contextmanager
-def _ezdxf() -> Generator[_Untyped]:
-    """ezdxf, without time and random identifiers in what it writes; or what is missing."""
+def fixed_ezdxf() -> Generator[_Untyped]:
+    """
+    Import ezdxf, without time and random identifiers in what it writes.
+
+    Yields
+    ------
+    module
+        The library.
+
+    Raises
+    ------
+    MissingLibraryError
+        If it is missing.
+    """
     try:
         import ezdxf
     except ImportError as error:
