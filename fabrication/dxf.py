@@ -7,6 +7,7 @@ the outlines of the sheets.
 """
 
 import io
+import math
 import os
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
@@ -16,7 +17,7 @@ from unicodedata import east_asian_width
 
 import numpy as np
 
-from ..kernel.arrays import FloatArray
+from ..kernel.arrays import FloatArray, norm
 from ..kernel.beam_checks import check_writable_beams
 from ..kernel.beams import Beams, DrillMarks, scale_beams
 from ..kernel.contours import Contours, beam_contours, contour_boxes, shelves
@@ -211,21 +212,41 @@ def _add_labels(space: _Untyped, beams: Beams, contours: Contours, shifts: Float
     spans = contours.centers[:, 2, 0] - contours.centers[:, 0, 0]
     nodes: list[list[int]] = beams.annuli.edge_vertices.tolist()
     bevels: list[list[list[float]]] = np.degrees(contours.bevels).tolist()
-    heights = np.minimum(_LABEL, _LABEL_SHARE * contours.widths)
-    for name, ends, cuts, points, span, height in zip(
-        beams.annuli.ids, nodes, bevels, centers.tolist(), spans.tolist(), heights.tolist(),
-        strict=True,
+    turns, curvatures = _turns(contours.centers)
+    for name, ends, cuts, points, span, width, along, curvature in zip(
+        beams.annuli.ids, nodes, bevels, centers.tolist(), spans.tolist(),
+        contours.widths.tolist(), np.degrees(turns).tolist(), curvatures.tolist(), strict=True,
     ):  # fmt: skip
         marks = [
             f"{node_name(vertex)} {low:.1f}/{high:.1f}"
             for vertex, (low, high) in zip(ends, cuts, strict=True)
         ]
         texts = [(marks[0], 0.5), (name, 1.0), (marks[1], 0.5)]
-        width = sum(text_width(text) * share for text, share in texts)
-        size = min(height, span / width)
-        for (text, share), point in zip(texts, points, strict=True):
-            entity = space.add_text(text, height=share * size, dxfattribs={"layer": "ENGRAVE"})
+        lengths = [text_width(text) * share for text, share in texts]
+        size = min(
+            _LABEL, _LABEL_SHARE * width, span / sum(lengths),
+            _straight_in_bow(max(lengths), width, curvature),
+        )  # fmt: skip
+        for (text, share), point, turn in zip(texts, points, along, strict=True):
+            look = {"layer": "ENGRAVE", "rotation": turn}
+            entity = space.add_text(text, height=share * size, dxfattribs=look)
             entity.set_placement(point, align=middle)
+
+
+def _turns(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Directions (B, 3) at three points of circles, and the curvatures (B,) of these."""
+    chords = points[:, [1, 2, 2]] - points[:, [0, 1, 0]]
+    first, second, both = np.arctan2(chords[..., 1], chords[..., 0]).T
+    # A chord has the mean of the directions at its ends.
+    turns = np.stack([2 * first - both, both, 2 * second - both], 1)
+    return turns, 2 * np.abs(np.sin(second - first)) / norm(chords[:, 2])
+
+
+def _straight_in_bow(length: float, width: float, curvature: float) -> float:
+    """Height of a straight text, `length` heights long, that stays in a bow of some width."""
+    # Half the height, and the sagitta of the length, take up half the width.
+    sagitta = curvature * length**2 / 8
+    return width / (0.5 + math.sqrt(0.25 + 2 * sagitta * width))
 
 
 def _add_marks(space: _Untyped, beams: Beams, marks: DrillMarks, shifts: FloatArray) -> None:
