@@ -16,6 +16,7 @@ from uuid import UUID
 
 import numpy as np
 
+from ..kernel.arrays import FloatArray
 from ..kernel.beam_checks import check_writable_beams
 from ..kernel.beams import Beams
 from ..kernel.colors import UNLABELLED, mould_color, mould_name
@@ -185,6 +186,7 @@ def write_3dm(
         rejected, notes = _add_panels(model, panels, contents, units)
     if beams is not None:
         add_beams(model, beams, units, render_meshes=contents.render_meshes)
+    add_views(model, _points(panels, beams))
     if contents.reference is not None:
         notes += _add_reference(model, contents.reference)
     data, objects = encode_model(model, version), count_objects(model)
@@ -312,9 +314,18 @@ def _add_panels(
         _add_centers(model, exact)
     if "Moulds" in contents.layers:
         notes += add_mould_blocks(model, exact, render_meshes=sound.render_meshes)
-    if exact.n_panels:
-        add_views(model, exact.corners + exact.origins[exact.corner_panels])
     return rejected, notes
+
+
+def _points(panels: Panels | None, beams: Beams | None) -> FloatArray:
+    """All corners (n, 3), in model coordinates."""
+    points: list[FloatArray] = []
+    if panels is not None:
+        points.append(panels.corners + panels.origins[panels.corner_panels])
+    if beams is not None:
+        corners = beams.annuli.corners + beams.annuli.origins[:, None, None]
+        points.append(corners.reshape(-1, 3))
+    return np.concatenate(points)
 
 
 def _add_blocks(

@@ -429,6 +429,19 @@ def test_a_block_for_every_mould(tmp_path: Path) -> None:
     assert read.n_faces == 20
 
 
+def test_a_panel_called_like_a_mould_has_a_block_of_its_own(tmp_path: Path) -> None:
+    panels = torus_panels()
+    panels = replace(
+        panels, ids=("Mould 01", *panels.ids[1:]), labels=np.zeros(panels.n_panels, np.int64)
+    )
+    file = write_3dm(panels, tmp_path / "m.3dm", contents=RhinoContents("blocks", ("Moulds",)))
+    model: Any = rhino3dm.File3dm.Read(str(file.path))
+    names = {block.Name: block.Id for block in model.InstanceDefinitions}
+    assert {"Mould 01", "Panel Mould 01"} <= set(names)
+    assert len(set(names.values())) == len(names)
+    assert len({str(item.Attributes.Id) for item in model.Objects}) == len(model.Objects)
+
+
 def test_no_moulds_have_no_blocks(tmp_path: Path) -> None:
     panels = select_panels(torus_panels(), np.arange(48) < 3)
     file = write_3dm(panels, tmp_path / "m.3dm", contents=RhinoContents(layers=("Moulds",)))
