@@ -112,10 +112,7 @@ def replacing(path: str | os.PathLike[str]) -> Generator[Path]:
             os.fsync(written.fileno())
         temporary.replace(target)
     except OSError as error:
-        raise InputError(
-            f"cannot write {target}: {error.strerror or error}; check the disk, and whether a "
-            "program has the file open"
-        ) from error
+        raise _unwritable(target, error) from error
     finally:
         temporary.unlink(missing_ok=True)
     _tidy(target.parent, prefix, suffix)
@@ -155,7 +152,7 @@ def replacing_all(folder: str | os.PathLike[str]) -> Generator[Path]:
     Raises
     ------
     InputError
-        If the folder cannot be made or written to.
+        If the folder cannot be made or written to, or one of the files cannot.
     """
     target = Path(folder)
     made = [path for path in (target, *target.parents) if not path.exists()]
@@ -171,11 +168,27 @@ def replacing_all(folder: str | os.PathLike[str]) -> Generator[Path]:
         yield temporary
         written = sorted(temporary.iterdir(), key=lambda path: path.stat().st_mtime_ns)
         for each in written:
-            each.replace(target / each.name)
+            check_target(target / each.name)
+        for each in written:
+            _move(each, target / each.name)
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
         _remove_empty(made)
     _tidy(target, f".{_MARK}")
+
+
+def _move(written: Path, target: Path) -> None:
+    try:
+        written.replace(target)
+    except OSError as error:
+        raise _unwritable(target, error) from error
+
+
+def _unwritable(target: Path, error: OSError) -> InputError:
+    return InputError(
+        f"cannot write {target}: {error.strerror or error}; check the disk, and whether a "
+        "program has the file open"
+    )
 
 
 def _remove_empty(folders: list[Path]) -> None:

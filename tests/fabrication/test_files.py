@@ -74,6 +74,38 @@ def test_files_of_a_folder_move_as_they_were_written(
     assert moved == names
 
 
+def write_both(folder: Path) -> None:
+    for name in ("a.txt", "b.txt"):
+        (folder / name).write_text("new")
+
+
+def test_files_of_a_folder_move_only_if_all_can(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("old")
+    (tmp_path / "b.txt").mkdir()
+    with (
+        pytest.raises(InputError, match=r"cannot write .*b\.txt: it is a folder"),
+        replacing_all(tmp_path) as staging,
+    ):
+        write_both(staging)
+    assert (tmp_path / "a.txt").read_text() == "old"
+    assert {path.name for path in tmp_path.iterdir()} == {"a.txt", "b.txt"}
+
+
+def test_a_file_of_a_folder_that_is_held_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise PermissionError(13, "The process cannot access the file")
+
+    monkeypatch.setattr(Path, "replace", fail)
+    with (
+        pytest.raises(InputError, match=r"cannot write .*a\.txt: The process cannot access"),
+        replacing_all(tmp_path) as staging,
+    ):
+        (staging / "a.txt").write_text("new")
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_target_that_cannot_be(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="it is a folder"):
         check_target(tmp_path)
@@ -86,8 +118,12 @@ def test_a_read_only_file_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     target = tmp_path / "p.step"
     target.write_text("released")
     target.chmod(0o444)
-    # Nothing is read-only for an administrator.
-    monkeypatch.setattr(os, "access", lambda path, _: bool(path.stat().st_mode & 0o200))
+
+    def access(path: Path, _: int) -> bool:
+        """Nothing is read-only for an administrator, who may run this."""
+        return bool(path.stat().st_mode & 0o200)
+
+    monkeypatch.setattr(os, "access", access)
     with pytest.raises(InputError, match="it is read-only"), replacing(target):
         pass
     assert target.read_text() == "released"
