@@ -111,11 +111,17 @@ def test_a_file_without_geometry_is_no_model(text: str, tmp_path: Path) -> None:
     assert [finding.code for finding in check_part21(path)] == ["S303"]
 
 
-def test_many_findings_of_one_kind_are_counted(text: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("code", "old", "new"),
+    [("S105", "=CIRCLE(", "=KREIS("), ("S103", "=CIRCLE('", "=CIRCLE('\\Q")],
+)
+def test_many_findings_of_one_kind_are_counted(
+    text: str, tmp_path: Path, code: str, old: str, new: str
+) -> None:
     path = tmp_path / "broken.step"
     count = text.count("=CIRCLE(")
-    path.write_text(text.replace("=CIRCLE(", "=KREIS("))
-    findings = [finding for finding in check_part21(path) if finding.code == "S105"]
+    path.write_text(text.replace(old, new))
+    findings = [finding for finding in check_part21(path) if finding.code == code]
     assert len(findings) == SHOWN + 1
     assert findings[-1].size == count - SHOWN
     assert findings[-1].message.startswith(f"{count - SHOWN} more: ")
