@@ -253,7 +253,8 @@ def _set_strings(model: RhinoModel, graph_json: str, title: str) -> None:
     strings = {"version": version, "title": title, "note": _NOTE, "graph": graph_json}
     for key, text in strings.items():
         if text:
-            model.file.Strings[f"spheremesh::{key}"] = text
+            # A path may hold bytes that are no text; a document string may not.
+            model.file.Strings[f"spheremesh::{key}"] = text.encode(errors="replace").decode()
 
 
 class _Mould(NamedTuple):

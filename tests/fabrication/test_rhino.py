@@ -184,6 +184,14 @@ def test_document(model: Any, path: Path) -> None:  # noqa: ANN401
     assert str(path.parent).encode("utf-16-le") not in path.read_bytes()
 
 
+def test_bytes_that_are_no_text_do_no_harm(panels: Panels, tmp_path: Path) -> None:
+    """Names of files on Linux may be in any encoding, and are in the graph."""
+    one = select_panels(panels, np.arange(panels.n_panels) == 0)
+    file = write_3dm(one, tmp_path / "m.3dm", graph_json='{"path": "d\udce4cher.obj"}')
+    model: Any = rhino3dm.File3dm.Read(str(file.path))
+    assert model.Strings["spheremesh::graph"] == '{"path": "d?cher.obj"}'
+
+
 def test_centres(model: Any, panels: Panels) -> None:  # noqa: ANN401
     points = on_layer(model, "Centres")
     assert len(points) == np.count_nonzero(panels.spheres[:, 0])
