@@ -24,6 +24,9 @@ _MARK: Final = "spheremesh-"
 _RANDOM: Final = "????????"
 """What `tempfile` puts into names."""
 
+_LONGEST: Final = 200
+"""Bytes of a name that are kept in that of its temporary file: systems end names at 255."""
+
 _ABANDONED: Final = 86400.0
 """Age in seconds at which what is unfinished is nobody's."""
 
@@ -60,17 +63,22 @@ def check_target(path: str | os.PathLike[str]) -> None:
     Raises
     ------
     InputError
-        If its folder does not exist, it is a folder itself, or there is such a file and it is
-        read-only.
+        If its folder does not exist, it is a folder itself, there is such a file and it is
+        read-only, or no file can have that name.
     """
     target = Path(path)
     folder = target.parent
-    if not folder.is_dir():
+    try:
+        has_folder, is_folder = folder.is_dir(), target.is_dir()
+        # A rename would pass over the mark of a file that is to stay.
+        is_read_only = target.exists() and not os.access(target, os.W_OK)
+    except (OSError, ValueError) as error:
+        raise _unwritable(target, error) from error
+    if not has_folder:
         raise InputError(f"cannot write {target}: there is no folder {folder}; create it first")
-    if target.is_dir():
+    if is_folder:
         raise InputError(f"cannot write {target}: it is a folder; name a file in it")
-    # A rename would pass over the mark of a file that is to stay.
-    if target.exists() and not os.access(target, os.W_OK):
+    if is_read_only:
         raise InputError(f"cannot write {target}: it is read-only; choose another name")
 
 
@@ -98,11 +106,12 @@ def replacing(path: str | os.PathLike[str]) -> Generator[Path]:
     """
     check_target(path)
     target = Path(path)
-    prefix, suffix = f".{target.stem}-{_MARK}", target.suffix
+    stem = os.fsencode(target.stem)[:_LONGEST].decode(errors="ignore")
+    prefix, suffix = f".{stem}-{_MARK}", target.suffix
     try:
         handle, name = tempfile.mkstemp(dir=target.parent, prefix=prefix, suffix=suffix)
-    except OSError as error:
-        raise InputError(f"cannot write {target}: {error.strerror}") from error
+    except (OSError, ValueError) as error:
+        raise _unwritable(target, error) from error
     os.close(handle)
     temporary = Path(name)
     try:
@@ -184,10 +193,11 @@ def _move(written: Path, target: Path) -> None:
         raise _unwritable(target, error) from error
 
 
-def _unwritable(target: Path, error: OSError) -> InputError:
+def _unwritable(target: Path, error: OSError | ValueError) -> InputError:
+    reason = getattr(error, "strerror", None) or error
     return InputError(
-        f"cannot write {target}: {error.strerror or error}; check the disk, and whether a "
-        "program has the file open"
+        f"cannot write {target}: {reason}; check the name, the disk, and whether a program has "
+        "the file open"
     )
 
 

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from importlib.metadata import version as installed_version
 from pathlib import Path
-from typing import Final, Literal, NamedTuple, TypeAlias
+from typing import Final, Literal, NamedTuple, TypeAlias, get_args
 from uuid import UUID
 
 import numpy as np
@@ -177,6 +177,11 @@ def write_3dm(
     check_suffix(path, ".3dm")
     if version not in VERSIONS:
         raise InputError(f"unknown Rhino version {version}: use one of {VERSIONS}")
+    if contents.shape not in get_args(Shape) or not set(contents.layers) <= {*get_args(Layer)}:
+        raise InputError(
+            f"unknown shape {contents.shape!r} or one of the layers {contents.layers}: use "
+            f"{', '.join(get_args(Shape))}, and {', '.join(get_args(Layer))}"
+        )
     _check_writable(panels, beams, path)
     model = new_model(units)
     _set_strings(model, graph_json, title)

@@ -114,6 +114,20 @@ def test_a_target_that_cannot_be(tmp_path: Path) -> None:
     check_target(tmp_path / "p.step")
 
 
+def test_names_that_no_file_can_have(tmp_path: Path) -> None:
+    for name in ("a\0.step", "x" * 300 + ".step"):
+        with (
+            pytest.raises(InputError, match=r"cannot write .*check the name"),
+            replacing(tmp_path / name),
+        ):
+            pass
+    longest = tmp_path / ("ä" * 125 + ".step")
+    with replacing(longest) as temporary:
+        temporary.write_text("new")
+    assert longest.read_text() == "new"
+    assert list(tmp_path.iterdir()) == [longest]
+
+
 def test_a_read_only_file_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     target = tmp_path / "p.step"
     target.write_text("released")

@@ -653,6 +653,14 @@ def test_files_that_are_not_there_or_not_files(tmp_path: Path) -> None:
         assert "no layers" in error_of(tmp_path / f"a{suffix}", "x", layer="Roof")
 
 
+@pytest.mark.parametrize("name", ["a\0.obj", "x" * 300 + ".obj"])
+def test_names_that_no_file_can_have(tmp_path: Path, name: str) -> None:
+    with pytest.raises(InputError, match=r"cannot read .*; check the path"):
+        read_mesh(tmp_path / name)
+    with pytest.raises(InputError, match="cannot write"):
+        write_mesh(quad_and_triangle(), tmp_path / name)
+
+
 def test_a_file_that_may_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = written(tmp_path / "a.obj", TRIANGLE)
 

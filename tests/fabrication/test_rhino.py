@@ -525,6 +525,12 @@ def test_wrong_input(panels: Panels, tmp_path: Path) -> None:
         write_3dm(panels, tmp_path / "model.3dm", version=5)
     with pytest.raises(InputError, match="no folder"):
         write_3dm(panels, tmp_path / "missing" / "model.3dm")
+    wrong: Any = (RhinoContents(shape="solid"), RhinoContents(layers=("edges",)))  # type: ignore[arg-type]
+    for contents in wrong:
+        with pytest.raises(
+            InputError, match=r"unknown shape .* use panels, blocks, shell, and"
+        ):
+            write_3dm(panels, tmp_path / "model.3dm", contents=contents)
 
 
 def test_an_exporting_process_ends_well(tmp_path: Path) -> None:
