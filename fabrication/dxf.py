@@ -7,15 +7,17 @@ the outlines of the sheets.
 """
 
 import io
+import math
 import os
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final, NamedTuple, TypeAlias
+from unicodedata import east_asian_width
 
 import numpy as np
 
-from ..kernel.arrays import FloatArray
+from ..kernel.arrays import FloatArray, norm
 from ..kernel.beam_checks import check_writable_beams
 from ..kernel.beams import Beams, DrillMarks, scale_beams
 from ..kernel.contours import Contours, beam_contours, contour_boxes, shelves
@@ -42,7 +44,8 @@ _LABEL = 25.0
 
 _LABEL_SHARE = 0.35
 _LETTER = 0.9
-"""Labels are at most this share of the width of their beam; letters are this wide."""
+"""Labels are at most this share of the width of their beam; letters are this wide, and twice
+as wide in the scripts of East Asia."""
 
 
 class DxfFile(NamedTuple):
@@ -118,8 +121,8 @@ def write_dxf(
     places, sheets, oversize = shelves(sizes, sheet, spacing)
     corners = _sheet_corners(sizes, sheets, oversize, sheet, spacing)
     shifts = places - boxes[:, 0] + corners[sheets, 0]
-    with _ezdxf() as library:
-        document = _new_document(library)
+    with fixed_ezdxf() as library:
+        document = millimeter_drawing(library, LAYERS)
         space = document.modelspace()
         for low, high in corners.tolist():
             ring = [low, [high[0], low[1]], high, [low[0], high[1]]]
@@ -152,13 +155,46 @@ def _sheet_corners(
     return np.stack([low, low + extents], 1)
 
 
-def _new_document(library: _Untyped) -> _Untyped:
+def millimeter_drawing(library: _Untyped, layers: Mapping[str, int]) -> _Untyped:
+    """
+    An empty drawing in millimetres.
+
+    Parameters
+    ----------
+    library : module
+        What `fixed_ezdxf` gives.
+    layers : mapping of str to int
+        Layers and their colours, by AutoCAD's index.
+
+    Returns
+    -------
+    ezdxf.document.Drawing
+        The drawing.
+    """
     document = library.new("R2010")
     document.units = _MILLIMETERS
     document.header["$MEASUREMENT"] = 1
-    for name, color in LAYERS.items():
+    for name, color in layers.items():
         document.layers.add(name, color=color)
     return document
+
+
+def text_width(text: str) -> float:
+    """
+    Width of a line of text, on the safe side.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+
+    Returns
+    -------
+    float
+        In heights of its capitals.
+    """
+    wide = sum(east_asian_width(letter) in "WF" for letter in text)
+    return _LETTER * (len(text) + wide)
 
 
 def _add_contours(space: _Untyped, contours: Contours, shifts: FloatArray) -> None:
@@ -176,21 +212,41 @@ def _add_labels(space: _Untyped, beams: Beams, contours: Contours, shifts: Float
     spans = contours.centers[:, 2, 0] - contours.centers[:, 0, 0]
     nodes: list[list[int]] = beams.annuli.edge_vertices.tolist()
     bevels: list[list[list[float]]] = np.degrees(contours.bevels).tolist()
-    heights = np.minimum(_LABEL, _LABEL_SHARE * contours.widths)
-    for name, ends, cuts, points, span, height in zip(
-        beams.annuli.ids, nodes, bevels, centers.tolist(), spans.tolist(), heights.tolist(),
-        strict=True,
+    turns, curvatures = _turns(contours.centers)
+    for name, ends, cuts, points, span, width, along, curvature in zip(
+        beams.annuli.ids, nodes, bevels, centers.tolist(), spans.tolist(),
+        contours.widths.tolist(), np.degrees(turns).tolist(), curvatures.tolist(), strict=True,
     ):  # fmt: skip
         marks = [
             f"{node_name(vertex)} {low:.1f}/{high:.1f}"
             for vertex, (low, high) in zip(ends, cuts, strict=True)
         ]
         texts = [(marks[0], 0.5), (name, 1.0), (marks[1], 0.5)]
-        letters = sum(len(text) * share for text, share in texts)
-        size = min(height, span / (_LETTER * letters))
-        for (text, share), point in zip(texts, points, strict=True):
-            entity = space.add_text(text, height=share * size, dxfattribs={"layer": "ENGRAVE"})
+        lengths = [text_width(text) * share for text, share in texts]
+        size = min(
+            _LABEL, _LABEL_SHARE * width, span / sum(lengths),
+            _straight_in_bow(max(lengths), width, curvature),
+        )  # fmt: skip
+        for (text, share), point, turn in zip(texts, points, along, strict=True):
+            look = {"layer": "ENGRAVE", "rotation": turn}
+            entity = space.add_text(text, height=share * size, dxfattribs=look)
             entity.set_placement(point, align=middle)
+
+
+def _turns(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Directions (B, 3) at three points of circles, and the curvatures (B,) of these."""
+    chords = points[:, [1, 2, 2]] - points[:, [0, 1, 0]]
+    first, second, both = np.arctan2(chords[..., 1], chords[..., 0]).T
+    # A chord has the mean of the directions at its ends.
+    turns = np.stack([2 * first - both, both, 2 * second - both], 1)
+    return turns, 2 * np.abs(np.sin(second - first)) / norm(chords[:, 2])
+
+
+def _straight_in_bow(length: float, width: float, curvature: float) -> float:
+    """Height of a straight text, `length` heights long, that stays in a bow of some width."""
+    # Half the height, and the sagitta of the length, take up half the width.
+    sagitta = curvature * length**2 / 8
+    return width / (0.5 + math.sqrt(0.25 + 2 * sagitta * width))
 
 
 def _add_marks(space: _Untyped, beams: Beams, marks: DrillMarks, shifts: FloatArray) -> None:
@@ -200,8 +256,20 @@ def _add_marks(space: _Untyped, beams: Beams, marks: DrillMarks, shifts: FloatAr
 
 
 @contextmanager
-def _ezdxf() -> Generator[_Untyped]:
-    """ezdxf, without time and random identifiers in what it writes; or what is missing."""
+def fixed_ezdxf() -> Generator[_Untyped]:
+    """
+    Import ezdxf, without time and random identifiers in what it writes.
+
+    Yields
+    ------
+    module
+        The library.
+
+    Raises
+    ------
+    MissingLibraryError
+        If it is missing.
+    """
     try:
         import ezdxf
     except ImportError as error:

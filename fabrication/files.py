@@ -24,6 +24,9 @@ _MARK: Final = "spheremesh-"
 _RANDOM: Final = "????????"
 """What `tempfile` puts into names."""
 
+_LONGEST: Final = 200
+"""Bytes of a name that are kept in that of its temporary file: systems end names at 255."""
+
 _ABANDONED: Final = 86400.0
 """Age in seconds at which what is unfinished is nobody's."""
 
@@ -60,14 +63,23 @@ def check_target(path: str | os.PathLike[str]) -> None:
     Raises
     ------
     InputError
-        If its folder does not exist, or it is a folder itself.
+        If its folder does not exist, it is a folder itself, there is such a file and it is
+        read-only, or no file can have that name.
     """
     target = Path(path)
     folder = target.parent
-    if not folder.is_dir():
+    try:
+        has_folder, is_folder = folder.is_dir(), target.is_dir()
+        # A rename would pass over the mark of a file that is to stay.
+        is_read_only = target.exists() and not os.access(target, os.W_OK)
+    except (OSError, ValueError) as error:
+        raise _unwritable(target, error) from error
+    if not has_folder:
         raise InputError(f"cannot write {target}: there is no folder {folder}; create it first")
-    if target.is_dir():
+    if is_folder:
         raise InputError(f"cannot write {target}: it is a folder; name a file in it")
+    if is_read_only:
+        raise InputError(f"cannot write {target}: it is read-only; choose another name")
 
 
 @contextmanager
@@ -89,15 +101,17 @@ def replacing(path: str | os.PathLike[str]) -> Generator[Path]:
     Raises
     ------
     InputError
-        If the folder does not exist or cannot be written to.
+        If the folder does not exist, or the file cannot be written: no rights, a full disk, a
+        program that holds it.
     """
     check_target(path)
     target = Path(path)
-    prefix, suffix = f".{target.stem}-{_MARK}", target.suffix
+    stem = os.fsencode(target.stem)[:_LONGEST].decode(errors="ignore")
+    prefix, suffix = f".{stem}-{_MARK}", target.suffix
     try:
         handle, name = tempfile.mkstemp(dir=target.parent, prefix=prefix, suffix=suffix)
-    except OSError as error:
-        raise InputError(f"cannot write {target}: {error.strerror}") from error
+    except (OSError, ValueError) as error:
+        raise _unwritable(target, error) from error
     os.close(handle)
     temporary = Path(name)
     try:
@@ -106,6 +120,8 @@ def replacing(path: str | os.PathLike[str]) -> Generator[Path]:
         with temporary.open("rb") as written:
             os.fsync(written.fileno())
         temporary.replace(target)
+    except OSError as error:
+        raise _unwritable(target, error) from error
     finally:
         temporary.unlink(missing_ok=True)
     _tidy(target.parent, prefix, suffix)
@@ -145,8 +161,7 @@ def replacing_all(folder: str | os.PathLike[str]) -> Generator[Path]:
     Raises
     ------
     InputError
-        If the folder cannot be made or written to, or has a folder in the place of a file:
-        none of the files is moved then.
+        If the folder cannot be made or written to, or one of the files cannot.
     """
     target = Path(folder)
     made = [path for path in (target, *target.parents) if not path.exists()]
@@ -162,16 +177,28 @@ def replacing_all(folder: str | os.PathLike[str]) -> Generator[Path]:
         yield temporary
         written = sorted(temporary.iterdir(), key=lambda path: path.stat().st_mtime_ns)
         for each in written:
-            if (target / each.name).is_dir():
-                raise InputError(
-                    f"cannot write {target / each.name}: it is a folder; choose another folder"
-                )
+            check_target(target / each.name)
         for each in written:
-            each.replace(target / each.name)
+            _move(each, target / each.name)
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
         _remove_empty(made)
     _tidy(target, f".{_MARK}")
+
+
+def _move(written: Path, target: Path) -> None:
+    try:
+        written.replace(target)
+    except OSError as error:
+        raise _unwritable(target, error) from error
+
+
+def _unwritable(target: Path, error: OSError | ValueError) -> InputError:
+    reason = getattr(error, "strerror", None) or error
+    return InputError(
+        f"cannot write {target}: {reason}; check the name, the disk, and whether a program has "
+        "the file open"
+    )
 
 
 def _remove_empty(folders: list[Path]) -> None:

@@ -117,14 +117,11 @@ def write_mesh(mesh: Mesh, path: str | os.PathLike[str]) -> Path:
     """
     target = Path(path)
     suffix = _suffix(target, "write")
-    try:
-        with replacing(target) as temporary:
-            try:
-                _write(mesh, suffix, temporary)
-            except InputError as error:
-                raise InputError(f"cannot write {target}: {error}") from error
-    except OSError as error:
-        raise InputError(f"cannot write {target}: {error.strerror}; check the disk") from error
+    with replacing(target) as temporary:
+        try:
+            _write(mesh, suffix, temporary)
+        except InputError as error:
+            raise InputError(f"cannot write {target}: {error}") from error
     return target
 
 
@@ -137,7 +134,11 @@ def _write(mesh: Mesh, suffix: str, path: Path) -> None:
 
 def _suffix(path: Path, verb: str) -> str:
     suffix = path.suffix.lower()
-    if path.is_dir():
+    try:
+        is_folder = path.is_dir()
+    except (OSError, ValueError) as error:
+        raise InputError(f"cannot {verb} {path}: {error}; check the path") from error
+    if is_folder:
         raise InputError(f"cannot {verb} {path}: it is a folder; name a file in it")
     if suffix not in SUFFIXES:
         raise InputError(
@@ -154,8 +155,9 @@ def _read_bytes(path: Path) -> bytes:
         raise InputError(f"cannot read {path}: there is no such file; check the path") from None
     except PermissionError:
         raise InputError(f"cannot read {path}: you may not; change its permissions") from None
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror}; check the path") from error
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"cannot read {path}: {reason}; check the path") from error
     if not data.strip():
         raise InputError(f"cannot read {path}: the file is empty; export the mesh again")
     return data

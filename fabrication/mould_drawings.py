@@ -5,10 +5,11 @@ A drawing is laid out once, as lines, circles and labels on named layers, and th
 DXF (for CAD and plotters) or SVG (for browsers and print).
 """
 
+import io
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 from xml.etree import ElementTree
 
 import numpy as np
@@ -19,6 +20,7 @@ from ..kernel.colors import mould_name
 from ..kernel.mould_blanks import PanelCaps, panel_caps
 from ..kernel.panel_checks import check_writable
 from ..kernel.panels import Panels, inner_panel_arcs, panel_arcs, scale_panels
+from .dxf import fixed_ezdxf, millimeter_drawing, text_width
 from .files import check_suffix, replacing
 from .units import millimeters_per
 
@@ -32,6 +34,8 @@ CHORD_MM: Final = 0.1
 """How far the drawn outlines stand off the arcs."""
 
 MAX_STEPS: Final = 128
+
+_DECLARATION: Final = "<?xml version='1.0' encoding='utf-8'?>\n"
 
 
 @dataclass(frozen=True)
@@ -115,11 +119,9 @@ def write_mould_drawings(
     check_suffix(target, ".dxf", ".svg")
     check_writable(panels, target)
     drawing = layout_moulds(panels, units)
+    text = _dxf(drawing) if target.suffix.lower() == ".dxf" else _svg(drawing)
     with replacing(target) as temporary:
-        if target.suffix.lower() == ".dxf":
-            _write_dxf(drawing, temporary)
-        else:
-            _write_svg(drawing, temporary)
+        temporary.write_text(text, encoding="utf-8")
     return target
 
 
@@ -163,12 +165,13 @@ _Cell = tuple[str, str, float, list[tuple[str, FloatArray]]]
 
 def _title(made: Panels, caps: PanelCaps, members: IntArray, name: str) -> str:
     blank = members[np.argmax(caps.radii[members])]
+    count = f"{len(members)} panel{'s' if len(members) > 1 else ''}"
     size = f"blank {2 * caps.radii[blank]:.1f} x {abs(caps.sagittas[blank]):.1f} mm"
     if made.labels[members[0]] < 0:
-        return f"Without mould: {len(members)} panels, largest {size}"
+        return f"Without mould: {count}, largest {size}"
     curvature = 2 * float(np.abs(made.design_spheres[members, 0]).mean())
     shape = f"radius {1 / curvature:.2f} mm" if curvature > 0 else "flat"
-    return f"{name}: {shape}, {len(members)} panels, {size}"
+    return f"{name}: {shape}, {count}, {size}"
 
 
 def _cells(
@@ -234,36 +237,36 @@ def _add_block(drawing: Drawing, title: str, cells: list[_Cell]) -> Drawing:
         drawing.outlines.extend(
             (layer, points + np.array([x, y])) for layer, points in outlines
         )
-        drawing.labels.append(Label(name, (x, y), letter, is_centered=True))
+        size = min(letter, pitch / text_width(name))
+        drawing.labels.append(Label(name, (x, y), size, is_centered=True))
         below = (x, y - 2 * letter)
         drawing.labels.append(Label(remark, below, 0.8 * letter, is_centered=True))
     height = top + 2 * letter + -(-len(cells) // columns) * pitch
-    width = max(drawing.width, min(columns, len(cells)) * pitch)
+    title_end = letter * (1 + 2 * text_width(title))
+    width = max(drawing.width, min(columns, len(cells)) * pitch, title_end)
     return Drawing(drawing.outlines, drawing.rims, drawing.labels, width, height)
 
 
-def _write_dxf(drawing: Drawing, path: Path) -> None:
-    import ezdxf
-    from ezdxf.enums import TextEntityAlignment
+def _dxf(drawing: Drawing) -> str:
+    with fixed_ezdxf() as library:
+        from ezdxf.enums import TextEntityAlignment
 
-    # Its signatures are typed in part only.
-    document: Any = ezdxf.new("R2010")  # pyright: ignore[reportPrivateImportUsage]
-    document.units = 4  # millimetres
-    for name, color in LAYERS.items():
-        document.layers.add(name, color=color)
-    model = document.modelspace()
-    for layer, points in drawing.outlines:
-        model.add_lwpolyline(points.tolist(), close=True, dxfattribs={"layer": layer})
-    for x, y, radius in drawing.rims:
-        model.add_circle((x, y), radius, dxfattribs={"layer": "BLANK"})
-    for label in drawing.labels:
-        text = model.add_text(label.text, height=label.height, dxfattribs={"layer": "TEXT"})
-        align = TextEntityAlignment.CENTER if label.is_centered else TextEntityAlignment.LEFT
-        text.set_placement(label.at, align=align)
-    document.saveas(path)
+        document = millimeter_drawing(library, LAYERS)
+        model = document.modelspace()
+        for layer, points in drawing.outlines:
+            model.add_lwpolyline(points.tolist(), close=True, dxfattribs={"layer": layer})
+        for x, y, radius in drawing.rims:
+            model.add_circle((x, y), radius, dxfattribs={"layer": "BLANK"})
+        for label in drawing.labels:
+            text = model.add_text(label.text, height=label.height, dxfattribs={"layer": "TEXT"})
+            centered, left = TextEntityAlignment.CENTER, TextEntityAlignment.LEFT
+            text.set_placement(label.at, align=centered if label.is_centered else left)
+        stream = io.StringIO()
+        document.write(stream)
+    return stream.getvalue()
 
 
-def _write_svg(drawing: Drawing, path: Path) -> None:
+def _svg(drawing: Drawing) -> str:
     width, height = drawing.width, drawing.height
     root = ElementTree.Element(
         "svg",
@@ -298,4 +301,4 @@ def _write_svg(drawing: Drawing, path: Path) -> None:
             "text-anchor": "middle" if label.is_centered else "start",
         }
         ElementTree.SubElement(groups["TEXT"], "text", place).text = label.text
-    ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+    return _DECLARATION + ElementTree.tostring(root, encoding="unicode")

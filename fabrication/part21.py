@@ -156,9 +156,14 @@ def _characters(content: bytes) -> list[Finding]:
     if b"\\" not in content:
         return []
     bad = [x for x in _STRING.findall(content) if b"\\" in x and not _DIRECTIVES.fullmatch(x)]
-    return [
-        Finding("S103", "file", f"string {x.decode()} has an unknown directive") for x in bad
+    findings = [
+        Finding("S103", "file", f"string {x[:200].decode()} has an unknown directive")
+        for x in bad[:SHOWN]
     ]
+    if rest := len(bad[SHOWN:]):
+        message = f"{rest} more: a string has an unknown directive"
+        findings.append(Finding("S103", "file", message, float(rest)))
+    return findings
 
 
 def _header(header: bytes, content: bytes) -> list[Finding]:

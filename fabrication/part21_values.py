@@ -1,6 +1,8 @@
 """Numbers, strings and references in the text of STEP files (ISO 10303-21)."""
 
+import re
 from collections.abc import Iterable
+from typing import Final
 
 
 def real(number: float) -> str:
@@ -81,18 +83,26 @@ def string(text: str) -> str:
     Returns
     -------
     str
-        The text in quotes; characters beyond ASCII as directives.
+        The text in quotes; characters beyond ASCII as directives: those of the basic plane
+        by two bytes each, which more programs read than four.
 
     Examples
     --------
-    >>> print(string("Dach's Höhe"))
-    'Dach''s H\X4\000000F6\X0\he'
+    >>> print(string("Dach's Höhe 屋根 🏠"))
+    'Dach''s H\X2\00F6\X0\he \X2\5C4B6839\X0\ \X4\0001F3E0\X0\'
     """
     quoted = text.replace("\\", "\\\\").replace("'", "''")
-    return "'" + "".join(map(_character, quoted)) + "'"
+    return "'" + _BASIC.sub(_two_bytes, _BEYOND.sub(_four_bytes, quoted)) + "'"
 
 
-def _character(character: str) -> str:
-    if character.isascii() and character.isprintable():
-        return character
-    return f"\\X4\\{ord(character):08X}\\X0\\"
+_BASIC: Final = re.compile("[\0-\x1f\x7f-\uffff]+")
+_BEYOND: Final = re.compile("[\U00010000-\U0010ffff]+")
+"""Runs of characters that a file cannot hold as such, on and beyond the basic plane."""
+
+
+def _two_bytes(run: re.Match[str]) -> str:
+    return f"\\X2\\{''.join(f'{ord(character):04X}' for character in run[0])}\\X0\\"
+
+
+def _four_bytes(run: re.Match[str]) -> str:
+    return f"\\X4\\{''.join(f'{ord(character):08X}' for character in run[0])}\\X0\\"

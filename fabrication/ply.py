@@ -103,7 +103,10 @@ def _read_header(data: bytes) -> _Header:
 def _read_property(words: list[str]) -> _Property | None:
     match words:
         case ["list", count, item, name] if count in _CODES and item in _CODES:
-            return _Property(name, _CODES[item], _CODES[count])
+            # Counts and vertices are whole numbers, or the rows could not be walked.
+            whole = _CODES[count] + (_CODES[item] if name in _FACE_LISTS else "")
+            is_sound = not set(whole) & {"f", "d"}
+            return _Property(name, _CODES[item], _CODES[count]) if is_sound else None
         case [item, name] if item in _CODES:
             return _Property(name, _CODES[item])
         case _:

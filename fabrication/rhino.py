@@ -11,11 +11,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from importlib.metadata import version as installed_version
 from pathlib import Path
-from typing import Final, Literal, NamedTuple, TypeAlias
+from typing import Final, Literal, NamedTuple, TypeAlias, get_args
 from uuid import UUID
 
 import numpy as np
 
+from ..kernel.arrays import FloatArray
 from ..kernel.beam_checks import check_writable_beams
 from ..kernel.beams import Beams
 from ..kernel.colors import UNLABELLED, mould_color, mould_name
@@ -176,6 +177,11 @@ def write_3dm(
     check_suffix(path, ".3dm")
     if version not in VERSIONS:
         raise InputError(f"unknown Rhino version {version}: use one of {VERSIONS}")
+    if contents.shape not in get_args(Shape) or not set(contents.layers) <= {*get_args(Layer)}:
+        raise InputError(
+            f"unknown shape {contents.shape!r} or one of the layers {contents.layers}: use "
+            f"{', '.join(get_args(Shape))}, and {', '.join(get_args(Layer))}"
+        )
     _check_writable(panels, beams, path)
     model = new_model(units)
     _set_strings(model, graph_json, title)
@@ -185,6 +191,7 @@ def write_3dm(
         rejected, notes = _add_panels(model, panels, contents, units)
     if beams is not None:
         add_beams(model, beams, units, render_meshes=contents.render_meshes)
+    add_views(model, _points(panels, beams))
     if contents.reference is not None:
         notes += _add_reference(model, contents.reference)
     data, objects = encode_model(model, version), count_objects(model)
@@ -251,7 +258,8 @@ def _set_strings(model: RhinoModel, graph_json: str, title: str) -> None:
     strings = {"version": version, "title": title, "note": _NOTE, "graph": graph_json}
     for key, text in strings.items():
         if text:
-            model.file.Strings[f"spheremesh::{key}"] = text
+            # A path may hold bytes that are no text; a document string may not.
+            model.file.Strings[f"spheremesh::{key}"] = text.encode(errors="replace").decode()
 
 
 class _Mould(NamedTuple):
@@ -312,9 +320,18 @@ def _add_panels(
         _add_centers(model, exact)
     if "Moulds" in contents.layers:
         notes += add_mould_blocks(model, exact, render_meshes=sound.render_meshes)
-    if exact.n_panels:
-        add_views(model, exact.corners + exact.origins[exact.corner_panels])
     return rejected, notes
+
+
+def _points(panels: Panels | None, beams: Beams | None) -> FloatArray:
+    """All corners (n, 3), in model coordinates."""
+    points: list[FloatArray] = []
+    if panels is not None:
+        points.append(panels.corners + panels.origins[panels.corner_panels])
+    if beams is not None:
+        corners = beams.annuli.corners + beams.annuli.origins[:, None, None]
+        points.append(corners.reshape(-1, 3))
+    return np.concatenate(points)
 
 
 def _add_blocks(

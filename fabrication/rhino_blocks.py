@@ -146,12 +146,14 @@ def add_mould_blocks(model: RhinoModel, panels: Panels, *, render_meshes: bool) 
     notes: list[str] = []
     blocks: list[UUID | None] = []
     for name, stream, errors in zip(found.caps.ids, streams, judged, strict=True):
-        blocks.append(None if errors.reason() else object_id(name, "block"))
+        blocks.append(None if errors.reason() else object_id(name, "mould block"))
         if errors.reason():
             notes.append(f"the block of {name} is left out: {errors.reason()}")
             continue
-        member = object_attributes(model, name, "block member", place)
-        add_definition(model, name, object_id(name, "block"), model.decode(stream), member)
+        member = object_attributes(model, name, "mould member", place)
+        add_definition(
+            model, name, object_id(name, "mould block"), model.decode(stream), member
+        )
     panel_ids: list[int] = found.members.tolist()
     rows: list[int] = found.rows.tolist()
     for i, (panel, row) in enumerate(zip(panel_ids, rows, strict=True)):

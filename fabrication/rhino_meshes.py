@@ -85,7 +85,12 @@ def read_3dm(data: bytes, layer: str = "", size: GridSize = _GRID) -> Polygons:
         for grid in sample_object(each.geometry, size)
     ]
     if grids:
-        return drop_repeats(_weld(grids))
+        found = drop_repeats(_weld(grids))
+        if not len(found.degrees):
+            raise InputError(
+                f"{size.n_u} by {size.n_v} quads on surfaces have no area: ask for more"
+            )
+        return found
     kinds = Counter(type(each.geometry).__name__ for each in objects)
     held = ", ".join(f"{count} {kind}" for kind, count in kinds.items()) or "no objects"
     where = f"layer {layer!r}" if layer else "the file"

@@ -84,7 +84,8 @@ def sample_object(geometry: RhinoObject, size: GridSize) -> list[Polygons]:
     Raises
     ------
     InputError
-        If a trimmed face has holes, or a seam or a pole on its boundary.
+        If a trimmed face has holes, a seam or a pole on its boundary, or is not convex enough
+        for a grid.
     """
     kind = type(geometry).__name__
     if kind == "Extrusion":
@@ -182,7 +183,7 @@ def _off_seams(surface: NurbsSurface, sides: list[FloatArray]) -> list[FloatArra
 
 def _sample_trimmed(surface: NurbsSurface, sides: list[FloatArray], size: GridSize) -> Polygons:
     if len(sides) == 4:
-        return _quads(surface, _coons(sides), size)
+        return _quads(surface, _unfolded(_coons(sides)), size)
     half = len(sides[0]) // 2
     center = np.mean([side[half] for side in sides], axis=0)
     share = np.linspace(0, 1, half + 1)[:, None]
@@ -191,8 +192,16 @@ def _sample_trimmed(surface: NurbsSurface, sides: list[FloatArray], size: GridSi
         inwards = side[half] + share * (center - side[half])
         outwards = center + share * (before[half] - center)
         uv = _coons([side[: half + 1], inwards, outwards, before[half:]])
-        parts.append(_quads(surface, uv, GridSize(half, half)))
+        parts.append(_quads(surface, _unfolded(uv), GridSize(half, half)))
     return join_polygons(parts)
+
+
+def _unfolded(uv: FloatArray) -> FloatArray:
+    """The grid, if it covers nothing twice: a loop runs counter-clockwise in (u, v)."""
+    first, second = uv[1:, 1:] - uv[:-1, :-1], uv[:-1, 1:] - uv[1:, :-1]
+    if not (first[..., 0] * second[..., 1] > first[..., 1] * second[..., 0]).all():
+        raise InputError("turns inwards at its boundary, where a grid would fold")
+    return uv
 
 
 def _coons(sides: list[FloatArray]) -> FloatArray:

@@ -23,7 +23,7 @@ from ..kernel.panels import Panels, neighbor_ids, scale_panels
 from .audit import AuditLimits, PanelSubject, check_panels, findings_by_id, warning_text
 from .beam_schedule import beam_rows, node_rows
 from .files import check_suffix, replacing
-from .tables import finite_or_none, write_csv, write_xlsx
+from .tables import finite_or_none, format_xlsx, write_csv
 from .units import CUBIC_METER, SQUARE_METER, millimeters_per
 
 
@@ -193,11 +193,12 @@ def write_schedule(
     if beams is not None:
         check_writable_beams(beams, target)
         tables |= {"Beams": beam_rows(beams, units), "Nodes": node_rows(beams, units)}
+    workbook = format_xlsx(tables) if target.suffix.lower() == ".xlsx" else b""
     with replacing(target) as temporary:
         if is_csv:
             write_csv(next(iter(tables.values())), temporary)
-        elif target.suffix.lower() == ".xlsx":
-            write_xlsx(tables, temporary)
+        elif workbook:
+            temporary.write_bytes(workbook)
         else:
             content = {"units": "mm"} | {name.lower(): rows for name, rows in tables.items()}
             text = json.dumps(content, indent=1, allow_nan=False) + "\n"

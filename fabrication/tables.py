@@ -1,9 +1,10 @@
 """Tables of plain values as files: CSV for spreadsheets and programs, and XLSX."""
 
 import csv
+import io
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 
@@ -11,6 +12,10 @@ from ..kernel.errors import MissingLibraryError
 
 LARGE = 1e3
 """Numbers from here on are written with six decimals."""
+
+
+# What comes from openpyxl is not typed.
+_Untyped: TypeAlias = Any
 
 
 def finite_or_none(value: np.float64) -> float | None:
@@ -51,16 +56,19 @@ def write_csv(rows: Iterable[Mapping[str, Any]], path: Path) -> None:
             writer.writerow({name: _cell(value) for name, value in row.items()})
 
 
-def write_xlsx(sheets: Mapping[str, list[dict[str, Any]]], path: Path) -> None:
+def format_xlsx(sheets: Mapping[str, list[dict[str, Any]]]) -> bytes:
     """
-    Write tables as a workbook.
+    Tables as a workbook.
 
     Parameters
     ----------
     sheets : mapping of str to list of dict
         Rows of the same columns by the title of their sheet; lists as in CSV.
-    path : Path
-        The file.
+
+    Returns
+    -------
+    bytes
+        Content of the file.
 
     Raises
     ------
@@ -69,7 +77,6 @@ def write_xlsx(sheets: Mapping[str, list[dict[str, Any]]], path: Path) -> None:
     """
     try:
         import openpyxl  # pyright: ignore[reportMissingModuleSource]
-        from openpyxl.cell import WriteOnlyCell  # pyright: ignore[reportMissingModuleSource]
     except ImportError as error:
         raise MissingLibraryError(
             "a schedule in .xlsx needs openpyxl: install spheremesh[excel], or write .csv"
@@ -80,17 +87,24 @@ def write_xlsx(sheets: Mapping[str, list[dict[str, Any]]], path: Path) -> None:
         sheet.freeze_panes = "B2"
         sheet.append(list(rows[0]) if rows else ["none"])
         for row in rows:
-            cells = [WriteOnlyCell(sheet, _excel_value(value)) for value in row.values()]
-            for cell in cells:
-                # A name such as =A1 is text as well, and never a formula.
-                cell.data_type = "s" if isinstance(cell.value, str) else cell.data_type
-            sheet.append(cells)
-    book.save(path)
+            sheet.append([_excel_cell(sheet, value) for value in row.values()])
+    stream = io.BytesIO()
+    book.save(stream)
+    return stream.getvalue()
 
 
-def _excel_value(value: object) -> str | int | float:
-    """Numbers stay numbers; all else is text."""
-    return value if isinstance(value, int | float) else _cell(value)
+def _excel_cell(sheet: _Untyped, value: object) -> object:
+    """Numbers stay numbers, and text stays text, whatever it begins with."""
+    if isinstance(value, int | float):
+        return value
+    text = _cell(value)
+    if not text.startswith("="):
+        return text
+    from openpyxl.cell import WriteOnlyCell  # pyright: ignore[reportMissingModuleSource]
+
+    cell: _Untyped = WriteOnlyCell(sheet, text)
+    cell.data_type = "s"
+    return cell
 
 
 def _cell(value: object) -> str:

@@ -166,6 +166,6 @@ def _is_number(word: str, kind: type[float | np.int64]) -> bool:
 
 def _not_a_number(line: int, word: str) -> str:
     return (
-        f"line {line}: {word!r} is not a usable number; write coordinates with a decimal "
+        f"line {line}: {word[:40]!r} is not a usable number; write coordinates with a decimal "
         "point and vertex numbers as integers"
     )

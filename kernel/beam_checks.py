@@ -8,6 +8,7 @@ import numpy as np
 
 from .arrays import BoolArray, dot, norm
 from .errors import InputError, name_ids
+from .part_names import check_part_names
 from .tolerances import AXIS_LEAN, DEGENERATE
 
 if TYPE_CHECKING:
@@ -162,11 +163,13 @@ def check_writable_beams(beams: "Beams", target: object) -> None:
     Raises
     ------
     InputError
-        If there is no beam, two have the same name, or one has numbers that are not finite.
+        If there is no beam, two have the same name, a name is no line of text, or one has
+        numbers that are not finite.
     """
     ids = beams.annuli.ids
     if not ids:
         raise InputError(f"there are no beams to write to {target}")
+    check_part_names(ids, "beam")
     for name, count in Counter(ids).items():
         if count > 1:
             rows = [i for i, other in enumerate(ids) if other == name]

@@ -10,6 +10,7 @@ from .arrays import BoolArray, FloatArray, dot, norm, unit
 from .crossings import crossing_boundaries
 from .errors import InputError, name_ids
 from .panels import Panels, inner_panel_arcs, panel_arcs, panel_areas, select_panels
+from .part_names import check_part_names
 from .spheres import normals
 from .tolerances import CAP_ANGLE, THIN
 
@@ -51,10 +52,12 @@ def check_writable(panels: Panels, target: object) -> None:
     Raises
     ------
     InputError
-        If there is no panel, two have the same name, or one has numbers that are not finite.
+        If there is no panel, two have the same name, a name is no line of text, or one has
+        numbers that are not finite.
     """
     if panels.n_panels == 0:
         raise InputError(f"there are no panels to write to {target}")
+    check_part_names(panels.ids, "panel")
     counts = Counter(panels.ids)
     for name, count in counts.items():
         if count > 1:

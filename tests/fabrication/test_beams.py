@@ -420,6 +420,18 @@ def test_beams_far_from_the_origin_keep_precise_meshes(tmp_path: Path) -> None:
         _check_render_mesh(item.Geometry, 1e-3)
 
 
+def _check_view(view: Any, points: FloatArray) -> None:  # noqa: ANN401
+    """All points lie in the frustum."""
+    frame = view.GetFrustum()
+    relative = points - point(view.CameraLocation)
+    x, y, z = (relative @ point(axis) for axis in (view.CameraX, view.CameraY, view.CameraZ))
+    shrink = -z / frame["near"] if view.IsPerspectiveProjection else 1
+    assert np.abs(x / shrink).max() < frame["right"]
+    assert np.abs(y / shrink).max() < frame["top"]
+    assert frame["near"] < -z.max()
+    assert frame["far"] > -z.min()
+
+
 def test_axes_layers_and_text_in_rhino(tmp_path: Path) -> None:
     beams = CASES["mitred"]
     panels, _ = cut_panels(TORUS, "intersection")
@@ -444,6 +456,11 @@ def test_axes_layers_and_text_in_rhino(tmp_path: Path) -> None:
     )
     ids = {str(item.Attributes.Id) for item in again.Objects}
     assert ids <= {str(item.Attributes.Id) for item in model.Objects}
+    # Beams alone are to be seen as well.
+    corners = (beams.annuli.corners + beams.annuli.origins[:, None, None]).reshape(-1, 3)
+    for view in again.NamedViews:
+        _check_view(view.Viewport, corners)
+    assert {view.Name for view in again.NamedViews} == {"Top", "Perspective"}
 
 
 def test_node_cylinders_in_rhino(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import ezdxf
 import numpy as np
 import pytest
+from ezdxf.bbox import extents
 from ezdxf.math import Vec2, bulge_radius, is_point_in_polygon_2d
 from ezdxf.path import make_path
 
@@ -96,6 +97,28 @@ def test_pieces_lie_apart_on_their_sheets(drawing: Any) -> None:  # noqa: ANN401
         used[int(np.argmax(inside))] += 1
     assert (used > 0).all()
     assert np.abs(sheets[0][2, :2] - sheets[0][0, :2] - [3000, 1500]).max() == 0
+
+
+@pytest.mark.parametrize("depth", [0.05, 0.1, 0.3])
+@pytest.mark.parametrize("size", [0.03, 1.0])
+def test_labels_stay_on_bowed_beams_of_models_and_buildings(
+    tmp_path: Path, depth: float, size: float
+) -> None:
+    found = central_spheres(torus_net(7, 5, 3.0 * size, size))
+    bowed = cut_beams(annulus_support(found, depth * size).annuli, 0.02 * size, 0.03 * size)[0]
+    drawing: Any = ezdxf.readfile(write_dxf(bowed, tmp_path / "b.dxf").path)  # pyright: ignore
+    space = drawing.modelspace()
+    texts = list(space.query("TEXT"))
+    for i, ring in enumerate(space.query('LWPOLYLINE[layer=="CUT"]')):
+        outline = list(make_path(ring).flattening(1e-4 * size))
+        for text in texts[3 * i : 3 * i + 3]:
+            turned = text.copy()
+            turned.rotate_axis((0, 0, 1), -np.radians(text.dxf.rotation))
+            box = extents([turned])
+            for x in (box.extmin.x, box.extmax.x):
+                for y in (box.extmin.y, box.extmax.y):
+                    corner = Vec2(x, y).rotate_deg(text.dxf.rotation)
+                    assert is_point_in_polygon_2d(corner, Vec2.list(outline)) == 1
 
 
 def test_labels_name_the_beam_and_its_nodes(drawing: Any, beams: Beams) -> None:  # noqa: ANN401

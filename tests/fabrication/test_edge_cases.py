@@ -81,7 +81,9 @@ def step_names(path: Path) -> set[str]:
             chr(int(found[2][i : i + width], 16)) for i in range(0, len(found[2]), width)
         )
 
-    return {letters.sub(decode, name).replace("''", "'") for name in names}
+    return {
+        letters.sub(decode, name).replace("''", "'").replace("\\\\", "\\") for name in names
+    }
 
 
 def curved(mesh: Mesh, angles: FloatArray | list[float]) -> SphereMesh:
@@ -143,8 +145,13 @@ def test_corners_of_a_hundredth_of_a_degree(
 
 
 def test_names_of_any_script(tmp_path: Path) -> None:
-    panels, _ = cut_panels(squares(0.1, 0.2, 0.3), thickness=0.05, labels=np.zeros(3, np.int64))
-    names = ("Täfelchen 1", "面板-2", "<&>\"'; drop")
+    found = squares(*[0.1] * 8)
+    panels, _ = cut_panels(found, thickness=0.05, labels=np.zeros(8, np.int64))
+    names = (
+        "Täfelchen 1", "面板-2", "<&>\"'; drop", "🏠 👩\u200d🚒", "a\\b \\X2\\ ^J %%c",
+        "x" * 300,
+        "<>/\\\":;?*|=`", "-1",
+    )  # fmt: skip
     named = replace(panels, ids=names)
     write_all(named, tmp_path)
     assert [row["id"] for row in schedule_rows(named, "m")] == list(names)
@@ -160,6 +167,29 @@ def test_names_of_any_script(tmp_path: Path) -> None:
     found = [each for each in found if not each.IsInstanceDefinitionObject]
     assert [each.Name for each in found] == list(names)
     assert [each.GetUserString("id") for each in found] == list(names)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["", " A", "A ", "A\n1", "A\rB", "\t", "A\0",
+     "\x07", "A\x85B", "A\u2028", "\ud800", "\ufffe"],
+)  # fmt: skip
+def test_names_that_files_would_change_are_refused(tmp_path: Path, name: str) -> None:
+    """Rhino trims and cuts them, XML and workbooks break on them, DXF joins their lines."""
+    panels, _ = cut_panels(squares(0.1, 0.2), thickness=0.05)
+    named = replace(panels, ids=("A", name))
+    for file, write in WRITERS.items():
+        with pytest.raises(
+            InputError, match=r"panel 1 is called .*: a name is one line of text"
+        ):
+            write(named, tmp_path / file)
+    spheres = central_spheres(torus_net(7, 5, 3.0, 1.0))
+    beams = cut_beams(annulus_support(spheres, 0.3).annuli, 0.04)[0]
+    beams = select_beams(beams, np.arange(beams.n_beams) < 2)
+    beams = replace(beams, annuli=replace(beams.annuli, ids=(name, "B")))
+    with pytest.raises(InputError, match=r"beam 0 is called .*: a name is one line of text"):
+        write_dxf(beams, tmp_path / "b.dxf")
+    assert not list(tmp_path.iterdir())
 
 
 def test_names_of_beams_in_any_script(tmp_path: Path) -> None:

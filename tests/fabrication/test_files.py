@@ -74,6 +74,38 @@ def test_files_of_a_folder_move_as_they_were_written(
     assert moved == names
 
 
+def write_both(folder: Path) -> None:
+    for name in ("a.txt", "b.txt"):
+        (folder / name).write_text("new")
+
+
+def test_files_of_a_folder_move_only_if_all_can(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("old")
+    (tmp_path / "b.txt").mkdir()
+    with (
+        pytest.raises(InputError, match=r"cannot write .*b\.txt: it is a folder"),
+        replacing_all(tmp_path) as staging,
+    ):
+        write_both(staging)
+    assert (tmp_path / "a.txt").read_text() == "old"
+    assert {path.name for path in tmp_path.iterdir()} == {"a.txt", "b.txt"}
+
+
+def test_a_file_of_a_folder_that_is_held_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise PermissionError(13, "The process cannot access the file")
+
+    monkeypatch.setattr(Path, "replace", fail)
+    with (
+        pytest.raises(InputError, match=r"cannot write .*a\.txt: The process cannot access"),
+        replacing_all(tmp_path) as staging,
+    ):
+        (staging / "a.txt").write_text("new")
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_target_that_cannot_be(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="it is a folder"):
         check_target(tmp_path)
@@ -95,3 +127,51 @@ def test_a_folder_in_the_place_of_one_file_keeps_all_others(tmp_path: Path) -> N
         _write()
     assert (tmp_path / "a.txt").read_text() == "old"
     assert {path.name for path in tmp_path.iterdir()} == {"a.txt", "b.txt"}
+
+
+def test_names_that_no_file_can_have(tmp_path: Path) -> None:
+    for name in ("a\0.step", "x" * 300 + ".step"):
+        with (
+            pytest.raises(InputError, match=r"cannot write .*check the name"),
+            replacing(tmp_path / name),
+        ):
+            pass
+    longest = tmp_path / ("ä" * 125 + ".step")
+    with replacing(longest) as temporary:
+        temporary.write_text("new")
+    assert longest.read_text() == "new"
+    assert list(tmp_path.iterdir()) == [longest]
+
+
+def test_a_read_only_file_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = tmp_path / "p.step"
+    target.write_text("released")
+    target.chmod(0o444)
+
+    def access(path: Path, _: int) -> bool:
+        """Nothing is read-only for an administrator, who may run this."""
+        return bool(path.stat().st_mode & 0o200)
+
+    monkeypatch.setattr(os, "access", access)
+    with pytest.raises(InputError, match="it is read-only"), replacing(target):
+        pass
+    assert target.read_text() == "released"
+
+
+@pytest.mark.parametrize("place", ["write_bytes", "replace"])
+def test_a_full_disk_and_a_file_that_is_held_are_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, place: str
+) -> None:
+    target = tmp_path / "p.step"
+    target.write_text("old")
+
+    def fail(*_: object) -> None:
+        raise PermissionError(13, "The process cannot access the file")
+
+    monkeypatch.setattr(Path, place, fail)
+    with (
+        pytest.raises(InputError, match=r"cannot write .*p\.step: The process cannot access"),
+        replacing(target) as temporary,
+    ):
+        temporary.write_bytes(b"new")
+    assert [path.read_text() for path in tmp_path.iterdir()] == ["old"]

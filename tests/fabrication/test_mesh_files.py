@@ -224,6 +224,7 @@ TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
         (TRIANGLE + "\n# c\nf 1 2\n", ["line 6", "2 corners", "needs 3"]),
         (TRIANGLE + "f 1 2 2\n", ["line 4", "repeated corner", "remove"]),
         (TRIANGLE + "f 1 2 \\\n 3\nf 1 2 two\n", ["line 6", "'two'", "integers"]),
+        (TRIANGLE + f"f 1 2 {'9' * 6000}\n", ["line 4", f"'{'9' * 40}' is not"]),
         (TRIANGLE + "f 1 2 99999999999999999999\n", ["line 4", "not a usable number"]),
         (TRIANGLE, ["no faces", "polygon mesh"]),
         (TRIANGLE + "v 1 1 0\nf 1 2 3\nf 1 2 4\n", ["faces [0, 1]", "same direction"]),
@@ -352,6 +353,8 @@ PLY_POINTS = "0 0 0\n1 0 0\n0 1 0\n"
         ("ply\nend_header\n", ["names no format"]),
         (PLY.replace("float z", "quad z"), ["line 6", "'property quad z'"]),
         (PLY.replace("float z", "float w"), ["x, y and z"]),
+        (PLY.replace("list uchar", "list float"), ["line 8", "'property list float int"]),
+        (PLY.replace("uchar int", "uchar float"), ["line 8", "'property list uchar float"]),
         (PLY.replace("vertex 3", "vertex many"), ["line 3", "'element vertex many'"]),
         (PLY.replace("vertex_indices", "ids") + PLY_POINTS + "3 0 1 2\n", ["vertex_indices"]),
         (PLY + "0 0 0\n1 0 0\n", ["line 11", "2 of 3 rows of element vertex"]),
@@ -648,6 +651,14 @@ def test_files_that_are_not_there_or_not_files(tmp_path: Path) -> None:
         assert "empty" in error_of(tmp_path / f"empty{suffix}", " \n")
     for suffix in (".off", ".ply", ".stl"):
         assert "no layers" in error_of(tmp_path / f"a{suffix}", "x", layer="Roof")
+
+
+@pytest.mark.parametrize("name", ["a\0.obj", "x" * 300 + ".obj"])
+def test_names_that_no_file_can_have(tmp_path: Path, name: str) -> None:
+    with pytest.raises(InputError, match=r"cannot read .*; check the path"):
+        read_mesh(tmp_path / name)
+    with pytest.raises(InputError, match="cannot write"):
+        write_mesh(quad_and_triangle(), tmp_path / name)
 
 
 def test_a_file_that_may_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

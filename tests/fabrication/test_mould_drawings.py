@@ -1,10 +1,12 @@
 """Drawings of moulds: read back by ezdxf and by an XML parser."""
 
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from PIL import ImageFont
 
 from spheremesh import Mesh
 from spheremesh.fabrication.mould_drawings import layout_moulds, write_mould_drawings
@@ -94,8 +96,32 @@ def test_flat_panels_are_drawn_in_true_size() -> None:
     area = (x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
     assert area == pytest.approx(2e6, rel=1e-12)  # counter-clockwise: seen from outside
     texts = [label.text for label in drawing.labels]
-    assert texts[0] == "Without mould: 1 panels, largest blank 2236.1 x 0.0 mm"
+    assert texts[0] == "Without mould: 1 panel, largest blank 2236.1 x 0.0 mm"
     assert texts[1:] == ["P0000", "2236.1 x 0.0 flat"]
+
+
+def test_no_text_runs_out_of_the_drawing(panels: Panels) -> None:
+    """A mould with one panel has a title that is wider than its blank."""
+    one = select_panels(panels, np.arange(panels.n_panels) == 0)
+    for name in ("P0000", "屋根の板" * 20, "Dachplatte-" * 30):
+        drawing = layout_moulds(replace(one, ids=(name,)))
+        assert len(drawing.labels) == 3
+        for label in drawing.labels:
+            # Capitals of a sans-serif font are 0.7 em high, and letters of East Asia 1 em wide.
+            em = label.height / 0.7
+            font = ImageFont.load_default(100.0)
+            latin = em * font.getlength(label.text.replace("屋根の板", "")) / 100.0
+            length = latin + em * 4 * label.text.count("屋根の板")
+            start = label.at[0] - (length / 2 if label.is_centered else 0)
+            assert start >= 0
+            assert start + length <= drawing.width
+
+
+def test_the_same_drawing_has_the_same_bytes(panels: Panels, tmp_path: Path) -> None:
+    for suffix in ("dxf", "svg"):
+        first = write_mould_drawings(panels, tmp_path / f"a.{suffix}")
+        second = write_mould_drawings(panels, tmp_path / f"b.{suffix}")
+        assert first.read_bytes() == second.read_bytes()
 
 
 def test_what_cannot_be_drawn(panels: Panels, tmp_path: Path) -> None:

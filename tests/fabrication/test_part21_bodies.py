@@ -25,12 +25,19 @@ def test_law_strings_are_read_back_as_they_were(text: str) -> None:
     assert quoted.isascii()
     assert "\n" not in quoted
     assert re.fullmatch(r"'([^']|'')*'", quoted)
-    found = re.sub(
-        r"\\\\|\\X4\\(?P<code>[0-9A-F]{8})\\X0\\",
-        lambda run: chr(int(run["code"], 16)) if run["code"] else "\\",
-        quoted[1:-1].replace("''", "'"),
-    )
-    assert found == text
+    wide = re.findall(r"\\X4\\([0-9A-F]*)\\X0\\", quoted.replace("\\\\", ""))
+    assert all(int(run[i : i + 8], 16) > 0xFFFF for run in wide for i in range(0, len(run), 8))
+
+    def decode(run: re.Match[str]) -> str:
+        if not run["codes"]:
+            return "\\"
+        digits = 2 * int(run["bytes"])
+        assert len(run["codes"]) % digits == 0
+        codes = [run["codes"][i : i + digits] for i in range(0, len(run["codes"]), digits)]
+        return "".join(chr(int(code, 16)) for code in codes)
+
+    directives = r"\\\\|\\X(?P<bytes>[24])\\(?P<codes>[0-9A-F]+)\\X0\\"
+    assert re.sub(directives, decode, quoted[1:-1].replace("''", "'")) == text
 
 
 @given(st.integers(1, 10**8))

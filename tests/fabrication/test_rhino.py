@@ -184,6 +184,14 @@ def test_document(model: Any, path: Path) -> None:  # noqa: ANN401
     assert str(path.parent).encode("utf-16-le") not in path.read_bytes()
 
 
+def test_bytes_that_are_no_text_do_no_harm(panels: Panels, tmp_path: Path) -> None:
+    """Names of files on Linux may be in any encoding, and are in the graph."""
+    one = select_panels(panels, np.arange(panels.n_panels) == 0)
+    file = write_3dm(one, tmp_path / "m.3dm", graph_json='{"path": "d\udce4cher.obj"}')
+    model: Any = rhino3dm.File3dm.Read(str(file.path))
+    assert model.Strings["spheremesh::graph"] == '{"path": "d?cher.obj"}'
+
+
 def test_centres(model: Any, panels: Panels) -> None:  # noqa: ANN401
     points = on_layer(model, "Centres")
     assert len(points) == np.count_nonzero(panels.spheres[:, 0])
@@ -429,6 +437,19 @@ def test_a_block_for_every_mould(tmp_path: Path) -> None:
     assert read.n_faces == 20
 
 
+def test_a_panel_called_like_a_mould_has_a_block_of_its_own(tmp_path: Path) -> None:
+    panels = torus_panels()
+    panels = replace(
+        panels, ids=("Mould 01", *panels.ids[1:]), labels=np.zeros(panels.n_panels, np.int64)
+    )
+    file = write_3dm(panels, tmp_path / "m.3dm", contents=RhinoContents("blocks", ("Moulds",)))
+    model: Any = rhino3dm.File3dm.Read(str(file.path))
+    names = {block.Name: block.Id for block in model.InstanceDefinitions}
+    assert {"Mould 01", "Panel Mould 01"} <= set(names)
+    assert len(set(names.values())) == len(names)
+    assert len({str(item.Attributes.Id) for item in model.Objects}) == len(model.Objects)
+
+
 def test_no_moulds_have_no_blocks(tmp_path: Path) -> None:
     panels = select_panels(torus_panels(), np.arange(48) < 3)
     file = write_3dm(panels, tmp_path / "m.3dm", contents=RhinoContents(layers=("Moulds",)))
@@ -504,6 +525,12 @@ def test_wrong_input(panels: Panels, tmp_path: Path) -> None:
         write_3dm(panels, tmp_path / "model.3dm", version=5)
     with pytest.raises(InputError, match="no folder"):
         write_3dm(panels, tmp_path / "missing" / "model.3dm")
+    wrong: Any = (RhinoContents(shape="solid"), RhinoContents(layers=("edges",)))  # type: ignore[arg-type]
+    for contents in wrong:
+        with pytest.raises(
+            InputError, match=r"unknown shape .* use panels, blocks, shell, and"
+        ):
+            write_3dm(panels, tmp_path / "model.3dm", contents=contents)
 
 
 def test_an_exporting_process_ends_well(tmp_path: Path) -> None:

@@ -222,6 +222,39 @@ def test_what_cannot_be_sampled(tmp_path: Path) -> None:
         read_mesh(saved(tmp_path / "a.3dm", cylinder))
     with pytest.raises(InputError, match="a grid of 0 by 3 quads"):
         read_mesh(saved(tmp_path / "b.3dm", sloping()), n_u=0, n_v=3)
+    with pytest.raises(InputError, match="1 by 1 quads on surfaces have no area: ask for more"):
+        read_mesh(saved(tmp_path / "c.3dm", sphere().ToBrep()), n_u=1, n_v=1)
+
+
+@pytest.mark.parametrize(
+    ("corners", "is_covered"),
+    [
+        ([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)], False),
+        ([(0, 0), (3, 1), (0.5, 0.5), (1, 3)], False),
+        ([(0, 0), (3, 0), (3, 3), (1.5, 3.0), (0, 3)], True),
+        ([(0, 0), (3, 1), (2.2, 2.2), (1, 3)], True),
+    ],
+)
+def test_concave_faces_are_covered_once_or_refused(
+    tmp_path: Path,
+    corners: list[tuple[float, float]],
+    is_covered: bool,  # noqa: FBT001
+) -> None:
+    outline = rhino3dm.Polyline(len(corners))
+    for x, y in (*corners, corners[0]):
+        outline.Add(x, y, 0)
+    face = rhino3dm.Brep.CreateTrimmedPlane(rhino3dm.Plane.WorldXY(), outline.ToPolylineCurve())
+    path = saved(tmp_path / "a.3dm", face)
+    if not is_covered:
+        with pytest.raises(InputError, match=r"turns inwards .* would fold; mesh it in Rhino"):
+            read_mesh(path)
+        return
+    mesh = read_mesh(path)
+    quads = mesh.vertices[np.stack(mesh.faces)]
+    areas = np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])[:, 2] / 2
+    x, y = np.array(corners).T
+    assert areas.min() > 0
+    assert areas.sum() == pytest.approx((x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2)
 
 
 def test_extrusions(tmp_path: Path) -> None:

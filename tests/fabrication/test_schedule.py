@@ -143,19 +143,21 @@ def test_xlsx_has_numbers_as_numbers(panels: Panels, tmp_path: Path) -> None:
     assert book["Moulds"].max_row == 4
 
 
-def test_xlsx_has_text_as_it_is(panels: Panels, tmp_path: Path) -> None:
-    """Lists that begin with a minus or a dash, and names like formulas, are just text."""
+def test_text_in_xlsx_is_what_it_is(panels: Panels, tmp_path: Path) -> None:
+    """Neighbours begin with a dash at the boundary; names may look like formulas."""
     openpyxl = pytest.importorskip("openpyxl")
-    names = ("=A1+1", "Glas-Träger \u2116 7", *panels.ids[2:])
-    path = write_schedule(replace(panels, ids=names), tmp_path / "schedule.xlsx")
-    header, *rows = openpyxl.load_workbook(path)["Panels"].iter_rows()
-    columns = {cell.value: i for i, cell in enumerate(header)}
-    assert [row[columns["id"]].value for row in rows] == list(names)
-    expected = schedule_rows(panels, "m")
-    found = [[float(x) for x in row[columns["center_mm"]].value.split()] for row in rows]
-    np.testing.assert_allclose(found, [row["center_mm"] for row in expected], atol=1e-4)
-    assert min(point[0] for point in found) < 0
-    assert {cell.data_type for row in rows for cell in row} == {"n", "s"}
+    some = select_panels(panels, panels.face_ids % 8 > 2)
+    names = ("=1+1", "-1", "+2", "@A", *some.ids[4:])
+    named = replace(some, ids=names)
+    book = openpyxl.load_workbook(write_schedule(named, tmp_path / "schedule.xlsx"))
+    header, *rows = book["Panels"].iter_rows()
+    cells = [{key.value: cell for key, cell in zip(header, row, strict=True)} for row in rows]
+    assert [row["id"].value for row in cells] == list(names)
+    assert {row["id"].data_type for row in cells} == {"s"}
+    for row, expected in zip(cells, schedule_rows(named, "m"), strict=True):
+        neighbors = " ".join(name or "-" for name in expected["neighbors"])
+        assert row["neighbors"].value == neighbors
+    assert any(row["neighbors"].value.startswith("- ") for row in cells)
 
 
 def test_xlsx_without_openpyxl_names_the_extra(
