@@ -104,7 +104,7 @@ def beam_extrusions(library: Untyped, beams: Beams) -> list[Untyped]:
     """
     outer, inner = section_arcs(beams)
     circles = arc_circles(outer), arc_circles(inner)
-    lifts = beams.annuli.origins - beams.annuli.frames[:, 2] * beams.thickness / 2
+    lifts = -beams.annuli.frames[:, 2] * beams.thickness / 2
     result: list[Untyped] = []
     refused: list[str] = []
     for i, name in enumerate(beams.annuli.ids):
@@ -123,12 +123,18 @@ def beam_extrusions(library: Untyped, beams: Beams) -> list[Untyped]:
             library.Point3d(*lift.tolist()), library.Vector3d(*x), library.Vector3d(*y)
         )
         solid = library.Extrusion.CreateWithPlane(profile, plane, beams.thickness, True)  # noqa: FBT003
+        # Made where it stands, far from the origin, its contour would not close.
+        if solid is not None:
+            solid.Translate(library.Vector3d(*beams.annuli.origins[i].tolist()))
         if solid is None or not (solid.IsValid and solid.IsSolid):
             refused.append(name)
         result.append(solid)
     if refused:
         shown = ", ".join(refused[:8])
-        raise InputError(f"openNURBS refuses {len(refused)} beams: {shown}; leave them out")
+        raise InputError(
+            f"openNURBS refuses {len(refused)} beams: {shown}; leave them out, or move the "
+            "model nearer to the origin"
+        )
     return result
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from .arrays import BoolArray, dot, norm
 from .errors import InputError, name_ids
 from .part_names import check_part_names
+from .spheres import normals
 from .tolerances import AXIS_LEAN, DEGENERATE
 
 if TYPE_CHECKING:
@@ -117,6 +118,15 @@ def inner_reasons(annuli: "Annuli", size: float) -> dict[int, str]:
         reasons.setdefault(
             row, "the arc is straight, and a constant power gives it no depth: give a depth"
         )
+    across = [
+        dot(annuli.end_directions, normals(rows[:, None], points)) >= 0
+        for rows, points in (
+            (annuli.outer, annuli.corners[:, :, 0]),
+            (annuli.inner, annuli.corners[:, :, 1]),
+        )
+    ]
+    for row in np.flatnonzero(np.any(across, axis=(0, 2))).tolist():
+        reasons.setdefault(row, "a node axis leans across the arc at its end")
     sides = dot(annuli.corners[:, :, 1] - annuli.corners[:, :, 0], annuli.end_directions)
     for row in np.flatnonzero(sides[:, 0] * sides[:, 1] < 0).tolist():
         reasons.setdefault(row, "the two arcs cross: one end reaches inside, one outside")

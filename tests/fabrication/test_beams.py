@@ -346,6 +346,26 @@ def test_extrusions_in_rhino(tmp_path: Path, case: str) -> None:
             assert on_circle or edge.IsLinear(1e-9 * size)
 
 
+def test_extrusions_of_a_building_site(tmp_path: Path) -> None:
+    roof = roof_net(6, 5, 40.0)
+    far = np.array([6.1e5, -5.3e6, 480.0])
+    site = Mesh(roof.vertices + far, [list(face) for face in roof.faces])
+    there, here = make(central_spheres(site)), CASES["torsion"]
+    files = [
+        write_3dm(None, tmp_path / name, beams=each).path
+        for name, each in (("there.3dm", there), ("here.3dm", here))
+    ]
+    solids, others = (
+        [item.Geometry for item in on_layer(rhino3dm.File3dm.Read(str(path)), "Beams")]
+        for path in files
+    )
+    assert len(solids) == len(others) == here.n_beams
+    assert all(solid.IsValid and solid.IsSolid for solid in solids)
+    for solid, other in zip(solids, others, strict=True):
+        moved = point(solid.GetBoundingBox().Center) - far
+        assert norm(moved - point(other.GetBoundingBox().Center)) < 1e-6
+
+
 def _check_render_mesh(solid: Any, size: float) -> None:  # noqa: ANN401
     """It has the corners of the solid, and its triangles look outwards."""
     mesh = solid.GetMesh(rhino3dm.MeshType.Render)

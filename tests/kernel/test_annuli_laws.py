@@ -23,11 +23,12 @@ from spheremesh.kernel.spheres import (
     evaluate,
     from_center_radius,
     normalize,
+    normals,
     rescale,
     signed_distance,
 )
 from spheremesh.kernel.support import support_structure
-from spheremesh.kernel.surfaces import torus_net
+from spheremesh.kernel.surfaces import roof_net, torus_net
 
 
 @pytest.fixture(scope="module")
@@ -281,6 +282,24 @@ def test_annuli_deeper_than_their_radius_are_listed(ball: Mesh) -> None:
         "not less than the radius" in beam.reason or "cross" in beam.reason
         for beam in found.rejected
     )
+
+
+def test_annuli_whose_axes_lean_across_their_arcs_are_listed() -> None:
+    """Their outline would cross itself, though no solid modeller says so."""
+    quads = roof_net(5, 4, 10.0)
+    halves = [
+        half
+        for a, b, c, d in (face.tolist() for face in quads.faces)
+        for half in ((a, b, c), (a, c, d))
+    ]
+    mesh = Mesh(quads.vertices, halves)
+    rough = minimize_angles(fit_spheres(mesh))[0]
+    found = annulus_support(rough, 0.1 * mean_edge_length(mesh))
+    assert any("leans across the arc" in beam.reason for beam in found.rejected)
+    annuli = found.annuli
+    for k, rows in enumerate((annuli.outer, annuli.inner)):
+        upright = normals(rows[:, None], annuli.corners[:, :, k])
+        assert (dot(upright, annuli.end_directions) < 0).all()
 
 
 def test_constant_power_has_no_depth_on_straight_arcs(nets: dict[str, Mesh]) -> None:
