@@ -121,13 +121,13 @@ def form_roots(
     first, second : (...) float array
         Angles ``θ ∓ acos(-h / m) / 2``; from the first to the second is a turn between 0 and π.
     is_real : (...) bool array
-        Whether the roots are real and different, ``|h| < m``. False: the angles are those of
-        the nearest form with real roots.
+        Whether the roots are real and different, ``|h| < m``, and meet at the least angle or
+        more. False: the angles are those of the nearest form whose roots do.
     """
     size = np.abs(deviator)
     ratio = np.divide(-trace, size, out=np.zeros_like(size), where=size > 0)
-    is_real = (np.abs(trace) < size) & (size > EPSILON * np.abs(trace))
     bound = np.cos(least_angle)
+    is_real = (np.abs(trace) < bound * size) & (size > EPSILON * np.abs(trace))
     half = np.arccos(np.clip(ratio, -bound, bound)) / 2
     middle = np.angle(deviator) / 2
     return middle - half, middle + half, is_real
