@@ -177,3 +177,14 @@ def test_bad_input_is_one_clear_error() -> None:
         triangulated_surface("hypar", 2.0)
     with pytest.raises(ValueError, match="shape must be one of"):
         triangulated_surface("moebius", 0.1)
+
+
+def test_holes_that_the_net_covers_are_said() -> None:
+    mesh = triangulated_surface("hypar", 0.2, seed=1).mesh
+    triangles = mesh.corners.reshape(-1, 3)
+    centers = mesh.vertices[triangles].mean(axis=1)[:, :2]
+    hole = int(norm(centers - [0.03, 0.28]).argmin())
+    holed = sm.Mesh(mesh.vertices, np.delete(triangles, hole, axis=0))
+    spheres = sphere_congruence(holed, "tangent", 0.9)
+    with pytest.warns(NodeWarning, match="covers 1 of the holes"):
+        assert p4_remesh(holed, spheres, 0.4).report["covered_holes"] == 1

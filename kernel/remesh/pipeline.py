@@ -59,6 +59,8 @@ class Remeshing:
         Short edges at the boundary that were contracted, and the cells lost with them.
     n_digons : int
         Cells of two corners, which became edges.
+    n_covered : int
+        Holes of the surface, smaller than the cells, that the net covers.
     axis_angles : (V',) float array
         Angles of the normals with the expected node axes at the given vertices, in radians.
     curvatures : (V',) float array
@@ -82,6 +84,7 @@ class Remeshing:
     n_contracted: int
     n_slivers: int
     n_digons: int
+    n_covered: int
     axis_angles: FloatArray
     curvatures: FloatArray
     degree: int
@@ -144,6 +147,8 @@ def remesh(
     frames = comb_frames(surface, fans, *smooth, least_angle)
     mapped = parametrize(surface, fans, frames, find_seams(surface, fans, frames), step)
     net = extract_net(surface, fans, frames, mapped)
+    if net.n_nodes == 0:
+        raise _too_large(edge_length)
     built = net_mesh(net, step)
     if not built.is_node.any():
         raise _too_large(edge_length)
@@ -165,6 +170,7 @@ def remesh(
         n_contracted=built.n_contracted,
         n_slivers=built.n_slivers,
         n_digons=built.n_digons,
+        n_covered=max(_boundary_count(mesh) - _boundary_count(built.mesh), 0),
         axis_angles=axis_angles(surface, jets),
         curvatures=2 * surface.rows[:, 0] / surface.size,
         degree=fitted,
@@ -175,6 +181,19 @@ def remesh(
 def _irregular_count(mesh: Mesh) -> int:
     valences = np.bincount(mesh.corners, minlength=mesh.n_vertices)
     return int((valences[~mesh.topology.is_boundary_vertex] != 4).sum())
+
+
+def _boundary_count(mesh: Mesh) -> int:
+    """Number of closed lines that the boundary consists of."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+
+    outer = np.flatnonzero(mesh.topology.twins < 0)
+    ends = mesh.corners[outer], mesh.corners[mesh.topology.next_corners[outer]]
+    shape = (mesh.n_vertices, mesh.n_vertices)
+    graph = csr_array((np.ones(len(outer)), ends), shape=shape)
+    # Every vertex elsewhere is a component of its own.
+    return connected_components(graph, directed=False)[0] - (mesh.n_vertices - len(outer))
 
 
 def shortest_edge(mesh: Mesh) -> float:

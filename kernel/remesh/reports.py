@@ -51,6 +51,7 @@ def remeshing_report(done: Remeshing, edge_length: float) -> dict[str, Any]:
         "contracted_edges": done.n_contracted,
         "lost_cells": done.n_slivers,
         "digons": done.n_digons,
+        "covered_holes": done.n_covered,
         "node_axis_deg": angle_report(done.axis_angles),
         "radius_to_edge": radius_report(sphere_radii(done.curvatures) / edge_length),
     }

@@ -138,6 +138,7 @@ def p4_remesh(
         length), ``folded`` and ``flipped`` triangles of the map before and after unfolding,
         ``aligned_sides`` of the boundary, ``contracted_edges`` and ``lost_cells`` along it,
         ``digons`` (cells of two corners around singular points, which became edges),
+        ``covered_holes`` (holes smaller than the faces),
         ``node_axis_deg`` (angle between normal and expected node axis: median, p95 and max)
         and ``radius_to_edge`` (min and median; below 0.71 nodes are not real). None stands for
         infinite. ``planarized`` is the report of `planarize_p4`, which comes last; None if it
@@ -160,6 +161,11 @@ def p4_remesh(
         warn(
             f"{done.n_flipped} triangles of the map are flipped: faces overlap there, near "
             "singular points; choose a smaller edge length or more smoothing"
+        )
+    if done.n_covered:
+        warn(
+            f"the net covers {done.n_covered} of the holes of the mesh, which are smaller than "
+            "its faces: choose a smaller edge length"
         )
     if edge_length < mean_edge_length(mesh):
         warn(

@@ -468,3 +468,17 @@ def test_bad_edge_lengths_are_refused() -> None:
     torus, around = constant_radius("torus", 0.3, -0.5)
     with pytest.raises(InputError, match="too large"):
         remesh(torus, around, 3.5)
+
+
+@pytest.mark.parametrize(("length", "n_covered"), [(0.4, 1), (0.1, 0)])
+def test_holes_within_a_face_are_covered_and_counted(length: float, n_covered: int) -> None:
+    mesh, spheres = constant_radius("hypar", 0.2, 0.9)
+    triangles = mesh.corners.reshape(-1, 3)
+    centers = mesh.vertices[triangles].mean(axis=1)
+    # A hole as wide as half an edge of the net, in the middle of one of its faces.
+    hole = int(norm(centers[:, :2] - [0.03, 0.28]).argmin())
+    done = remesh(Mesh(mesh.vertices, np.delete(triangles, hole, axis=0)), spheres, length)
+    net = done.sphere_mesh.mesh
+    assert done.n_covered == n_covered
+    assert characteristic(net) == n_covered
+    assert np.unique(net.topology.edge_faces).size == net.n_faces
