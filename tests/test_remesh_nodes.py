@@ -188,3 +188,24 @@ def test_holes_that_the_net_covers_are_said() -> None:
     spheres = sphere_congruence(holed, "tangent", 0.9)
     with pytest.warns(NodeWarning, match="covers 1 of the holes"):
         assert p4_remesh(holed, spheres, 0.4).report["covered_holes"] == 1
+
+
+def test_edges_in_the_report_are_those_of_the_net() -> None:
+    surface = triangulated_surface("hypar", 0.12, seed=1)
+    spheres = sphere_congruence(surface.mesh, "tangent", 0.6)
+    net, report = p4_remesh(surface.mesh, spheres, 0.25)
+    corners, following = net.mesh.corners, net.mesh.topology.next_corners
+    ends = net.mesh.vertices[corners[following]]
+    shortest = norm(ends - net.mesh.vertices[corners]).min()
+    assert report["edges"]["min"] == pytest.approx(shortest, rel=1e-12)
+    after = report["planarized"]["shortest_edge"]["after"]
+    assert shortest == pytest.approx(after * report["edges"]["mean"], rel=1e-12)
+
+
+def test_spheres_too_small_to_blend_are_one_clear_error() -> None:
+    surface = triangulated_surface("hypar", 0.12, seed=1)
+    tiny = sphere_congruence(surface.mesh, "tangent", 0.02)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        with pytest.raises(InputError, match=r"so small.*choose larger spheres"):
+            p4_remesh(surface.mesh, tiny, 0.25)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import FloatArray, IntArray, norm
-from ..errors import InputError
+from ..errors import InputError, name_ids
 from ..mesh import Mesh, face_centroids
 from ..sphere_mesh import SphereMesh
 from ..spheres import minkowski, recenter, rescale
@@ -129,7 +129,8 @@ def remesh(
     Raises
     ------
     InputError
-        If the mesh or the spheres cannot be used, or the edge length is out of range.
+        If the mesh or the spheres cannot be used, the edge length is out of range, or the
+        spheres are too small or too different to blend those of neighbouring vertices.
     ConvergenceError
         If the lines of the map do not match across the edges of the mesh.
 
@@ -243,7 +244,15 @@ def _interpolated(surface: CongruenceMesh, built: NetMesh) -> SphereMesh:
     corners = surface.points[vertices]
     rows = recenter(surface.rows[vertices], centers[:, None] - corners)
     mixed = np.einsum("fc,fcr->fr", weights, rows)
-    mixed /= np.sqrt(minkowski(mixed, mixed))[:, None]
+    squares = minkowski(mixed, mixed)
+    bad = np.unique(vertices[~(squares > 0)])
+    if len(bad):
+        raise InputError(
+            f"the spheres of vertices {name_ids(bad.tolist())} are so small, or so different "
+            "from their neighbours, that there is none between them: choose larger spheres of "
+            "more even radius, or subdivide the mesh"
+        )
+    mixed /= np.sqrt(squares)[:, None]
     points = surface.origin + surface.size * built.mesh.vertices
     mesh = Mesh(points, built.mesh.faces)
     return SphereMesh.from_local(mesh, rescale(mixed, surface.size))

@@ -172,24 +172,21 @@ def p4_remesh(
             f"the mesh, with edges of {mean_edge_length(mesh):.3g}, is coarser than the net: "
             "subdivide it"
         )
-    report = reports.remeshing_report(done, edge_length)
+    net, planar, is_held = done.sphere_mesh, None, True
     try:
         result, is_held = planarize_held(done.sphere_mesh, done.surface, fairness)
-        planar = _planarized(done.sphere_mesh, result)
+        net, planar = _planarized(done.sphere_mesh, result)
     except ConvergenceError as error:
         warn(f"the net keeps some torsion: {error}")
-        distances = _distances(done.sphere_mesh, mesh, done.surface)
-        return Remeshed(done.sphere_mesh, {**report, "planarized": None, "distance": distances})
-    distances = _distances(planar.sphere_mesh, mesh, done.surface)
-    if not is_held:
+    distances = _distances(net, mesh, done.surface)
+    if planar and not is_held:
         warn(
             f"the nodes inside are up to {distances['nodes']:.2g} edges from the surface: held "
             "on it, edges would shrink or faces turn over; choose a smaller edge length or "
             "larger spheres"
         )
-    return Remeshed(
-        planar.sphere_mesh, {**report, "planarized": planar.report, "distance": distances}
-    )
+    report = reports.remeshing_report(done, net.mesh, edge_length)
+    return Remeshed(net, {**report, "planarized": planar, "distance": distances})
 
 
 def _distances(sphere_mesh: SphereMesh, mesh: Mesh, surface: SmoothSurface) -> dict[str, float]:
@@ -209,8 +206,8 @@ def _warn_complex(share: float) -> None:
     if share > COMPLEX_SHARE:
         warn(
             f"the conjugate directions are complex on {_percent(share)} of the area: no real "
-            "net follows these spheres there; spheres of constant radius or tangent spheres of "
-            "constant offset have real ones"
+            "net follows these spheres there; relax_congruence makes it real, and tangent "
+            "spheres of constant offset have a real one"
         )
 
 
