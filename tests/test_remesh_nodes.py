@@ -13,6 +13,7 @@ from spheremesh.nodes import (
     NodeWarning,
     conjugate_directions,
     p4_remesh,
+    relax_congruence,
     sphere_congruence,
     torus_mesh,
     triangulated_surface,
@@ -209,3 +210,13 @@ def test_spheres_too_small_to_blend_are_one_clear_error() -> None:
         warnings.simplefilter("error", RuntimeWarning)
         with pytest.raises(InputError, match=r"so small.*choose larger spheres"):
             p4_remesh(surface.mesh, tiny, 0.25)
+
+
+def test_planes_relax_to_spheres_that_have_a_net() -> None:
+    surface = triangulated_surface("bump", 0.12, seed=1)
+    planes = sphere_congruence(surface.mesh, "tangent", np.inf)
+    relaxed = relax_congruence(surface.mesh, planes)
+    assert relaxed.report["complex_share"]["before"] == 1
+    assert relaxed.report["axis_angle_p95_deg"]["before"] == pytest.approx(90)
+    assert 0 < relaxed.report["blend"] < 0.1
+    assert conjugate_directions(surface.mesh, relaxed.spheres).report["complex_share"] <= 0.02

@@ -131,14 +131,31 @@ def tangent_frames(vectors: FloatArray) -> FloatArray:
     return np.stack([first, np.cross(vectors, first), vectors], 1)
 
 
-def _checked_areas(mesh: Mesh) -> FloatArray:
-    """Vector areas of the faces (F, 3) of a connected triangle mesh."""
+def check_triangles(mesh: Mesh) -> None:
+    """
+    Refuse meshes of other faces than triangles.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Raises
+    ------
+    InputError
+        If a face is no triangle.
+    """
     bad = np.flatnonzero(mesh.degrees != 3)
     if len(bad):
         raise InputError(
             f"remeshing needs triangles, but faces {name_ids(bad.tolist())} have more corners: "
             "use triangulate first"
         )
+
+
+def _checked_areas(mesh: Mesh) -> FloatArray:
+    """Vector areas of the faces (F, 3) of a connected triangle mesh."""
+    check_triangles(mesh)
     areas = face_vector_areas(mesh)
     sides = (
         mesh.vertices[mesh.corners[mesh.topology.next_corners]] - mesh.vertices[mesh.corners]

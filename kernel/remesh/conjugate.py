@@ -13,6 +13,10 @@ from ..tolerances import EPSILON, UNDETERMINED
 from .jets import CongruenceJets
 
 
+class UndeterminedError(InputError):
+    """Spheres for which every direction is conjugate to some other."""
+
+
 def conjugate_form(jets: CongruenceJets) -> FloatArray:
     """
     The quadratic form whose roots are the conjugate directions.
@@ -87,14 +91,14 @@ def conjugate_field(jets: CongruenceJets) -> tuple[FloatArray, ComplexArray]:
 
     Raises
     ------
-    InputError
+    UndeterminedError
         If the form vanishes everywhere: then every direction is conjugate to some other.
     """
     form = conjugate_form(jets)
     parts = [jets.rows, jets.rows_u, jets.rows_v, jets.rows_uu + jets.rows_vv, jets.rows_uv]
     bound = np.prod([norm(part) for part in parts], axis=0)
     if not (norm(form) > UNDETERMINED * bound).any():
-        raise InputError(
+        raise UndeterminedError(
             "the spheres do not determine conjugate directions: they are planes, or touch a "
             "sphere, or are all orthogonal to one; use spheres of other radii"
         )

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..mesh import Mesh
 from .congruence_mesh import CongruenceMesh, congruence_mesh
-from .conjugate import conjugate_field, form_roots
+from .conjugate import UndeterminedError, conjugate_field, form_roots
 from .frames import comb_frames, vertex_fans
 from .jets import CongruenceJets, fit_jets, node_axes
 
@@ -101,6 +101,33 @@ def conjugate_directions(
         indices[singular], axis_angles(surface, jets),
         2 * surface.rows[:, 0] / surface.size, fitted,
     )  # fmt: skip
+
+
+def complex_share(mesh: Mesh, spheres: ArrayLike) -> float:
+    """
+    Share of the area on which a congruence has no real conjugate net.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        A connected triangle mesh.
+    spheres : (V, 5) array_like of float
+        A real sphere or plane for every vertex, in model coordinates.
+
+    Returns
+    -------
+    float
+        1 if the spheres determine no directions at all, as planes.
+
+    Raises
+    ------
+    InputError
+        If the mesh or the spheres cannot be used.
+    """
+    try:
+        return conjugate_directions(mesh, spheres).complex_share
+    except UndeterminedError:
+        return 1.0
 
 
 def axis_angles(surface: CongruenceMesh, jets: CongruenceJets) -> FloatArray:

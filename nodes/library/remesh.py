@@ -356,7 +356,7 @@ def relax_congruence(
     result = relax.relax_congruence(
         mesh,
         spheres,
-        lambda rows: directions.conjugate_directions(mesh, rows).complex_share,
+        lambda rows: directions.complex_share(mesh, rows),
         target,
         radius,
     )
