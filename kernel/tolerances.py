@@ -227,3 +227,6 @@ ALIKE_NEIGHBORS: Final = 5e-5
 
 NODE_LANDED: Final = 1e-7
 """Torsion (radians) of a node whose beams meet exactly, up to rounding."""
+
+UMBILIC: Final = 1e-3
+"""Second derivatives of spheres that vary less with the direction, relatively, tell none."""

@@ -220,3 +220,27 @@ def test_planes_relax_to_spheres_that_have_a_net() -> None:
     assert relaxed.report["axis_angle_p95_deg"]["before"] == pytest.approx(90)
     assert 0 < relaxed.report["blend"] < 0.1
     assert conjugate_directions(surface.mesh, relaxed.spheres).report["complex_share"] <= 0.02
+
+
+def spherical_cap() -> sm.Mesh:
+    flat = triangulated_surface("hypar", 0.1, seed=1).mesh
+    x, y, _ = flat.vertices.T
+    return sm.Mesh(np.stack([x, y, np.sqrt(4 - x * x - y * y)], 1), flat.faces)
+
+
+def test_spheres_that_do_not_tell_directions_are_said() -> None:
+    cap = spherical_cap()
+    spheres = sphere_congruence(cap, "tangent", -0.5)
+    with pytest.warns(NodeWarning, match="on 100 % of the area the spheres do not tell"):
+        assert conjugate_directions(cap, spheres).report["umbilic_share"] == 1
+    with pytest.warns(NodeWarning, match="smoothing, over 5 edges or more, makes it even"):
+        _, report = p4_remesh(cap, spheres, 0.24, smoothing=5)
+    assert report["singular"] == []
+    assert report["irregular_nodes"] == 0
+    assert report["distance"]["nodes"] < 0.01
+    # Half way to a cylinder they do.
+    bent = sm.Mesh(cap.vertices * [1, 0.7, 1], cap.faces)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = conjugate_directions(bent, sphere_congruence(bent, "tangent", -0.5))
+    assert found.report["umbilic_share"] < 0.01

@@ -105,6 +105,32 @@ def conjugate_field(jets: CongruenceJets) -> tuple[FloatArray, ComplexArray]:
     return split_form(form)
 
 
+def anisotropy(jets: CongruenceJets) -> FloatArray:
+    """
+    How much the second derivatives of spheres vary with the direction.
+
+    Parameters
+    ----------
+    jets : CongruenceJets
+        A congruence to second order, in orthonormal parameters.
+
+    Returns
+    -------
+    (...) float array
+        Relative to their mean, both up to the spheres and their first derivatives. Where it is
+        zero, as for spheres that touch a sphere, all pairs of orthogonal directions are
+        conjugate.
+    """
+    tangents = np.stack([jets.rows, jets.rows_u, jets.rows_v], -1)
+    normals = np.linalg.qr(tangents, mode="complete")[0][..., 3:]
+    seconds = [jets.rows_uu + jets.rows_vv, jets.rows_uu - jets.rows_vv, 2 * jets.rows_uv]
+    mean, straight, oblique = (
+        norm(np.einsum("...i,...ij->...j", second, normals)) for second in seconds
+    )
+    varies = np.hypot(straight, oblique)
+    return np.divide(varies, mean, out=np.full_like(mean, np.inf), where=mean > 0)
+
+
 def form_roots(
     trace: FloatArray, deviator: ComplexArray, least_angle: float = 0.0
 ) -> tuple[FloatArray, FloatArray, BoolArray]:

@@ -12,7 +12,7 @@ from ..sphere_mesh import SphereMesh
 from ..spheres import minkowski, recenter, rescale
 from .congruence_mesh import CongruenceMesh, congruence_mesh
 from .conjugate import conjugate_field, form_roots
-from .directions import axis_angles
+from .directions import axis_angles, umbilic_share
 from .extraction import extract_net
 from .field_smoothing import smooth_forms
 from .frames import comb_frames, vertex_fans
@@ -44,6 +44,8 @@ class Remeshing:
         Length, in model units.
     complex_share : float
         Share of the area of the given surface whose directions are complex.
+    umbilic_share : float
+        Share of the area on which all pairs of orthogonal directions are all but conjugate.
     moved_share : float
         Share of the area whose directions, once smooth, were moved apart to the least angle.
     singular_points : (s, 3) float array
@@ -75,6 +77,7 @@ class Remeshing:
     n_irregular: int
     shortest_edge: float
     complex_share: float
+    umbilic_share: float
     moved_share: float
     singular_points: FloatArray
     indices: IntArray
@@ -162,6 +165,7 @@ def remesh(
         n_irregular=_irregular_count(sphere_mesh.mesh),
         shortest_edge=shortest_edge(sphere_mesh.mesh),
         complex_share=float(areas[~is_real].sum() / areas.sum()),
+        umbilic_share=umbilic_share(surface, jets),
         moved_share=float(moved),
         singular_points=mesh.vertices[singular],
         indices=frames.indices[singular],

@@ -206,8 +206,8 @@ def _checked_rows(surface: CongruenceMesh) -> FloatArray:
     far = np.flatnonzero(np.abs(surface.rows[:, 4]) > 1)
     if len(far):
         raise InputError(
-            f"the spheres of vertices {name_ids(far.tolist())} pass their vertices by more than a "
-            "mean edge: give spheres that touch the surface"
+            f"the spheres of vertices {name_ids(far.tolist())} pass their vertices by more "
+            "than a mean edge: give spheres that touch the surface"
         )
     return rescale(surface.rows, surface.size)
 

@@ -40,6 +40,7 @@ def remeshing_report(done: Remeshing, mesh: Mesh, edge_length: float) -> dict[st
         "irregular_nodes": done.n_irregular,
         "singular": [{"point": point, "half_turns": index} for point, index in singular],
         "complex_share": done.complex_share,
+        "umbilic_share": done.umbilic_share,
         "moved_share": done.moved_share,
         "edges": {
             "target": float(edge_length),

@@ -21,7 +21,7 @@ from ..node import node, warn
 from ..ports import Port
 
 COMPLEX_SHARE = 0.05
-"""A share of the area with complex directions that is worth a warning."""
+"""A share of the area with complex directions, or none, that is worth a warning."""
 
 LEANING = 30.0
 """Angle of the node axes with the normals, in degrees, that is worth a warning."""
@@ -71,7 +71,8 @@ def conjugate_directions(
     is_real : (V,) bool array
         False where the directions are complex; the two given ones then coincide.
     report : mapping
-        ``complex_share`` of the area, ``singular`` vertices with their ``half_turns``,
+        ``complex_share`` and ``umbilic_share`` (where all directions are all but conjugate) of
+        the area, ``singular`` vertices with their ``half_turns``,
         ``node_axis_deg`` (angle between normal and expected node axis: median, p95 and max),
         ``radius_to_edge`` (radii relative to the mean edge of the mesh: min and median) and
         ``largest_edge`` (longest edge of a net whose nodes are real on 95 % of the vertices,
@@ -79,10 +80,11 @@ def conjugate_directions(
         infinite.
     """
     found = directions.conjugate_directions(mesh, spheres, degree, rings)
-    _warn_complex(found.complex_share)
+    _warn_of_directions(found.complex_share, found.umbilic_share)
     radii = reports.sphere_radii(found.curvatures)
     report = {
         "complex_share": found.complex_share,
+        "umbilic_share": found.umbilic_share,
         "singular": _singular(found.singular, found.indices),
         "node_axis_deg": reports.angle_report(found.axis_angles),
         "radius_to_edge": reports.radius_report(radii / mean_edge_length(mesh)),
@@ -134,8 +136,9 @@ def p4_remesh(
     report : mapping
         ``faces`` (count, and how many of each degree), ``irregular_nodes`` (inner vertices
         whose valence is not 4), ``singular`` points with their ``half_turns``,
-        ``complex_share`` and ``moved_share`` of the area, ``edges`` (target, mean and min
-        length), ``folded`` and ``flipped`` triangles of the map before and after unfolding,
+        ``complex_share``, ``umbilic_share`` and ``moved_share`` of the area, ``edges``
+        (target, mean and min length), ``folded`` and ``flipped`` triangles of the map before
+        and after unfolding,
         ``aligned_sides`` of the boundary, ``contracted_edges`` and ``lost_cells`` along it,
         ``digons`` (cells of two corners around singular points, which became edges),
         ``covered_holes`` (holes smaller than the faces),
@@ -149,7 +152,7 @@ def p4_remesh(
     done = pipeline.remesh(
         mesh, spheres, edge_length, smoothing, float(np.radians(least_angle)), degree, rings
     )
-    _warn_complex(done.complex_share)
+    _warn_of_directions(done.complex_share, done.umbilic_share)
     _warn_of_nodes(done, edge_length)
     if done.moved_share > 0:
         warn(
@@ -202,12 +205,18 @@ def _distances(sphere_mesh: SphereMesh, mesh: Mesh, surface: SmoothSurface) -> d
     }
 
 
-def _warn_complex(share: float) -> None:
-    if share > COMPLEX_SHARE:
+def _warn_of_directions(complex_share: float, umbilic_share: float) -> None:
+    if umbilic_share > COMPLEX_SHARE:
         warn(
-            f"the conjugate directions are complex on {_percent(share)} of the area: no real "
-            "net follows these spheres there; relax_congruence makes it real, and tangent "
-            "spheres of constant offset have a real one"
+            f"on {_percent(umbilic_share)} of the area the spheres do not tell the conjugate "
+            "directions, as if they touched one sphere: there noise chooses the net; much "
+            "smoothing, over 5 edges or more, makes it even"
+        )
+    if complex_share > COMPLEX_SHARE:
+        warn(
+            f"the conjugate directions are complex on {_percent(complex_share)} of the area: "
+            "no real net follows these spheres there; relax_congruence makes it real, and "
+            "tangent spheres of constant offset have a real one"
         )
 
 
