@@ -10,6 +10,7 @@ from ..mesh import Mesh
 from ..tolerances import UMBILIC
 from .congruence_mesh import CongruenceMesh, congruence_mesh
 from .conjugate import UndeterminedError, anisotropy, conjugate_field, form_roots
+from .field_smoothing import orient_forms
 from .frames import comb_frames, vertex_fans
 from .jets import CongruenceJets, fit_jets, node_axes
 
@@ -89,7 +90,7 @@ def conjugate_directions(
     """
     surface = congruence_mesh(mesh, spheres)
     jets, heights, fitted = fit_jets(surface, degree, rings)
-    trace, deviator = conjugate_field(jets)
+    trace, deviator = orient_forms(surface, *conjugate_field(jets))
     first, second, is_real = form_roots(trace, deviator)
     angles = np.stack([first, second], 1)[..., None]
     frames = surface.vertex_frames

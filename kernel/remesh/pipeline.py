@@ -14,7 +14,7 @@ from .congruence_mesh import CongruenceMesh, congruence_mesh
 from .conjugate import conjugate_field, form_roots
 from .directions import axis_angles, umbilic_share
 from .extraction import extract_net
-from .field_smoothing import smooth_forms
+from .field_smoothing import orient_forms, smooth_forms
 from .frames import comb_frames, vertex_fans
 from .jets import fit_jets
 from .net_mesh import NetMesh, net_mesh
@@ -144,7 +144,7 @@ def remesh(
     surface = congruence_mesh(mesh, spheres)
     step = _checked_step(surface, edge_length)
     jets, heights, fitted = fit_jets(surface, degree, rings)
-    trace, deviator = conjugate_field(jets)
+    trace, deviator = orient_forms(surface, *conjugate_field(jets))
     is_real = form_roots(trace, deviator)[2]
     fans = vertex_fans(surface)
     smooth = smooth_forms(surface, trace, deviator, smoothing * step)
