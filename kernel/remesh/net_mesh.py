@@ -110,7 +110,8 @@ def _build(net: Net, merged: IntArray) -> NetMesh:
     used, renumbered = np.unique(kept, return_inverse=True)
     faces = np.split(renumbered, np.cumsum(degrees)[:-1])
     mesh = Mesh(_places(net, merged)[used], faces)
-    is_digon = np.diff(net.offsets) == 2
+    on_rim = np.bincount(cells, net.corners >= net.n_nodes, len(is_face)) > 0
+    is_digon = (np.diff(net.offsets) == 2) & ~on_rim
     is_inner = used < net.n_nodes
     return NetMesh(
         mesh, is_inner, int((merged != np.arange(len(merged))).sum()), int(is_digon.sum()),
