@@ -12,6 +12,8 @@ from .extraction import Net
 SHORT = 0.4
 """Edges at the boundary below this length, in edge lengths, are contracted."""
 
+WIDEST = 0.9
+"""Points farther from the middle of those to contract, in edge lengths, stay where they are."""
 
 NEAREST = 0.35
 """Nodes inside that an edge below this length joins, in edge lengths, are moved apart."""
@@ -92,11 +94,25 @@ def _merge_short_edges(net: Net, edge_length: float) -> IntArray:
     ones = np.ones(int(is_short.sum()))
     graph = coo_array((ones, (tails[is_short], heads[is_short])), shape=(count, count))
     clusters = connected_components(graph, directed=False)[1]
+    # Chains of short edges, as around a small hole, are wide: their points stay.
+    wide = np.flatnonzero(_widths(net.points, clusters) > WIDEST * edge_length)
+    is_wide = np.isin(clusters, wide)
+    clusters[is_wide] = count + np.flatnonzero(is_wide)
+    clusters = np.unique(clusters, return_inverse=True)[1]
     # A corner of the boundary stands for its cluster, else a point of the boundary.
     standing = np.concatenate([np.zeros(net.n_nodes), 1.0 + net.is_corner])
     order = np.lexsort((np.arange(count), -standing, clusters))
     first = np.unique(clusters[order], return_index=True)[1]
     return order[first][clusters]
+
+
+def _widths(points: FloatArray, clusters: IntArray) -> FloatArray:
+    """Largest distance of a point of each cluster from their mean."""
+    sizes = np.bincount(clusters)
+    means = sum_by(clusters, points, len(sizes)) / sizes[:, None]
+    widths = np.zeros(len(sizes))
+    np.maximum.at(widths, clusters, norm(points - means[clusters]))
+    return widths
 
 
 def _build(net: Net, merged: IntArray) -> NetMesh:

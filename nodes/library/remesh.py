@@ -141,7 +141,7 @@ def p4_remesh(
         and after unfolding,
         ``aligned_sides`` of the boundary, ``contracted_edges`` and ``lost_cells`` along it,
         ``digons`` (cells of two corners around singular points, which became edges),
-        ``covered_holes`` (holes smaller than the faces),
+        ``covered_holes`` (too small for the edges),
         ``node_axis_deg`` (angle between normal and expected node axis: median, p95 and max)
         and ``radius_to_edge`` (min and median; below 0.71 nodes are not real). None stands for
         infinite. ``planarized`` is the report of `planarize_p4`, which comes last; None if it
@@ -167,8 +167,8 @@ def p4_remesh(
         )
     if done.n_covered:
         warn(
-            f"the net covers {done.n_covered} of the holes of the mesh, which are smaller than "
-            "its faces: choose a smaller edge length"
+            f"the net covers {done.n_covered} of the holes of the mesh, which are too small "
+            "for its edges: choose a smaller edge length"
         )
     if edge_length < mean_edge_length(mesh):
         warn(
