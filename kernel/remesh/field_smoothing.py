@@ -103,7 +103,7 @@ def _patches(
     ends = (patches[tails[between]], patches[heads[between]])
     votes = csr_array((likeness[between], ends), shape=(count, count))
     votes = (votes + votes.T).tocsr()
-    return patches, votes / np.abs(votes.data).max(initial=1.0)
+    return np.asarray(patches, np.int64), votes / np.abs(votes.data).max(initial=1.0)
 
 
 def smooth_forms(

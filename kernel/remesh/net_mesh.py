@@ -93,7 +93,7 @@ def _merge_short_edges(net: Net, edge_length: float) -> IntArray:
     is_short &= (tails >= net.n_nodes) | (heads >= net.n_nodes)
     ones = np.ones(int(is_short.sum()))
     graph = coo_array((ones, (tails[is_short], heads[is_short])), shape=(count, count))
-    clusters = connected_components(graph, directed=False)[1]
+    clusters = np.asarray(connected_components(graph, directed=False)[1], np.int64)
     # Chains of short edges, as around a small hole, are wide: their points stay.
     wide = np.flatnonzero(_widths(net.points, clusters) > WIDEST * edge_length)
     is_wide = np.isin(clusters, wide)

@@ -62,7 +62,8 @@ def conjugate_directions(
         Degree of the polynomials that are fitted to the spheres; by default 3, 5 or 7, the
         lower the noisier the spheres.
     rings : int
-        Rings of neighbours that they are fitted to; more for noisy spheres.
+        Rings of neighbours that they are fitted to, or more if the degree needs more; larger
+        for noisy spheres.
 
     Returns
     -------
@@ -124,7 +125,8 @@ def p4_remesh(
         Degree of the polynomials that are fitted to the spheres; by default 3, 5 or 7, the
         lower the noisier the spheres.
     rings : int
-        Rings of neighbours that they are fitted to; more for noisy spheres.
+        Rings of neighbours that they are fitted to, or more if the degree needs more; larger
+        for noisy spheres.
     fairness : float
         As in `planarize_p4`, which ends the remeshing.
 

@@ -51,6 +51,5 @@ def test_forms_keep_their_signs_elsewhere_and_get_them_back(shape: SampleShape) 
 
 def test_signs_follow_the_clearest_edges() -> None:
     # Around a triangle of likeness -1, 0.9 and 0.1 the last is left out.
-    likeness = coo_array(([-1.0, 0.9, 0.1], ([0, 1, 0], [1, 2, 2]))).tocsr()
-    likeness.resize((3, 3))
+    likeness = coo_array(([-1.0, 0.9, 0.1], ([0, 1, 0], [1, 2, 2])), shape=(3, 3)).tocsr()
     assert tree_signs(likeness).tolist() == [1, -1, -1]
