@@ -12,11 +12,11 @@ COHERENCE = 4
 """Power with which disagreement with the neighbours lowers the confidence."""
 
 
-ALIKE_FORMS = 0.5
+ALIKE_FORMS = 0.9
 """Neighbours with a larger product of their unit forms have the same sign."""
 
-LEAST_PATCH = 0.02
-"""Patches of one sign with less of the area are noise, or next to a singular point."""
+LEAST_PATCH = 0.15
+"""Patches of one sign with less of the area are noise; if all are, no form is reversed."""
 
 
 def transport(source: FloatArray, target: FloatArray) -> ComplexArray:
