@@ -13,7 +13,7 @@ SHORT = 0.4
 """Edges at the boundary below this length, in edge lengths, are contracted."""
 
 WIDEST = 0.9
-"""Points farther from the middle of those to contract, in edge lengths, stay where they are."""
+"""Holes of a larger radius, in edge lengths, are not contracted."""
 
 NEAREST = 0.35
 """Nodes inside that an edge below this length joins, in edge lengths, are moved apart."""
@@ -94,16 +94,34 @@ def _merge_short_edges(net: Net, edge_length: float) -> IntArray:
     ones = np.ones(int(is_short.sum()))
     graph = coo_array((ones, (tails[is_short], heads[is_short])), shape=(count, count))
     clusters = np.asarray(connected_components(graph, directed=False)[1], np.int64)
-    # Chains of short edges, as around a small hole, are wide: their points stay.
-    wide = np.flatnonzero(_widths(net.points, clusters) > WIDEST * edge_length)
-    is_wide = np.isin(clusters, wide)
-    clusters[is_wide] = count + np.flatnonzero(is_wide)
+    # A hole at which lines crowd stays open.
+    is_wide = _widths(net.points, clusters) > WIDEST * edge_length
+    stays = is_wide[clusters] & _closes_hole(net, clusters)[clusters]
+    clusters[stays] = count + np.flatnonzero(stays)
     clusters = np.unique(clusters, return_inverse=True)[1]
     # A corner of the boundary stands for its cluster, else a point of the boundary.
     standing = np.concatenate([np.zeros(net.n_nodes), 1.0 + net.is_corner])
     order = np.lexsort((np.arange(count), -standing, clusters))
     first = np.unique(clusters[order], return_index=True)[1]
     return order[first][clusters]
+
+
+def _closes_hole(net: Net, clusters: IntArray) -> BoolArray:
+    """Whether each cluster holds all points of a line of the boundary."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    count, ends = len(net.points), (net.corners, net.corners[_following(net.offsets)])
+    on_rim = (ends[0] >= net.n_nodes) & (ends[1] >= net.n_nodes)
+    ones = np.ones(int(on_rim.sum()))
+    graph = coo_array((ones, (ends[0][on_rim], ends[1][on_rim])), shape=(count, count))
+    lines = connected_components(graph, directed=False)[1][net.n_nodes :]
+    low, high = np.full(count, count), np.full(count, -1)
+    np.minimum.at(low, lines, clusters[net.n_nodes :])
+    np.maximum.at(high, lines, clusters[net.n_nodes :])
+    result = np.zeros(count, np.bool_)
+    result[low[low == high]] = True
+    return result
 
 
 def _widths(points: FloatArray, clusters: IntArray) -> FloatArray:
