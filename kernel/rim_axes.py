@@ -42,7 +42,8 @@ def rim_axes(mesh: Mesh, directions: FloatArray, planes: FloatArray) -> FloatArr
     -------
     (V, 3) float array
         Axes. Sides that would need an axis to lean by more than `RIM_LEAN` from the direction
-        given, and boundaries without corners that no axes fit, stay as they are.
+        given, sides with an edge of no length, and boundaries without corners that no axes fit,
+        stay as they are.
     """
     result = directions.copy()
     is_given = np.asarray(planes.any(axis=1))
@@ -50,9 +51,10 @@ def rim_axes(mesh: Mesh, directions: FloatArray, planes: FloatArray) -> FloatArr
     sides = [(side[1:-1], _side_angles) for side in _sides(following, ~is_given)]
     loops = [(loop, _loop_angles) for loop in _loops(following, is_given)]
     for nodes, find in (*sides, *loops):
-        if len(nodes) == 0 or not np.isfinite(planes[nodes]).all():
-            continue
         given, along = directions[nodes], mesh.vertices[following[nodes]] - mesh.vertices[nodes]
+        has_lengths = along.any(axis=1).all()
+        if len(nodes) == 0 or not (has_lengths and np.isfinite(planes[nodes]).all()):
+            continue
         across = np.cross(planes[nodes], given)
         angles = find(_Side(given, across, planes[nodes], along))
         if angles is not None and np.abs(angles).max() <= RIM_LEAN:

@@ -230,3 +230,6 @@ NODE_LANDED: Final = 1e-7
 
 RIM_CLOSED: Final = 1e-7
 """Axes around a boundary that return this closely (radians), whatever the first is, fit."""
+
+UMBILIC: Final = 1e-3
+"""Second derivatives of spheres that vary less with the direction, relatively, tell none."""

@@ -13,6 +13,7 @@ from spheremesh.nodes import (
     NodeWarning,
     conjugate_directions,
     p4_remesh,
+    relax_congruence,
     sphere_congruence,
     torus_mesh,
     triangulated_surface,
@@ -177,3 +178,69 @@ def test_bad_input_is_one_clear_error() -> None:
         triangulated_surface("hypar", 2.0)
     with pytest.raises(ValueError, match="shape must be one of"):
         triangulated_surface("moebius", 0.1)
+
+
+def test_holes_that_the_net_covers_are_said() -> None:
+    mesh = triangulated_surface("hypar", 0.2, seed=1).mesh
+    triangles = mesh.corners.reshape(-1, 3)
+    centers = mesh.vertices[triangles].mean(axis=1)[:, :2]
+    hole = int(norm(centers - [0.03, 0.28]).argmin())
+    holed = sm.Mesh(mesh.vertices, np.delete(triangles, hole, axis=0))
+    spheres = sphere_congruence(holed, "tangent", 0.9)
+    with pytest.warns(NodeWarning, match="covers 1 of the holes"):
+        assert p4_remesh(holed, spheres, 0.4).report["covered_holes"] == 1
+
+
+def test_edges_in_the_report_are_those_of_the_net() -> None:
+    surface = triangulated_surface("hypar", 0.12, seed=1)
+    spheres = sphere_congruence(surface.mesh, "tangent", 0.6)
+    net, report = p4_remesh(surface.mesh, spheres, 0.25)
+    corners, following = net.mesh.corners, net.mesh.topology.next_corners
+    ends = net.mesh.vertices[corners[following]]
+    shortest = norm(ends - net.mesh.vertices[corners]).min()
+    assert report["edges"]["min"] == pytest.approx(shortest, rel=1e-12)
+    after = report["planarized"]["shortest_edge"]["after"]
+    assert shortest == pytest.approx(after * report["edges"]["mean"], rel=1e-12)
+
+
+def test_spheres_too_small_to_blend_are_one_clear_error() -> None:
+    surface = triangulated_surface("hypar", 0.12, seed=1)
+    tiny = sphere_congruence(surface.mesh, "tangent", 0.02)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        with pytest.raises(InputError, match=r"so small.*choose larger spheres"):
+            p4_remesh(surface.mesh, tiny, 0.25)
+
+
+def test_planes_relax_to_spheres_that_have_a_net() -> None:
+    surface = triangulated_surface("bump", 0.12, seed=1)
+    planes = sphere_congruence(surface.mesh, "tangent", np.inf)
+    relaxed = relax_congruence(surface.mesh, planes)
+    assert relaxed.report["complex_share"]["before"] == 1
+    assert relaxed.report["axis_angle_p95_deg"]["before"] == pytest.approx(90)
+    assert 0 < relaxed.report["blend"] < 0.1
+    assert conjugate_directions(surface.mesh, relaxed.spheres).report["complex_share"] <= 0.02
+
+
+def spherical_cap() -> sm.Mesh:
+    flat = triangulated_surface("hypar", 0.1, seed=1).mesh
+    x, y, _ = flat.vertices.T
+    return sm.Mesh(np.stack([x, y, np.sqrt(4 - x * x - y * y)], 1), flat.faces)
+
+
+def test_spheres_that_do_not_tell_directions_are_said() -> None:
+    cap = spherical_cap()
+    spheres = sphere_congruence(cap, "tangent", -0.5)
+    with pytest.warns(NodeWarning, match="on 100 % of the area the spheres do not tell"):
+        assert conjugate_directions(cap, spheres).report["umbilic_share"] == 1
+    with pytest.warns(NodeWarning, match="smoothing, over 5 edges or more, makes it even"):
+        _, report = p4_remesh(cap, spheres, 0.24, smoothing=5)
+    assert report["singular"] == []
+    assert report["irregular_nodes"] == 0
+    assert report["distance"]["nodes"] < 0.01
+    # Half way to a cylinder they do.
+    bent = sm.Mesh(cap.vertices * [1, 0.7, 1], cap.faces)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = conjugate_directions(bent, sphere_congruence(bent, "tangent", -0.5))
+    assert found.report["umbilic_share"] < 0.01

@@ -12,6 +12,7 @@ from ..mesh import Mesh, face_centroids, face_vector_areas, mean_edge_length
 from ..spheres import Kind, kind, minkowski, normals, recenter, rescale
 from ..tolerances import DEGENERATE, EPSILON
 from ..topology import Topology
+from .tree_signs import tree_signs
 
 
 @dataclass(frozen=True)
@@ -131,14 +132,31 @@ def tangent_frames(vectors: FloatArray) -> FloatArray:
     return np.stack([first, np.cross(vectors, first), vectors], 1)
 
 
-def _checked_areas(mesh: Mesh) -> FloatArray:
-    """Vector areas of the faces (F, 3) of a connected triangle mesh."""
+def check_triangles(mesh: Mesh) -> None:
+    """
+    Refuse meshes of other faces than triangles.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Raises
+    ------
+    InputError
+        If a face is no triangle.
+    """
     bad = np.flatnonzero(mesh.degrees != 3)
     if len(bad):
         raise InputError(
             f"remeshing needs triangles, but faces {name_ids(bad.tolist())} have more corners: "
             "use triangulate first"
         )
+
+
+def _checked_areas(mesh: Mesh) -> FloatArray:
+    """Vector areas of the faces (F, 3) of a connected triangle mesh."""
+    check_triangles(mesh)
     areas = face_vector_areas(mesh)
     sides = (
         mesh.vertices[mesh.corners[mesh.topology.next_corners]] - mesh.vertices[mesh.corners]
@@ -193,23 +211,10 @@ def _oriented_rows(
     mesh: Mesh, points: FloatArray, rows: FloatArray, vertex_normals: FloatArray
 ) -> FloatArray:
     from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 
     tails, heads = mesh.corners, mesh.corners[mesh.topology.next_corners]
     products = minkowski(rows[tails], recenter(rows[heads], points[tails] - points[heads]))
-    # The tree prefers the edges on which the sign is clearest.
-    shape = (len(rows), len(rows))
-    costs = csr_array((2 - np.minimum(np.abs(products), 1), (tails, heads)), shape=shape)
-    signs = csr_array((np.sign(products), (tails, heads)), shape=shape)
-    order, parents = breadth_first_order(minimum_spanning_tree(costs), 0, directed=False)
-    parents = np.where(parents < 0, 0, parents)
-    children = np.arange(len(rows))
-    along = signs[children, parents] + signs[parents, children]
-    result = np.where(np.asarray(along).ravel() < 0, -1.0, 1.0)
-    result[order[0]] = 1.0
-    # Pointer doubling: the sign of a vertex is the product of the signs on its way to the root.
-    while (parents != order[0]).any():
-        result, parents = result * result[parents], parents[parents]
-    oriented = rows * (result * result[order[0]])[:, None]
+    likeness = csr_array((products, (tails, heads)), shape=(len(rows), len(rows)))
+    oriented = rows * tree_signs(likeness)[:, None]
     agreement = dot(normals(oriented, np.zeros(3)), vertex_normals)
     return oriented * np.copysign(1.0, agreement.sum())

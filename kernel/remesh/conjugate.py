@@ -13,6 +13,10 @@ from ..tolerances import EPSILON, UNDETERMINED
 from .jets import CongruenceJets
 
 
+class UndeterminedError(InputError):
+    """Spheres for which every direction is conjugate to some other."""
+
+
 def conjugate_form(jets: CongruenceJets) -> FloatArray:
     """
     The quadratic form whose roots are the conjugate directions.
@@ -87,18 +91,44 @@ def conjugate_field(jets: CongruenceJets) -> tuple[FloatArray, ComplexArray]:
 
     Raises
     ------
-    InputError
+    UndeterminedError
         If the form vanishes everywhere: then every direction is conjugate to some other.
     """
     form = conjugate_form(jets)
     parts = [jets.rows, jets.rows_u, jets.rows_v, jets.rows_uu + jets.rows_vv, jets.rows_uv]
     bound = np.prod([norm(part) for part in parts], axis=0)
     if not (norm(form) > UNDETERMINED * bound).any():
-        raise InputError(
+        raise UndeterminedError(
             "the spheres do not determine conjugate directions: they are planes, or touch a "
             "sphere, or are all orthogonal to one; use spheres of other radii"
         )
     return split_form(form)
+
+
+def anisotropy(jets: CongruenceJets) -> FloatArray:
+    """
+    How much the second derivatives of spheres vary with the direction.
+
+    Parameters
+    ----------
+    jets : CongruenceJets
+        A congruence to second order, in orthonormal parameters.
+
+    Returns
+    -------
+    (...) float array
+        Relative to their mean, both up to the spheres and their first derivatives. Where it is
+        zero, as for spheres that touch a sphere, all pairs of orthogonal directions are
+        conjugate.
+    """
+    tangents = np.stack([jets.rows, jets.rows_u, jets.rows_v], -1)
+    normals = np.linalg.qr(tangents, mode="complete")[0][..., 3:]
+    seconds = [jets.rows_uu + jets.rows_vv, jets.rows_uu - jets.rows_vv, 2 * jets.rows_uv]
+    mean, straight, oblique = (
+        norm(np.einsum("...i,...ij->...j", second, normals)) for second in seconds
+    )
+    varies = np.hypot(straight, oblique)
+    return np.divide(varies, mean, out=np.full_like(mean, np.inf), where=mean > 0)
 
 
 def form_roots(
@@ -121,13 +151,13 @@ def form_roots(
     first, second : (...) float array
         Angles ``θ ∓ acos(-h / m) / 2``; from the first to the second is a turn between 0 and π.
     is_real : (...) bool array
-        Whether the roots are real and different, ``|h| < m``. False: the angles are those of
-        the nearest form with real roots.
+        Whether the roots are real and different, ``|h| < m``, and meet at the least angle or
+        more. False: the angles are those of the nearest form whose roots do.
     """
     size = np.abs(deviator)
     ratio = np.divide(-trace, size, out=np.zeros_like(size), where=size > 0)
-    is_real = (np.abs(trace) < size) & (size > EPSILON * np.abs(trace))
     bound = np.cos(least_angle)
+    is_real = (np.abs(trace) < bound * size) & (size > EPSILON * np.abs(trace))
     half = np.arccos(np.clip(ratio, -bound, bound)) / 2
     middle = np.angle(deviator) / 2
     return middle - half, middle + half, is_real

@@ -7,8 +7,10 @@ from numpy.typing import ArrayLike
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..mesh import Mesh
+from ..tolerances import UMBILIC
 from .congruence_mesh import CongruenceMesh, congruence_mesh
-from .conjugate import conjugate_field, form_roots
+from .conjugate import UndeterminedError, anisotropy, conjugate_field, form_roots
+from .field_smoothing import orient_forms
 from .frames import comb_frames, vertex_fans
 from .jets import CongruenceJets, fit_jets, node_axes
 
@@ -28,6 +30,8 @@ class ConjugateDirections:
         directions are real, which then coincide.
     complex_share : float
         Share of the area whose directions are complex.
+    umbilic_share : float
+        Share of the area on which all pairs of orthogonal directions are all but conjugate.
     singular : (s,) int array
         Vertices around which the directions turn.
     indices : (s,) int array
@@ -44,6 +48,7 @@ class ConjugateDirections:
     directions: FloatArray
     is_real: BoolArray
     complex_share: float
+    umbilic_share: float
     singular: IntArray
     indices: IntArray
     axis_angles: FloatArray
@@ -85,7 +90,7 @@ def conjugate_directions(
     """
     surface = congruence_mesh(mesh, spheres)
     jets, heights, fitted = fit_jets(surface, degree, rings)
-    trace, deviator = conjugate_field(jets)
+    trace, deviator = orient_forms(surface, *conjugate_field(jets))
     first, second, is_real = form_roots(trace, deviator)
     angles = np.stack([first, second], 1)[..., None]
     frames = surface.vertex_frames
@@ -97,10 +102,57 @@ def conjugate_directions(
     indices = comb_frames(surface, vertex_fans(surface), trace, deviator, 0.0).indices
     singular = np.flatnonzero(indices)
     return ConjugateDirections(
-        directions, is_real, float(areas[~is_real].sum() / areas.sum()), singular,
-        indices[singular], axis_angles(surface, jets),
+        directions, is_real, float(areas[~is_real].sum() / areas.sum()),
+        umbilic_share(surface, jets), singular, indices[singular], axis_angles(surface, jets),
         2 * surface.rows[:, 0] / surface.size, fitted,
     )  # fmt: skip
+
+
+def complex_share(mesh: Mesh, spheres: ArrayLike) -> float:
+    """
+    Share of the area on which a congruence has no real conjugate net.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        A connected triangle mesh.
+    spheres : (V, 5) array_like of float
+        A real sphere or plane for every vertex, in model coordinates.
+
+    Returns
+    -------
+    float
+        1 if the spheres determine no directions at all, as planes.
+
+    Raises
+    ------
+    InputError
+        If the mesh or the spheres cannot be used.
+    """
+    try:
+        return conjugate_directions(mesh, spheres).complex_share
+    except UndeterminedError:
+        return 1.0
+
+
+def umbilic_share(surface: CongruenceMesh, jets: CongruenceJets) -> float:
+    """
+    Share of the area on which a congruence does not tell its conjugate directions.
+
+    Parameters
+    ----------
+    surface : CongruenceMesh
+        The congruence.
+    jets : CongruenceJets
+        Its derivatives.
+
+    Returns
+    -------
+    float
+        1 on a sphere with spheres of one radius; 0 on other surfaces, but for single points.
+    """
+    areas = surface.vertex_areas
+    return float(areas[anisotropy(jets) < UMBILIC].sum() / areas.sum())
 
 
 def axis_angles(surface: CongruenceMesh, jets: CongruenceJets) -> FloatArray:

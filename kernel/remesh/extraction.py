@@ -79,7 +79,8 @@ def extract_net(
     Returns
     -------
     Net
-        Cells on the boundary are cut by it, with a corner where it has one.
+        Cells on the boundary are cut by it, with a corner where it has one; cells that have a
+        hole inside cover it.
 
     Raises
     ------
@@ -98,8 +99,13 @@ def extract_net(
     rim = _boundary_points(surface, fans, crossings)
     following, origins = _darts(n_nodes, len(crossings.shares), partners, rim)
     order, offsets = _cycles(following)
-    points = np.concatenate([nodes, rim.points])
-    return Net(points, n_nodes, origins[order], offsets, rim.crossings < 0)
+    points, is_corner = np.concatenate([nodes, rim.points]), rim.crossings < 0
+    degrees, on_line = np.diff(offsets), np.concatenate([np.ones(n_nodes, bool), ~is_corner])
+    cells = np.repeat(np.arange(len(degrees)), degrees)
+    # What no line meets is the inside of a hole: a cell lies around it, which covers it.
+    is_cell = np.bincount(cells, on_line[origins[order]], len(degrees)) > 0
+    offsets = np.concatenate([[0], np.cumsum(degrees[is_cell])])
+    return Net(points, n_nodes, origins[order][is_cell[cells]], offsets, is_corner)
 
 
 def _wires(

@@ -1,14 +1,22 @@
-"""Smoothing of a field of quadratic forms over a triangle mesh."""
+"""A field of quadratic forms over a triangle mesh: its signs, and its smoothing."""
 
 import numpy as np
 
-from ..arrays import ComplexArray, FloatArray, dot, norm, sum_by
+from ..arrays import ComplexArray, FloatArray, IntArray, dot, norm, sum_by
 from ..solvers.factorization import SparseArray, factorize_symmetric
 from ..tolerances import LEAST_STIFFNESS
 from .congruence_mesh import CongruenceMesh
+from .tree_signs import tree_signs
 
 COHERENCE = 4
 """Power with which disagreement with the neighbours lowers the confidence."""
+
+
+ALIKE_FORMS = 0.9
+"""Neighbours with a larger product of their unit forms have the same sign."""
+
+LEAST_PATCH = 0.15
+"""Patches of one sign with less of the area are noise; if all are, no form is reversed."""
 
 
 def transport(source: FloatArray, target: FloatArray) -> ComplexArray:
@@ -32,6 +40,70 @@ def transport(source: FloatArray, target: FloatArray) -> ComplexArray:
     result = cosine + 1j * (dot(first, across) - dot(second, along))
     size = np.abs(result)
     return np.divide(result, size, out=np.ones_like(result), where=size > 0)
+
+
+def orient_forms(
+    surface: CongruenceMesh, trace: FloatArray, deviator: ComplexArray
+) -> tuple[FloatArray, ComplexArray]:
+    """
+    Reverse forms beyond curves on which they vanish.
+
+    Parameters
+    ----------
+    surface : CongruenceMesh
+        The mesh.
+    trace : (V,) float array
+        Means of the forms.
+    deviator : (V,) complex array
+        Deviators, in the coordinates of `vertex_frames`.
+
+    Returns
+    -------
+    trace : (V,) float array
+        Means of the same forms, up to signs.
+    deviator : (V,) complex array
+        Their deviators.
+
+    Notes
+    -----
+    In general forms vanish at points alone, and none is reversed. On symmetric surfaces they do
+    so along curves: where the curvature of a developable surface changes sign, or on a circle
+    of umbilics of a surface of revolution. Beyond, the form has the other sign and the same
+    roots, but the first of them would be taken for the second.
+    """
+    patches, votes = _patches(surface, trace, deviator)
+    areas = np.bincount(patches, surface.vertex_areas)
+    signs = tree_signs(votes)
+    signs *= signs[areas.argmax()]
+    if not (areas[signs < 0] > LEAST_PATCH * areas.sum()).any():
+        return trace, deviator
+    return trace * signs[patches], deviator * signs[patches]
+
+
+def _patches(
+    surface: CongruenceMesh, trace: FloatArray, deviator: ComplexArray
+) -> tuple[IntArray, SparseArray]:
+    """Patch of forms of one sign of each vertex, and how alike the patches are."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+
+    tails = surface.triangles.ravel()
+    heads = np.roll(surface.triangles, -1, axis=1).ravel()
+    frames = surface.vertex_frames
+    moved = transport(frames[tails], frames[heads]) ** 2 * deviator[tails]
+    products = trace[tails] * trace[heads] + (moved * deviator[heads].conj()).real
+    size = np.hypot(trace, np.abs(deviator))
+    bound = size[tails] * size[heads]
+    likeness = np.divide(products, bound, out=np.ones_like(bound), where=bound > 0)
+    is_alike = likeness > ALIKE_FORMS
+    ends = (tails[is_alike], heads[is_alike])
+    links = csr_array((np.ones(len(ends[0])), ends), shape=(len(size), len(size)))
+    count, patches = connected_components(links, directed=False)
+    between = patches[tails] != patches[heads]
+    ends = (patches[tails[between]], patches[heads[between]])
+    votes = csr_array((likeness[between], ends), shape=(count, count))
+    votes = (votes + votes.T).tocsr()
+    return np.asarray(patches, np.int64), votes / np.abs(votes.data).max(initial=1.0)
 
 
 def smooth_forms(

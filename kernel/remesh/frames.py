@@ -44,7 +44,7 @@ class CombedFrames:
     first, second : (F,) float array
         Angles in the face frame; from the first to the second is a turn between 0 and π.
     is_real : (F,) bool array
-        False where the form had no real roots.
+        False where the form had no real roots, or roots that meet at less than the least angle.
     signs : (H,) float array
         -1 where both directions are reversed in the face beyond a half-edge; 1 elsewhere.
     is_seam : (H,) bool array

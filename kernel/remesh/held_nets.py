@@ -1,11 +1,12 @@
 """Planar nodes that stay near: on the surface that a net was made on, or where they are."""
 
-from ..arrays import dot, norm
+from ..arrays import dot
 from ..mesh import Mesh, face_vector_areas, mean_edge_length
 from ..sphere_mesh import SphereMesh, vertex_error
 from ..support import support_structure
 from ..tolerances import NODE_LANDED, NODE_ON_SPHERES, NODE_ROUNDED, ON_SURFACE
 from .node_sites import node_distances
+from .pipeline import shortest_edge
 from .planar_system import must_be_planar
 from .planarize import Planarization, planarize
 from .smooth_surface import SmoothSurface
@@ -110,11 +111,6 @@ def _is_held(before: Mesh, held: Planarization, surface: SmoothSurface) -> bool:
 
 def _is_kept(before: Mesh, after: Mesh) -> bool:
     turned = dot(face_vector_areas(before), face_vector_areas(after)) <= 0
-    first, last = _shortest(before), _shortest(after)
+    first, last = shortest_edge(before), shortest_edge(after)
     least = max(KEPT_EDGE * first, min(first, SHORT_EDGE * mean_edge_length(after)))
     return not turned.any() and last >= least
-
-
-def _shortest(mesh: Mesh) -> float:
-    ends = mesh.vertices[mesh.corners[mesh.topology.next_corners]]
-    return float(norm(ends - mesh.vertices[mesh.corners]).min())

@@ -12,6 +12,8 @@ from .extraction import Net
 SHORT = 0.4
 """Edges at the boundary below this length, in edge lengths, are contracted."""
 
+WIDEST = 0.9
+"""Holes of a larger radius, in edge lengths, are not contracted."""
 
 NEAREST = 0.35
 """Nodes inside that an edge below this length joins, in edge lengths, are moved apart."""
@@ -92,12 +94,44 @@ def _merge_short_edges(net: Net, edge_length: float) -> IntArray:
     is_short &= (tails >= net.n_nodes) | (heads >= net.n_nodes)
     ones = np.ones(int(is_short.sum()))
     graph = coo_array((ones, (tails[is_short], heads[is_short])), shape=(count, count))
-    clusters = connected_components(graph, directed=False)[1]
+    clusters = np.asarray(connected_components(graph, directed=False)[1], np.int64)
+    # A hole at which lines crowd stays open.
+    is_wide = _widths(net.points, clusters) > WIDEST * edge_length
+    stays = is_wide[clusters] & _closes_hole(net, clusters)[clusters]
+    clusters[stays] = count + np.flatnonzero(stays)
+    clusters = np.unique(clusters, return_inverse=True)[1]
     # A corner of the boundary stands for its cluster, else a point of the boundary.
     standing = np.concatenate([np.zeros(net.n_nodes), 1.0 + net.is_corner])
     order = np.lexsort((np.arange(count), -standing, clusters))
     first = np.unique(clusters[order], return_index=True)[1]
     return order[first][clusters]
+
+
+def _closes_hole(net: Net, clusters: IntArray) -> BoolArray:
+    """Whether each cluster holds all points of a line of the boundary."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    count, ends = len(net.points), (net.corners, net.corners[_following(net.offsets)])
+    on_rim = (ends[0] >= net.n_nodes) & (ends[1] >= net.n_nodes)
+    ones = np.ones(int(on_rim.sum()))
+    graph = coo_array((ones, (ends[0][on_rim], ends[1][on_rim])), shape=(count, count))
+    lines = connected_components(graph, directed=False)[1][net.n_nodes :]
+    low, high = np.full(count, count), np.full(count, -1)
+    np.minimum.at(low, lines, clusters[net.n_nodes :])
+    np.maximum.at(high, lines, clusters[net.n_nodes :])
+    result = np.zeros(count, np.bool_)
+    result[low[low == high]] = True
+    return result
+
+
+def _widths(points: FloatArray, clusters: IntArray) -> FloatArray:
+    """Largest distance of a point of each cluster from their mean."""
+    sizes = np.bincount(clusters)
+    means = sum_by(clusters, points, len(sizes)) / sizes[:, None]
+    widths = np.zeros(len(sizes))
+    np.maximum.at(widths, clusters, norm(points - means[clusters]))
+    return widths
 
 
 def _build(net: Net, merged: IntArray) -> NetMesh:

@@ -6,15 +6,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import FloatArray, IntArray, norm
-from ..errors import InputError
+from ..errors import InputError, name_ids
 from ..mesh import Mesh, face_centroids
 from ..sphere_mesh import SphereMesh
 from ..spheres import minkowski, recenter, rescale
 from .congruence_mesh import CongruenceMesh, congruence_mesh
 from .conjugate import conjugate_field, form_roots
-from .directions import axis_angles
+from .directions import axis_angles, umbilic_share
 from .extraction import extract_net
-from .field_smoothing import smooth_forms
+from .field_smoothing import orient_forms, smooth_forms
 from .frames import comb_frames, vertex_fans
 from .jets import fit_jets
 from .net_mesh import NetMesh, net_mesh
@@ -44,6 +44,8 @@ class Remeshing:
         Length, in model units.
     complex_share : float
         Share of the area of the given surface whose directions are complex.
+    umbilic_share : float
+        Share of the area on which all pairs of orthogonal directions are all but conjugate.
     moved_share : float
         Share of the area whose directions, once smooth, were moved apart to the least angle.
     singular_points : (s, 3) float array
@@ -59,6 +61,8 @@ class Remeshing:
         Short edges at the boundary that were contracted, and cells lost there.
     n_digons : int
         Cells of two corners, which became edges.
+    n_covered : int
+        Holes of the surface, smaller than the cells, that the net covers.
     axis_angles : (V',) float array
         Angles of the normals with the expected node axes at the given vertices, in radians.
     curvatures : (V',) float array
@@ -73,6 +77,7 @@ class Remeshing:
     n_irregular: int
     shortest_edge: float
     complex_share: float
+    umbilic_share: float
     moved_share: float
     singular_points: FloatArray
     indices: IntArray
@@ -82,6 +87,7 @@ class Remeshing:
     n_contracted: int
     n_slivers: int
     n_digons: int
+    n_covered: int
     axis_angles: FloatArray
     curvatures: FloatArray
     degree: int
@@ -126,7 +132,8 @@ def remesh(
     Raises
     ------
     InputError
-        If the mesh or the spheres cannot be used, or the edge length is out of range.
+        If the mesh or the spheres cannot be used, the edge length is out of range, or the
+        spheres are too small or too different to blend those of neighbouring vertices.
     ConvergenceError
         If the lines of the map do not match across the edges of the mesh.
 
@@ -137,13 +144,15 @@ def remesh(
     surface = congruence_mesh(mesh, spheres)
     step = _checked_step(surface, edge_length)
     jets, heights, fitted = fit_jets(surface, degree, rings)
-    trace, deviator = conjugate_field(jets)
+    trace, deviator = orient_forms(surface, *conjugate_field(jets))
     is_real = form_roots(trace, deviator)[2]
     fans = vertex_fans(surface)
     smooth = smooth_forms(surface, trace, deviator, smoothing * step)
     frames = comb_frames(surface, fans, *smooth, least_angle)
     mapped = parametrize(surface, fans, frames, find_seams(surface, fans, frames), step)
     net = extract_net(surface, fans, frames, mapped)
+    if net.n_nodes == 0:
+        raise _too_large(edge_length)
     built = net_mesh(net, step)
     if not built.is_node.any():
         raise _too_large(edge_length)
@@ -156,6 +165,7 @@ def remesh(
         n_irregular=_irregular_count(sphere_mesh.mesh),
         shortest_edge=shortest_edge(sphere_mesh.mesh),
         complex_share=float(areas[~is_real].sum() / areas.sum()),
+        umbilic_share=umbilic_share(surface, jets),
         moved_share=float(moved),
         singular_points=mesh.vertices[singular],
         indices=frames.indices[singular],
@@ -165,6 +175,7 @@ def remesh(
         n_contracted=built.n_contracted,
         n_slivers=built.n_slivers,
         n_digons=built.n_digons,
+        n_covered=max(_boundary_count(mesh) - _boundary_count(built.mesh), 0),
         axis_angles=axis_angles(surface, jets),
         curvatures=2 * surface.rows[:, 0] / surface.size,
         degree=fitted,
@@ -175,6 +186,19 @@ def remesh(
 def _irregular_count(mesh: Mesh) -> int:
     valences = np.bincount(mesh.corners, minlength=mesh.n_vertices)
     return int((valences[~mesh.topology.is_boundary_vertex] != 4).sum())
+
+
+def _boundary_count(mesh: Mesh) -> int:
+    """Number of closed lines that the boundary consists of."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+
+    outer = np.flatnonzero(mesh.topology.twins < 0)
+    ends = mesh.corners[outer], mesh.corners[mesh.topology.next_corners[outer]]
+    shape = (mesh.n_vertices, mesh.n_vertices)
+    graph = csr_array((np.ones(len(outer)), ends), shape=shape)
+    # Every vertex elsewhere is a component of its own.
+    return connected_components(graph, directed=False)[0] - (mesh.n_vertices - len(outer))
 
 
 def shortest_edge(mesh: Mesh) -> float:
@@ -224,7 +248,15 @@ def _interpolated(surface: CongruenceMesh, built: NetMesh) -> SphereMesh:
     corners = surface.points[vertices]
     rows = recenter(surface.rows[vertices], centers[:, None] - corners)
     mixed = np.einsum("fc,fcr->fr", weights, rows)
-    mixed /= np.sqrt(minkowski(mixed, mixed))[:, None]
+    squares = minkowski(mixed, mixed)
+    bad = np.unique(vertices[~(squares > 0)])
+    if len(bad):
+        raise InputError(
+            f"the spheres of vertices {name_ids(bad.tolist())} are so small, or so different "
+            "from their neighbours, that there is none between them: choose larger spheres of "
+            "more even radius, or subdivide the mesh"
+        )
+    mixed /= np.sqrt(squares)[:, None]
     points = surface.origin + surface.size * built.mesh.vertices
     mesh = Mesh(points, built.mesh.faces)
     return SphereMesh.from_local(mesh, rescale(mixed, surface.size))

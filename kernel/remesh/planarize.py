@@ -14,12 +14,11 @@ for the net to move; and a node whose spheres share a circle is planar and of no
 Meshes with Spherical Faces, Prop. 4.3 and Sec. 6.4.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
+from ..arrays import BoolArray, FloatArray, batches_by_count, dot, norm, sum_by, unit
 from ..errors import InputError
 from ..mesh import Mesh, face_vector_areas, local_corners, mean_edge_length
 from ..solvers.levenberg_marquardt import Descent, Status, levenberg_marquardt
@@ -148,7 +147,7 @@ def planarize(
     Meshes with Spherical Faces, Prop. 4.3 and Sec. 6.4; Tang et al. 2014.
     """
     if not (np.isfinite(fairness) and fairness >= 0):
-        raise InputError(f"the fairness must not be negative, not {fairness}")
+        raise InputError(f"the fairness must be a number from 0 on, not {fairness}")
     system = replace(planar_system(sphere_mesh), exact=exact)
     size = step_norm(system, fairness)
     start, first = system.start, 0
@@ -223,7 +222,11 @@ def measure_nodes(sphere_mesh: SphereMesh) -> Nodes:
     planarity = np.zeros(mesh.n_vertices)
     axes = np.full((mesh.n_vertices, 3), np.nan)
     is_real = np.zeros(mesh.n_vertices, np.bool_)
-    for nodes, corners in _stars(mesh):
+    is_planar = must_be_planar(mesh)
+    for group, around in batches_by_count(mesh.corners, mesh.n_vertices):
+        if around.shape[1] < 3:
+            continue
+        nodes, corners = group[is_planar[group]], around[is_planar[group]]
         _, values, basis = np.linalg.svd(rows[corners])
         if values.shape[1] > 3:
             planarity[nodes] = values[:, 3] / values[:, 0]
@@ -243,17 +246,6 @@ def _form(first: FloatArray, second: FloatArray) -> FloatArray:
     """Minkowski product of the spheres that linear forms of rows stand for."""
     ends = first[:, 0] * second[:, 4] + first[:, 4] * second[:, 0]
     return dot(first[:, 1:4], second[:, 1:4]) - ends / 2
-
-
-def _stars(mesh: Mesh) -> Iterator[tuple[IntArray, IntArray]]:
-    """Nodes (n,) that must be planar, of equal valence k > 2, with their corners (n, k)."""
-    valences = np.bincount(mesh.corners, minlength=mesh.n_vertices)
-    order = np.argsort(mesh.corners, kind="stable")
-    starts = np.cumsum(valences) - valences
-    valences = np.where(must_be_planar(mesh), valences, 0)
-    for valence in np.unique(valences[valences > 2]).tolist():
-        nodes = np.flatnonzero(valences == valence)
-        yield nodes, order[starts[nodes][:, None] + np.arange(valence)]
 
 
 def axis_angles(sphere_mesh: SphereMesh, nodes: Nodes) -> FloatArray:

@@ -19,11 +19,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import FloatArray, dot, norm
-from ..curvature import principal_curvatures, vertex_normals
+from ..curvature import principal_curvatures
 from ..errors import ConvergenceError, InputError, name_ids
 from ..mesh import Mesh, face_centroids, face_vector_areas, mean_edge_length
-from ..spheres import minkowski, recenter
+from ..spheres import minkowski, recenter, rescale
 from ..tolerances import BLEND_STEP, FLATTEST
+from .congruence_mesh import CongruenceMesh, check_triangles, congruence_mesh
 
 SHARPER = 2.0
 """Curvature of the spheres of constant radius, relative to the sharpest of the surface."""
@@ -105,8 +106,8 @@ def relax_congruence(
     Raises
     ------
     InputError
-        If the mesh is not made of triangles, the rows do not match its vertices or are not
-        near them, the radius is zero or not finite, or the surface is flat and has no radius.
+        If the mesh is not made of triangles or in pieces, a sphere is not real or not near its
+        vertex, the radius is zero or not finite, or the surface is flat and has no radius.
     ConvergenceError
         If not even the spheres of constant radius meet the target.
 
@@ -121,9 +122,8 @@ def relax_congruence(
     ----------
     Meshes with Spherical Faces, Sec. 6.4 and 7.
     """
-    _check_triangles(mesh)
-    normals = vertex_normals(mesh)
-    rows = _local_rows(mesh, np.asarray(spheres, float), normals)
+    surface = congruence_mesh(mesh, spheres)
+    normals, rows = surface.vertex_frames[:, 2], _checked_rows(surface)
     distance = _default_radius(mesh, rows) if radius is None else radius
     if not (np.isfinite(distance) and distance != 0):
         raise InputError(f"the radius must be finite and not zero, not {radius}")
@@ -187,7 +187,7 @@ def axis_angle(mesh: Mesh, spheres: FloatArray) -> float:
     their centres: ``A B' x B'' + A' B'' x B + A'' B x B'``. Whatever conjugate net a congruence
     has, its axes are those.
     """
-    _check_triangles(mesh)
+    check_triangles(mesh)
     corners = mesh.corners.reshape(-1, 3)
     rows = recenter(spheres[corners], face_centroids(mesh)[:, None])
     a, b = rows[..., :1], rows[..., 1:4]
@@ -201,29 +201,15 @@ def axis_angle(mesh: Mesh, spheres: FloatArray) -> float:
     return float(angles[order][np.searchsorted(passed, 0.95 * passed[-1])])
 
 
-def _check_triangles(mesh: Mesh) -> None:
-    others = np.flatnonzero(mesh.degrees != 3)
-    if len(others):
+def _checked_rows(surface: CongruenceMesh) -> FloatArray:
+    """Unit rows seen from their vertex, in model units."""
+    far = np.flatnonzero(np.abs(surface.rows[:, 4]) > 1)
+    if len(far):
         raise InputError(
-            f"faces {name_ids(others.tolist())} are no triangles: triangulate the mesh first"
+            f"the spheres of vertices {name_ids(far.tolist())} pass their vertices by more "
+            "than a mean edge: give spheres that touch the surface"
         )
-
-
-def _local_rows(mesh: Mesh, spheres: FloatArray, normals: FloatArray) -> FloatArray:
-    """Unit rows seen from their vertex, N on the side of the normals."""
-    if spheres.shape != (mesh.n_vertices, 5):
-        raise InputError(f"spheres must have shape ({mesh.n_vertices}, 5), not {spheres.shape}")
-    rows = recenter(spheres, mesh.vertices)
-    rows = np.where(dot(rows[:, 1:4], normals) < 0, -1.0, 1.0)[:, None] * rows
-    norms = minkowski(rows, rows)
-    distances = np.abs(rows[:, 4]) / np.sqrt(np.where(norms > 0, norms, np.nan))
-    is_bad = ~(distances <= mean_edge_length(mesh))
-    if is_bad.any():
-        raise InputError(
-            f"the spheres of vertices {name_ids(np.flatnonzero(is_bad).tolist())} are not real "
-            "or pass their vertices by more than a mean edge"
-        )
-    return rows / np.sqrt(norms)[:, None]
+    return rescale(surface.rows, surface.size)
 
 
 def _default_radius(mesh: Mesh, rows: FloatArray) -> float:

@@ -12,14 +12,16 @@ from .pipeline import Remeshing, shortest_edge
 from .planarize import Nodes, Planarization, axis_angles, measure_nodes
 
 
-def remeshing_report(done: Remeshing, edge_length: float) -> dict[str, Any]:
+def remeshing_report(done: Remeshing, mesh: Mesh, edge_length: float) -> dict[str, Any]:
     """
     What remeshing reached.
 
     Parameters
     ----------
     done : Remeshing
-        The net.
+        How the net was made.
+    mesh : Mesh
+        Its mesh in the end, with the same faces.
     edge_length : float
         Length of the edges asked for.
 
@@ -28,7 +30,6 @@ def remeshing_report(done: Remeshing, edge_length: float) -> dict[str, Any]:
     dict
         Plain values; angles in degrees, None for what is infinite or does not exist.
     """
-    mesh = done.sphere_mesh.mesh
     degrees: Counter[int] = Counter(mesh.degrees.tolist())
     singular = zip(done.singular_points.tolist(), done.indices.tolist(), strict=True)
     return {
@@ -39,11 +40,12 @@ def remeshing_report(done: Remeshing, edge_length: float) -> dict[str, Any]:
         "irregular_nodes": done.n_irregular,
         "singular": [{"point": point, "half_turns": index} for point, index in singular],
         "complex_share": done.complex_share,
+        "umbilic_share": done.umbilic_share,
         "moved_share": done.moved_share,
         "edges": {
             "target": float(edge_length),
             "mean": mean_edge_length(mesh),
-            "min": done.shortest_edge,
+            "min": shortest_edge(mesh),
         },
         "folded": done.n_folded,
         "flipped": done.n_flipped,
@@ -51,6 +53,7 @@ def remeshing_report(done: Remeshing, edge_length: float) -> dict[str, Any]:
         "contracted_edges": done.n_contracted,
         "lost_cells": done.n_slivers,
         "digons": done.n_digons,
+        "covered_holes": done.n_covered,
         "node_axis_deg": angle_report(done.axis_angles),
         "radius_to_edge": radius_report(sphere_radii(done.curvatures) / edge_length),
     }

@@ -21,7 +21,7 @@ from ..node import node, warn
 from ..ports import Port
 
 COMPLEX_SHARE = 0.05
-"""A share of the area with complex directions that is worth a warning."""
+"""A share of the area with complex directions, or none, that is worth a warning."""
 
 LEANING = 30.0
 """Angle of the node axes with the normals, in degrees, that is worth a warning."""
@@ -62,7 +62,8 @@ def conjugate_directions(
         Degree of the polynomials that are fitted to the spheres; by default 3, 5 or 7, the
         lower the noisier the spheres.
     rings : int
-        Rings of neighbours that they are fitted to; more for noisy spheres.
+        Rings of neighbours that they are fitted to, or more if the degree needs more; larger
+        for noisy spheres.
 
     Returns
     -------
@@ -71,7 +72,8 @@ def conjugate_directions(
     is_real : (V,) bool array
         False where the directions are complex; the two given ones then coincide.
     report : mapping
-        ``complex_share`` of the area, ``singular`` vertices with their ``half_turns``,
+        ``complex_share`` and ``umbilic_share`` (where all directions are all but conjugate) of
+        the area, ``singular`` vertices with their ``half_turns``,
         ``node_axis_deg`` (angle between normal and expected node axis: median, p95 and max),
         ``radius_to_edge`` (radii relative to the mean edge of the mesh: min and median) and
         ``largest_edge`` (longest edge of a net whose nodes are real on 95 % of the vertices,
@@ -79,10 +81,11 @@ def conjugate_directions(
         infinite.
     """
     found = directions.conjugate_directions(mesh, spheres, degree, rings)
-    _warn_complex(found.complex_share)
+    _warn_of_directions(found.complex_share, found.umbilic_share)
     radii = reports.sphere_radii(found.curvatures)
     report = {
         "complex_share": found.complex_share,
+        "umbilic_share": found.umbilic_share,
         "singular": _singular(found.singular, found.indices),
         "node_axis_deg": reports.angle_report(found.axis_angles),
         "radius_to_edge": reports.radius_report(radii / mean_edge_length(mesh)),
@@ -122,7 +125,8 @@ def p4_remesh(
         Degree of the polynomials that are fitted to the spheres; by default 3, 5 or 7, the
         lower the noisier the spheres.
     rings : int
-        Rings of neighbours that they are fitted to; more for noisy spheres.
+        Rings of neighbours that they are fitted to, or more if the degree needs more; larger
+        for noisy spheres.
     fairness : float
         As in `planarize_p4`, which ends the remeshing.
 
@@ -134,10 +138,12 @@ def p4_remesh(
     report : mapping
         ``faces`` (count, and how many of each degree), ``irregular_nodes`` (inner vertices
         whose valence is not 4), ``singular`` points with their ``half_turns``,
-        ``complex_share`` and ``moved_share`` of the area, ``edges`` (target, mean and min
-        length), ``folded`` and ``flipped`` triangles of the map before and after unfolding,
+        ``complex_share``, ``umbilic_share`` and ``moved_share`` of the area, ``edges``
+        (target, mean and min length), ``folded`` and ``flipped`` triangles of the map before
+        and after unfolding,
         ``aligned_sides`` of the boundary, ``contracted_edges`` and ``lost_cells`` along it,
         ``digons`` (cells of two corners around singular points, which became edges),
+        ``covered_holes`` (too small for the edges),
         ``node_axis_deg`` (angle between normal and expected node axis: median, p95 and max)
         and ``radius_to_edge`` (min and median; below 0.71 nodes are not real). None stands for
         infinite. ``planarized`` is the report of `planarize_p4`, which comes last; None if it
@@ -148,7 +154,7 @@ def p4_remesh(
     done = pipeline.remesh(
         mesh, spheres, edge_length, smoothing, float(np.radians(least_angle)), degree, rings
     )
-    _warn_complex(done.complex_share)
+    _warn_of_directions(done.complex_share, done.umbilic_share)
     _warn_of_nodes(done, edge_length)
     if done.moved_share > 0:
         warn(
@@ -161,29 +167,31 @@ def p4_remesh(
             f"{done.n_flipped} triangles of the map are flipped: faces overlap there, near "
             "singular points; choose a smaller edge length or more smoothing"
         )
+    if done.n_covered:
+        warn(
+            f"the net covers {done.n_covered} of the holes of the mesh, which are too small "
+            "for its edges: choose a smaller edge length"
+        )
     if edge_length < mean_edge_length(mesh):
         warn(
             f"the mesh, with edges of {mean_edge_length(mesh):.3g}, is coarser than the net: "
             "subdivide it"
         )
-    report = reports.remeshing_report(done, edge_length)
+    net, planar, is_held = done.sphere_mesh, None, True
     try:
         result, is_held = planarize_held(done.sphere_mesh, done.surface, fairness)
-        planar = _planarized(done.sphere_mesh, result)
+        net, planar = _planarized(done.sphere_mesh, result)
     except ConvergenceError as error:
         warn(f"the net keeps some torsion: {error}")
-        distances = _distances(done.sphere_mesh, mesh, done.surface)
-        return Remeshed(done.sphere_mesh, {**report, "planarized": None, "distance": distances})
-    distances = _distances(planar.sphere_mesh, mesh, done.surface)
-    if not is_held:
+    distances = _distances(net, mesh, done.surface)
+    if planar and not is_held:
         warn(
             f"the nodes inside are up to {distances['nodes']:.2g} edges from the surface: held "
             "on it, edges would shrink or faces turn over; choose a smaller edge length or "
             "larger spheres"
         )
-    return Remeshed(
-        planar.sphere_mesh, {**report, "planarized": planar.report, "distance": distances}
-    )
+    report = reports.remeshing_report(done, net.mesh, edge_length)
+    return Remeshed(net, {**report, "planarized": planar, "distance": distances})
 
 
 def _distances(sphere_mesh: SphereMesh, mesh: Mesh, surface: SmoothSurface) -> dict[str, float]:
@@ -199,12 +207,18 @@ def _distances(sphere_mesh: SphereMesh, mesh: Mesh, surface: SmoothSurface) -> d
     }
 
 
-def _warn_complex(share: float) -> None:
-    if share > COMPLEX_SHARE:
+def _warn_of_directions(complex_share: float, umbilic_share: float) -> None:
+    if umbilic_share > COMPLEX_SHARE:
         warn(
-            f"the conjugate directions are complex on {_percent(share)} of the area: no real "
-            "net follows these spheres there; spheres of constant radius or tangent spheres of "
-            "constant offset have real ones"
+            f"on {_percent(umbilic_share)} of the area the spheres do not tell the conjugate "
+            "directions, as if they touched one sphere: there noise chooses the net; much "
+            "smoothing, over 5 edges or more, makes it even"
+        )
+    if complex_share > COMPLEX_SHARE:
+        warn(
+            f"the conjugate directions are complex on {_percent(complex_share)} of the area: "
+            "no real net follows these spheres there; relax_congruence makes it real, and "
+            "tangent spheres of constant offset have a real one"
         )
 
 
@@ -353,7 +367,7 @@ def relax_congruence(
     result = relax.relax_congruence(
         mesh,
         spheres,
-        lambda rows: directions.conjugate_directions(mesh, rows).complex_share,
+        lambda rows: directions.complex_share(mesh, rows),
         target,
         radius,
     )

@@ -385,7 +385,7 @@ def test_steps_are_those_of_the_dense_system(fairness: float) -> None:
 def test_bad_fairness_is_refused() -> None:
     start = constant_radius_torus()
     for fairness in (-1.0, np.nan, np.inf):
-        with pytest.raises(InputError, match="fairness must not be negative"):
+        with pytest.raises(InputError, match="fairness must be a number from 0 on"):
             planarize(start, fairness)
 
 

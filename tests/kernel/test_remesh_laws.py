@@ -468,3 +468,35 @@ def test_bad_edge_lengths_are_refused() -> None:
     torus, around = constant_radius("torus", 0.3, -0.5)
     with pytest.raises(InputError, match="too large"):
         remesh(torus, around, 3.5)
+
+
+@pytest.mark.parametrize(("length", "n_covered"), [(0.4, 1), (0.1, 0)])
+def test_holes_within_a_face_are_covered_and_counted(length: float, n_covered: int) -> None:
+    mesh, spheres = constant_radius("hypar", 0.2, 0.9)
+    triangles = mesh.corners.reshape(-1, 3)
+    centers = mesh.vertices[triangles].mean(axis=1)
+    # A hole as wide as half an edge of the net, in the middle of one of its faces.
+    hole = int(norm(centers[:, :2] - [0.03, 0.28]).argmin())
+    done = remesh(Mesh(mesh.vertices, np.delete(triangles, hole, axis=0)), spheres, length)
+    net = done.sphere_mesh.mesh
+    assert done.n_covered == n_covered
+    assert characteristic(net) == n_covered
+    assert np.unique(net.topology.edge_faces).size == net.n_faces
+
+
+def test_narrow_holes_where_lines_crowd_stay_open() -> None:
+    # A bell around a hole one edge wide: lines leave it a quarter of an edge apart.
+    turns, radii = 2 * np.pi * np.arange(60) / 60, np.linspace(0.3, 2.2, 25)
+    u, r = (grid.ravel() for grid in np.meshgrid(turns, radii, indexing="ij"))
+    points = np.stack([r * np.cos(u), r * np.sin(u), np.exp(-r * r)], 1)
+    ids = np.arange(60 * 25).reshape(60, 25)
+    ahead = np.roll(ids, -1, axis=0)
+    a, b, c, d = ids[:, :-1], ids[:, 1:], ahead[:, 1:], ahead[:, :-1]
+    mesh = Mesh(
+        points, np.concatenate([np.stack(t, -1).reshape(-1, 3) for t in ((a, b, c), (a, c, d))])
+    )
+    upward = np.stack([2 * r * np.cos(u), 2 * r * np.sin(u), np.exp(r * r)], 1)
+    upward /= norm(upward)[:, None]
+    done = remesh(mesh, touching_spheres(points, upward, -2.5), 0.3)
+    assert done.n_covered == done.n_irregular == 0
+    assert characteristic(done.sphere_mesh.mesh) == 0

@@ -248,3 +248,16 @@ def places(mesh: Mesh, other: Mesh) -> IntArray:
     away = norm(mesh.vertices[:, None] - other.vertices[None])
     assert away.min(axis=1).max() == pytest.approx(0, abs=1e-12)
     return away.argmin(axis=1)
+
+
+@pytest.mark.parametrize("make", [roof, ring])
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_sides_with_an_edge_of_no_length_stay(make: Callable[[int, float], Rim]) -> None:
+    mesh, directions, planes = make(1, 0.0)
+    # Two neighbours along the boundary, away from the corners.
+    first, second = (2, 3) if make is ring else (5, 10)
+    points = mesh.vertices.copy()
+    points[second] = points[first]
+    found = rim_axes(Mesh(points, mesh.faces), directions, planes)
+    np.testing.assert_array_equal(found[[first, second]], directions[[first, second]])
+    assert np.isfinite(found).all()
