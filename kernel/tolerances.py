@@ -222,7 +222,7 @@ ON_SURFACE: Final = 1e-2
 RIM_LEAN: Final = 0.3490658503988659
 """Axes of the boundary may lean by this (20 degrees) to make the beams there flat."""
 
-ALIKE_NEIGHBORS: Final = 5e-5
+ALIKE_NEIGHBORS: Final = 2e-4
 """Spheres of neighbours that meet at a smaller angle (radians) are turned apart to it."""
 
 NODE_LANDED: Final = 1e-7
@@ -233,3 +233,6 @@ RIM_CLOSED: Final = 1e-7
 
 UMBILIC: Final = 1e-3
 """Second derivatives of spheres that vary less with the direction, relatively, tell none."""
+
+PLANAR_DAMPING: Final = 1e-11
+"""Least damping of a step towards planar nodes: with less, rounding is larger than the step."""

@@ -13,6 +13,8 @@ import numpy as np
 from ..arrays import FloatArray, dot, sum_by
 from ..solvers.levenberg_marquardt import DampedStep
 from ..spheres import minkowski
+from ..tolerances import PLANAR_DAMPING
+from .node_elimination import face_products, factor_nodes, node_inverses
 from .planar_system import (
     FACE,
     NODE,
@@ -24,9 +26,11 @@ from .planar_system import (
     corner_jacobian,
     residuals,
     split_step,
-    sum_blocks,
 )
 from .step_norm import Sparse, StepNorm, node_metric, sphere_metric
+
+REFINEMENTS = 2
+"""How often a step is refined."""
 
 
 def linearize(system: PlanarSystem, net: Net, size: StepNorm) -> Callable[[float], DampedStep]:
@@ -49,54 +53,52 @@ def linearize(system: PlanarSystem, net: Net, size: StepNorm) -> Callable[[float
 
     Notes
     -----
-    The nodes are eliminated by the inverses of their 7 by 7 blocks. Faces are left coupled
-    where they share a node or an edge, nine blocks of 5 by 5 in a row of the matrix on quads.
+    The nodes are eliminated (`node_elimination`). Faces are left coupled where they share a
+    node, nine blocks of 5 by 5 in a row of the matrix on quads. What rounding leaves in it
+    would come out as a move along which nothing changes: the step is refined by the gradient
+    that the derivatives themselves give.
     """
     from scipy.sparse import bsr_array
 
     mesh = system.mesh
     jacobian, miss = corner_jacobian(system, net), residuals(system, net)
     held = system.site(net.shifts).slopes
-    face_blocks, node_blocks = _diagonal_blocks(system, net, jacobian)
-    node_blocks[:, :POINT, :POINT] += held.transpose(0, 2, 1) @ held
-    face_slope, node_slope = _slopes(system, net, jacobian, miss)
-    node_slope.reshape(-1, NODE)[:, :POINT] += np.einsum("vki,vk->vi", held, miss.sites)
+    factors = factor_nodes(system, net, jacobian, held)
     mixed = jacobian.by_face.transpose(0, 2, 1) @ jacobian.by_node
     shape = (FACE * mesh.n_faces, NODE * mesh.n_vertices)
     # Corners are stored face after face: they are the compressed rows of the coupling.
     coupling: Sparse = bsr_array((mixed, mesh.corners, mesh.offsets), shape=shape)
-    faces, metric = _block_diagonal(face_blocks), sphere_metric(size, net)
-    moving = node_metric(size, net)[:, None, None] * np.eye(NODE)
+    dual = 2 * _dual(net.rows)
+    units, metric = _block_diagonal(dual[:, :, None] * dual[:, None]), sphere_metric(size, net)
+    moving = node_metric(size, net)
+    n_rows = shape[0]
 
     def _step(damping: float) -> DampedStep:
-        nodes = np.linalg.inv(node_blocks + damping * moving)
-        inverse = _block_diagonal(np.asarray(nodes, np.float64))
+        damping = max(damping, PLANAR_DAMPING)
+        inverse = _block_diagonal(node_inverses(factors, damping * moving))
         reduction = coupling @ inverse
-        matrix = faces + damping * metric - reduction @ coupling.T
-        rows = _solve(matrix, reduction @ node_slope - face_slope)
-        step = np.concatenate([rows, -(inverse @ (node_slope + coupling.T @ rows))])
-        ahead = _advanced(system, net, jacobian, miss, held, step)
+        products = face_products(system, jacobian, factors, damping * moving)
+        reduced = _factorized(products + units + damping * metric)
+        step, ahead = np.zeros(sum(shape)), miss
+        for _ in range(1 + REFINEMENTS):
+            face_slope, node_slope = _slopes(system, net, jacobian, held, ahead)
+            face_slope += damping * (metric @ step[:n_rows])
+            node_slope += damping * np.repeat(moving, NODE) * step[n_rows:]
+            rows = reduced.solve(reduction @ node_slope - face_slope)
+            step[:n_rows] += rows
+            step[n_rows:] -= inverse @ (node_slope + coupling.T @ rows)
+            ahead = _advanced(system, net, jacobian, miss, held, step)
         return DampedStep(step, float(sum((r**2).sum() for r in ahead)))
 
     return _step
 
 
-def _diagonal_blocks(
-    system: PlanarSystem, net: Net, jacobian: CornerJacobian
-) -> tuple[FloatArray, FloatArray]:
-    """Blocks of JᵀJ of the faces (F, 5, 5) and of the nodes (V, 7, 7)."""
-    mesh, by_face, by_node = system.mesh, *jacobian
-    products = by_face.transpose(0, 2, 1) @ by_face
-    faces = sum_blocks(mesh.topology.corner_faces, products, mesh.n_faces)
-    dual = _dual(net.rows)
-    faces += 4 * dual[:, :, None] * dual[:, None]
-    nodes = sum_blocks(mesh.corners, by_node.transpose(0, 2, 1) @ by_node, mesh.n_vertices)
-    nodes[:, POINT:, POINT:] += 4 * net.normals[:, :, None] * net.normals[:, None]
-    return faces, nodes
-
-
 def _slopes(
-    system: PlanarSystem, net: Net, jacobian: CornerJacobian, miss: Residuals
+    system: PlanarSystem,
+    net: Net,
+    jacobian: CornerJacobian,
+    held: FloatArray,
+    miss: Residuals,
 ) -> tuple[FloatArray, FloatArray]:
     """Products Jᵀr of the faces (5 F,) and of the nodes (7 V,)."""
     mesh = system.mesh
@@ -106,6 +108,7 @@ def _slopes(
     faces += 2 * miss.rows[:, None] * _dual(net.rows)
     nodes = sum_by(mesh.corners, by_node, mesh.n_vertices)
     nodes[:, POINT:] += 2 * miss.normals[:, None] * net.normals
+    nodes[:, :POINT] += np.einsum("vki,vk->vi", held, miss.sites)
     return faces.ravel(), nodes.ravel()
 
 
@@ -145,15 +148,14 @@ def _block_diagonal(blocks: FloatArray) -> Sparse:
     return bsr_array((blocks, starts[:-1], starts), shape=(count * size, count * size))
 
 
-def _solve(matrix: Sparse, right: FloatArray) -> FloatArray:
-    """Solve a definite system: without pivots, in an order that keeps the factors sparse."""
+def _factorized(matrix: Sparse) -> Any:  # noqa: ANN401
+    """Factors of a definite matrix: without pivots, in an order that keeps them sparse."""
     from scipy.sparse import linalg
 
     solver: Any = linalg
-    factors = solver.splu(
+    return solver.splu(
         matrix.tocsc(),
         permc_spec="MMD_AT_PLUS_A",
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
     )
-    return np.asarray(factors.solve(right), np.float64)

@@ -21,11 +21,17 @@ from spheremesh.kernel.annulus_support import annulus_support
 from spheremesh.kernel.arrays import FloatArray
 from spheremesh.kernel.beam_cutting import cut_beams
 from spheremesh.kernel.beams import Beams
+from spheremesh.kernel.central import central_spheres
 from spheremesh.kernel.clustering import cluster_radii
 from spheremesh.kernel.cutting import cut_panels
+from spheremesh.kernel.energies.table import EnergyWeights
 from spheremesh.kernel.fit import fit_spheres
+from spheremesh.kernel.mesh import mean_edge_length
+from spheremesh.kernel.optimization import Conditions, optimize_spheres
 from spheremesh.kernel.panels import Panels
 from spheremesh.kernel.pencil import minimize_angles
+from spheremesh.kernel.remesh.held_nets import planarize_near
+from spheremesh.kernel.spheres import rescale
 from spheremesh.kernel.surfaces import roof_net
 
 PRECISION = 1e-9
@@ -56,6 +62,27 @@ def roof(units: str, scale: float) -> Job:
     panels = cut_panels(found, "bisector", *lengths, clusters.labels, "centred")[0]
     assert panels.n_panels == 42
     return Job(panels, beams, units)
+
+
+def test_landed_nodes_are_the_same_in_all_units() -> None:
+    """From the mesh through the optimum with support to nodes and spheres that landed."""
+    found = [landed(scale) for scale in (1.0, 1000.0, 1 / 0.3048)]
+    for vertices, rows in found[1:]:
+        assert np.abs(vertices - found[0][0]).max() < PRECISION * np.abs(vertices).max()
+        np.testing.assert_allclose(rows, found[0][1], atol=1e-8)
+
+
+def landed(scale: float) -> tuple[FloatArray, FloatArray]:
+    """Vertices, and spheres in mean edges, of a roof in other units."""
+    net = roof_net(12, 10, 40.0)
+    start = minimize_angles(central_spheres(Mesh(scale * net.vertices, net.faces)))[0]
+    weights = EnergyWeights(regularity=3.5, support=1.0)
+    optimum = optimize_spheres(start, weights, Conditions())[0]
+    result, is_near = planarize_near(optimum, 0.05)
+    assert is_near
+    edge = mean_edge_length(result.sphere_mesh.mesh)
+    rows = rescale(result.sphere_mesh.local_spheres, 1 / edge)
+    return result.sphere_mesh.mesh.vertices / scale, rows
 
 
 def numbers(values: Any) -> list[float]:  # noqa: ANN401
