@@ -3,7 +3,7 @@ Damped Gauss-Newton steps of large sparse problems.
 
 ``(JᵀJ + μ σ I) x = -Jᵀr`` is solved by conjugate gradients on J itself, never forming ``JᵀJ``,
 with the inverted diagonal blocks as preconditioner. Where these do not settle and the problem
-is not too large, the matrix is formed and factorised; small problems are factorised at once.
+is small enough, the matrix is formed and factorised.
 """
 
 from collections.abc import Sequence
@@ -25,8 +25,6 @@ MAX_OPERATIONS = 2 * 10**9
 steps, and more of them."""
 MAX_FACTORIZED = 100_000
 """Unknowns up to which a factorisation costs less than the iterations that it saves."""
-FACTORIZED_AT_ONCE = 10_000
-"""Unknowns up to which it costs as little as the iterations, and rounding decides less."""
 
 
 @dataclass(frozen=True)
@@ -112,8 +110,6 @@ def damped_step(problem: Linearization, damping: float) -> DampedStep:
         return inverse @ vector
 
     budget = MAX_OPERATIONS // max(2 * jacobian.nnz, 1)
-    if len(right) <= FACTORIZED_AT_ONCE:
-        budget = 0
     step, is_settled = truncated_step(
         _product, _precondition, right, int(min(MAX_ITERATIONS, budget))
     )

@@ -85,7 +85,11 @@ def test_beams_of_sides_are_flat(seed: int) -> None:
     np.testing.assert_allclose(norm(axes), 1, atol=1e-12)
     is_side = rim.planes.any(axis=1) & ~np.isnan(rim.planes[:, 0])
     assert np.abs(dot(axes, rim.planes)[is_side]).max() < 1e-12
-    assert bends(rim, axes).max() < 1e-12
+    is_bent = bends(rim, axes) > 1e-12
+    assert is_bent.mean() < 0.3
+    # A side that would lean too far stays as it was.
+    stays = (axes == rim.directions).all(axis=1)
+    assert stays[beside(rim.mesh)[is_bent]].all()
     assert bends(rim, rim.directions).max() > 1e-3
     assert leans(rim, axes).max() <= RIM_LEAN
     inside = np.isnan(rim.planes[:, 0])
