@@ -435,7 +435,9 @@ def test_beams_far_from_the_origin_keep_precise_meshes(tmp_path: Path) -> None:
     moved = Mesh(TORUS.mesh.vertices + shift, TORUS.mesh.faces)
     beams = make(SphereMesh.from_local(moved, TORUS.local_spheres))
     file = write_3dm(None, tmp_path / "far.3dm", beams=beams)
-    for item in on_layer(rhino3dm.File3dm.Read(str(file.path)), "Beams"):
+    items = on_layer(rhino3dm.File3dm.Read(str(file.path)), "Beams")
+    assert len(items) == beams.n_beams
+    for item in items:
         # Float32 would miss by 0.03.
         _check_render_mesh(item.Geometry, 1e-3)
 
