@@ -4,10 +4,10 @@ spheremesh turns a design surface into spherical panels that can be built.
 The node library is `spheremesh.nodes`; graphs of nodes are run by `Graph`.
 """
 
-from .kernel.mesh import Mesh
-from .kernel.sphere_mesh import SphereMesh
-from .nodes.graph import Graph
-from .nodes.sweep import each, sweep
+from .kernel.meshes.mesh import Mesh
+from .kernel.sphere_meshes.sphere_mesh import SphereMesh
+from .nodes.graphs.graph import Graph
+from .nodes.graphs.sweep import each, sweep
 
 __version__ = "0.1.0"
 __all__ = ["Graph", "Mesh", "SphereMesh", "__version__", "each", "sweep"]

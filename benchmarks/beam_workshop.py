@@ -28,15 +28,15 @@ from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
 
 from spheremesh import SphereMesh
-from spheremesh.fabrication.beam_audit import audit_beams
-from spheremesh.fabrication.rhino import write_3dm
-from spheremesh.fabrication.schedule import write_schedule
-from spheremesh.fabrication.step import write_step
-from spheremesh.kernel.beam_facts import beam_facts
-from spheremesh.kernel.beams import Beams
-from spheremesh.kernel.drilling import drill_beams
-from spheremesh.kernel.mesh import mean_edge_length
-from spheremesh.kernel.node_cylinders import node_cylinders
+from spheremesh.fabrication.audit.beams import audit_beams
+from spheremesh.fabrication.rhino.writer import write_3dm
+from spheremesh.fabrication.schedules.schedule import write_schedule
+from spheremesh.fabrication.step.writer import write_step
+from spheremesh.kernel.beams.beams import Beams
+from spheremesh.kernel.beams.drilling import drill_beams
+from spheremesh.kernel.beams.facts import beam_facts
+from spheremesh.kernel.beams.node_cylinders import node_cylinders
+from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.nodes import (
     annulus_support,
     beams,

@@ -25,10 +25,10 @@ from OCP.GProp import GProp_GProps
 from OCP.TopoDS import TopoDS_Shape
 
 from spheremesh import Mesh, SphereMesh
-from spheremesh.fabrication.beam_brep import beam_shapes
-from spheremesh.kernel.annuli import corner_mismatch
-from spheremesh.kernel.beams import beam_volumes
-from spheremesh.kernel.mesh import mean_edge_length
+from spheremesh.fabrication.solids.beam_shapes import beam_shapes
+from spheremesh.kernel.beams.beams import beam_volumes
+from spheremesh.kernel.meshes.mesh import mean_edge_length
+from spheremesh.kernel.support.annuli import corner_mismatch
 from spheremesh.nodes import (
     annulus_support,
     beams,

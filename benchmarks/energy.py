@@ -13,19 +13,23 @@ import time
 import numpy as np
 
 from spheremesh.kernel.arrays import FloatArray
-from spheremesh.kernel.energies.freedom import Freedom, moved, vertex_freedom
-from spheremesh.kernel.energies.minimize import (
+from spheremesh.kernel.optimization.energies.freedom import Freedom, moved, vertex_freedom
+from spheremesh.kernel.optimization.energies.minimize import (
     EnergyProblem,
     energy_problem,
     minimize_energy,
     weighted_entries,
     weighted_residuals,
 )
-from spheremesh.kernel.energies.setting import Unknowns, energy_setting, first_unknowns
-from spheremesh.kernel.energies.table import EnergyWeights
-from spheremesh.kernel.fit import fit_spheres
-from spheremesh.kernel.pencil import minimize_angles
+from spheremesh.kernel.optimization.energies.setting import (
+    Unknowns,
+    energy_setting,
+    first_unknowns,
+)
+from spheremesh.kernel.optimization.energies.table import EnergyWeights
+from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.solvers.blocks import jacobian_matrix
+from spheremesh.kernel.sphere_meshes.fit import fit_spheres
 from spheremesh.nodes import roof_mesh
 
 FULL = EnergyWeights(regularity=3.5, support=1.0)

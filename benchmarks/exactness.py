@@ -25,15 +25,15 @@ from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Shape
 
-from spheremesh.fabrication.brep import panel_shapes
-from spheremesh.fabrication.brep_audit import verify_breps
-from spheremesh.fabrication.brep_layout import read_brep_streams
-from spheremesh.fabrication.rhino import write_3dm
-from spheremesh.fabrication.step import write_step
+from spheremesh.fabrication.opennurbs.brep_audit import verify_breps
+from spheremesh.fabrication.opennurbs.brep_layout import read_brep_streams
+from spheremesh.fabrication.rhino.writer import write_3dm
+from spheremesh.fabrication.solids.panel_shapes import panel_shapes
+from spheremesh.fabrication.step.writer import write_step
 from spheremesh.fabrication.units import millimeters_per
-from spheremesh.kernel.arcs import patch_areas
 from spheremesh.kernel.arrays import FloatArray
-from spheremesh.kernel.panels import Panels, inner_panel_arcs, panel_areas, panel_volumes
+from spheremesh.kernel.panels.panels import Panels, inner_panel_arcs, panel_areas, panel_volumes
+from spheremesh.kernel.spheres.arcs import patch_areas
 from spheremesh.nodes import cluster_radii, fit_spheres, minimize_angles, panels, read_mesh
 
 

@@ -33,9 +33,10 @@ from pathlib import Path
 import rhino3dm
 
 from spheremesh import nodes
-from spheremesh.fabrication import rhino, step
+from spheremesh.fabrication.rhino import writer as rhino
+from spheremesh.fabrication.step import writer as step
 from spheremesh.interfaces.panel import PanelOptions, panel_graph, run_job
-from spheremesh.kernel.panels import Panels
+from spheremesh.kernel.panels.panels import Panels
 
 OLD = b"the older file"
 PROGRAM = """

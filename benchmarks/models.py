@@ -17,10 +17,10 @@ import numpy as np
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import dot, norm, unit
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.mesh import mean_edge_length
-from spheremesh.kernel.mobius import compose, inversion, rotation_about, similarity
-from spheremesh.kernel.mobius_maps import map_sphere_mesh, map_spheres
-from spheremesh.kernel.model_change import (
+from spheremesh.kernel.meshes.mesh import mean_edge_length
+from spheremesh.kernel.meshes.remeshing import even_share
+from spheremesh.kernel.sphere_meshes.mobius_maps import map_sphere_mesh, map_spheres
+from spheremesh.kernel.sphere_meshes.model_change import (
     SIGNS,
     Branch,
     Geometry,
@@ -29,10 +29,10 @@ from spheremesh.kernel.model_change import (
     model_spheres,
     sphere_bundle,
 )
-from spheremesh.kernel.remeshing import even_share
-from spheremesh.kernel.sphere_mesh import vertex_error
-from spheremesh.kernel.spheres import evaluate, minkowski, recenter
-from spheremesh.kernel.support_type import support_type
+from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
+from spheremesh.kernel.sphere_meshes.support_type import support_type
+from spheremesh.kernel.spheres.mobius import compose, inversion, rotation_about, similarity
+from spheremesh.kernel.spheres.rows import evaluate, minkowski, recenter
 from spheremesh.nodes import (
     enneper_mesh,
     fit_spheres,

@@ -5,11 +5,11 @@ from collections import defaultdict
 import numpy as np
 
 from spheremesh import SphereMesh
-from spheremesh.kernel.annuli import corner_mismatch
 from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
-from spheremesh.kernel.beams import Beams
-from spheremesh.kernel.mesh import mean_edge_length
-from spheremesh.kernel.support import support_structure
+from spheremesh.kernel.beams.beams import Beams
+from spheremesh.kernel.meshes.mesh import mean_edge_length
+from spheremesh.kernel.support.annuli import corner_mismatch
+from spheremesh.kernel.support.node_axes import support_structure
 
 MEETS = 1e-9
 """Annuli whose ends at a node lie this close, in mean edges, meet there."""

@@ -16,11 +16,11 @@ from scipy.interpolate import CubicSpline
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
-from spheremesh.kernel.congruence import sphere_congruence, touching_spheres
-from spheremesh.kernel.mesh import mean_edge_length
-from spheremesh.kernel.remesh.planarize import axis_angles, measure_nodes, planarize
-from spheremesh.kernel.remesh.relax import CongruenceQuality, relax_congruence
-from spheremesh.kernel.sphere_mesh import vertex_error
+from spheremesh.kernel.congruences.smooth import sphere_congruence, touching_spheres
+from spheremesh.kernel.meshes.mesh import mean_edge_length
+from spheremesh.kernel.remesh.field.relax import CongruenceQuality, relax_congruence
+from spheremesh.kernel.remesh.planar.planarize import axis_angles, measure_nodes, planarize
+from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
 
 Surface = Callable[[FloatArray, FloatArray], FloatArray]
 

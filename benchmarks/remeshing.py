@@ -16,17 +16,17 @@ from scipy.spatial import KDTree
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, IntArray, norm, unit
-from spheremesh.kernel.congruence import touching_spheres
-from spheremesh.kernel.cutting import cut_panels
-from spheremesh.kernel.mesh import mean_edge_length
-from spheremesh.kernel.remesh.conjugate import form_roots, split_form
-from spheremesh.kernel.remesh.directions import conjugate_directions
-from spheremesh.kernel.remesh.held_nets import planarize_held
+from spheremesh.kernel.congruences.smooth import touching_spheres
+from spheremesh.kernel.meshes.mesh import mean_edge_length
+from spheremesh.kernel.panels.cutting import cut_panels
+from spheremesh.kernel.panels.tessellation import tessellate
+from spheremesh.kernel.remesh.field.conjugate import form_roots, split_form
+from spheremesh.kernel.remesh.field.directions import conjugate_directions
 from spheremesh.kernel.remesh.pipeline import Remeshing, remesh
-from spheremesh.kernel.remesh.planarize import axis_angles, measure_nodes
-from spheremesh.kernel.sphere_mesh import vertex_error
-from spheremesh.kernel.tessellation import tessellate
-from spheremesh.kernel.triangulated import (
+from spheremesh.kernel.remesh.planar.held_nets import planarize_held
+from spheremesh.kernel.remesh.planar.planarize import axis_angles, measure_nodes
+from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
+from spheremesh.kernel.surfaces.triangulated import (
     SHAPES,
     SampleShape,
     grid_counts,

@@ -21,8 +21,8 @@ Figures = dict[str, float]
 
 def optimise(n_span: int, n_length: int) -> Figures:
     """Net, start and angle minimisation of a roof."""
-    from spheremesh.kernel.fit import fit_spheres
-    from spheremesh.kernel.pencil import minimize_angles
+    from spheremesh.kernel.optimization.pencil import minimize_angles
+    from spheremesh.kernel.sphere_meshes.fit import fit_spheres
     from spheremesh.nodes import roof_mesh
 
     minimize_angles(fit_spheres(roof_mesh(4, 4)))  # load scipy outside of the clock
@@ -42,8 +42,8 @@ def optimise(n_span: int, n_length: int) -> Figures:
 
 def write(kind: str) -> Figures:
     """One file of 5,000 panels."""
-    from spheremesh.fabrication.rhino import RhinoContents, write_3dm
-    from spheremesh.fabrication.step import write_step
+    from spheremesh.fabrication.rhino.writer import RhinoContents, write_3dm
+    from spheremesh.fabrication.step.writer import write_step
     from spheremesh.nodes import cluster_radii, fit_spheres, minimize_angles, panels, roof_mesh
 
     optimum = minimize_angles(fit_spheres(roof_mesh(50, 100)))

@@ -18,8 +18,8 @@ import numpy as np
 from remeshing import Surface, singular_surfaces
 
 from spheremesh import SphereMesh
-from spheremesh.kernel.congruence import touching_spheres
-from spheremesh.kernel.mesh import mean_edge_length
+from spheremesh.kernel.congruences.smooth import touching_spheres
+from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.nodes import annulus_support, beams, evolve_spheres, p4_remesh, panels
 
 PLANARITY, GAP, SHORTEST = 1e-6, 1e-3, 0.2

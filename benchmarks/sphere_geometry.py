@@ -9,8 +9,8 @@ import warnings
 import numpy as np
 
 from spheremesh import Mesh
-from spheremesh.kernel.mesh import mean_edge_length
-from spheremesh.kernel.pencil import minimize_angles
+from spheremesh.kernel.meshes.mesh import mean_edge_length
+from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.nodes import (
     apply_mobius,
     central_spheres,

@@ -29,26 +29,32 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from spheremesh import SphereMesh
-from spheremesh.fabrication.beam_brep import beam_shapes
-from spheremesh.fabrication.brep import panel_shapes
-from spheremesh.fabrication.part21 import check_part21
-from spheremesh.fabrication.step import write_step
+from spheremesh.fabrication.solids.beam_shapes import beam_shapes
+from spheremesh.fabrication.solids.panel_shapes import panel_shapes
+from spheremesh.fabrication.step.check import check_part21
+from spheremesh.fabrication.step.writer import write_step
 from spheremesh.interfaces.panel import PanelOptions, panel_graph
-from spheremesh.kernel.annulus_support import annulus_support
-from spheremesh.kernel.arcs import Arcs, arc_lengths, patch_areas, segment_areas, sphere_arcs
 from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
-from spheremesh.kernel.beam_cutting import cut_beams
-from spheremesh.kernel.beams import Beams, beam_volumes, cut_corners, insets_at
-from spheremesh.kernel.central import central_spheres
-from spheremesh.kernel.mesh import mean_edge_length
-from spheremesh.kernel.panels import (
+from spheremesh.kernel.beams.beams import Beams, beam_volumes, cut_corners, insets_at
+from spheremesh.kernel.beams.cutting import cut_beams
+from spheremesh.kernel.meshes.mesh import mean_edge_length
+from spheremesh.kernel.panels.panels import (
     Panels,
     inner_panel_arcs,
     panel_arcs,
     panel_areas,
     panel_volumes,
 )
-from spheremesh.kernel.spheres import center_radius
+from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.spheres.arcs import (
+    Arcs,
+    arc_lengths,
+    patch_areas,
+    segment_areas,
+    sphere_arcs,
+)
+from spheremesh.kernel.spheres.rows import center_radius
+from spheremesh.kernel.support.annulus_support import annulus_support
 from spheremesh.nodes import roof_mesh, torus_mesh, vase_mesh
 
 MILLIMETERS = 1000.0

@@ -12,8 +12,8 @@ import numpy as np
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import norm
-from spheremesh.kernel.mesh import mean_edge_length
-from spheremesh.kernel.sphere_mesh import vertex_error
+from spheremesh.kernel.meshes.mesh import mean_edge_length
+from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
 from spheremesh.nodes import (
     apply_mobius,
     beam_tilt,

@@ -17,16 +17,20 @@ from pathlib import Path
 
 from exactness import judge_step
 
-from spheremesh.fabrication.audit import audit_panels
-from spheremesh.fabrication.mould_drawings import write_mould_drawings
-from spheremesh.fabrication.part21 import check_part21
-from spheremesh.fabrication.render_meshes import MESH_TOLERANCE, mesh_streams, panel_meshes
-from spheremesh.fabrication.rhino import RhinoContents, write_3dm
-from spheremesh.fabrication.schedule import write_schedule
-from spheremesh.fabrication.step import write_step
-from spheremesh.kernel.congruent_panels import congruent_panels
-from spheremesh.kernel.mould_blanks import mould_blanks
-from spheremesh.kernel.panels import Panels
+from spheremesh.fabrication.audit.panels import audit_panels
+from spheremesh.fabrication.drawings.moulds import write_mould_drawings
+from spheremesh.fabrication.opennurbs.render_meshes import (
+    MESH_TOLERANCE,
+    mesh_streams,
+    panel_meshes,
+)
+from spheremesh.fabrication.rhino.writer import RhinoContents, write_3dm
+from spheremesh.fabrication.schedules.schedule import write_schedule
+from spheremesh.fabrication.step.check import check_part21
+from spheremesh.fabrication.step.writer import write_step
+from spheremesh.kernel.panels.congruent import congruent_panels
+from spheremesh.kernel.panels.mould_blanks import mould_blanks
+from spheremesh.kernel.panels.panels import Panels
 from spheremesh.nodes import (
     cluster_radii,
     fit_spheres,

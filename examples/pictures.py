@@ -13,7 +13,7 @@ import numpy as np
 from PIL import Image
 
 from spheremesh import Mesh, SphereMesh
-from spheremesh.kernel.circles import circle_pencils, face_circles, pencil_spheres
+from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.nodes import (
     apply_mobius,
     catenoid_mesh,

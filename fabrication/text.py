@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from ..kernel.arrays import FloatArray, IntArray
 from ..kernel.errors import InputError
-from ..kernel.mesh import Mesh
+from ..kernel.meshes.mesh import Mesh
 
 
 def decode(data: bytes) -> str:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..kernel.arrays import FloatArray, IntArray
-from ..kernel.mesh import Mesh, face_vector_areas, local_corners
+from ..kernel.meshes.mesh import Mesh, face_vector_areas, local_corners
 
 
 def fan_triangles(mesh: Mesh) -> tuple[IntArray, IntArray]:

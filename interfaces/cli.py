@@ -20,9 +20,9 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import click
 
 if TYPE_CHECKING:
-    from ..nodes.graph import Graph
-    from ..nodes.node import Node
-    from ..nodes.ports import Port
+    from ..nodes.graphs.graph import Graph
+    from ..nodes.graphs.node import Node
+    from ..nodes.graphs.ports import Port
     from .panel import Progress
 
 MISSING_LIBRARY: Final = 1
@@ -142,7 +142,7 @@ def run(  # numpydoc ignore=PR01
     from .panel import is_panel_job, run_job
 
     with _errors(), _progress() as progress:
-        from ..nodes.graph import Graph
+        from ..nodes.graphs.graph import Graph
 
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
@@ -185,7 +185,7 @@ def _run_targets(
 def nodes(name: str | None) -> None:  # numpydoc ignore=PR01
     """List the nodes, or explain one."""
     with _errors():
-        from ..nodes.node import REGISTRY, find_node, load_library
+        from ..nodes.graphs.node import REGISTRY, find_node, load_library
 
         if name is not None:
             _print_node(find_node(name))
@@ -203,7 +203,7 @@ def nodes(name: str | None) -> None:  # numpydoc ignore=PR01
 def graph(graph_file: Path) -> None:  # numpydoc ignore=PR01
     """Print a graph as a Mermaid flowchart."""
     with _errors():
-        from ..nodes.graph import Graph
+        from ..nodes.graphs.graph import Graph
 
         click.echo(Graph.load(graph_file).mermaid())
 
@@ -212,7 +212,7 @@ def graph(graph_file: Path) -> None:  # numpydoc ignore=PR01
 def _errors() -> Generator[None]:
     """Turn the library's errors into one line and an exit code."""
     from ..kernel.errors import ConvergenceError, MissingLibraryError, SpheremeshError
-    from ..nodes.errors import GraphError, NodeError
+    from ..nodes.graphs.errors import GraphError, NodeError
 
     try:
         # Warnings of nodes are part of the report; they are printed with it.
@@ -328,7 +328,7 @@ def _print_node(node: "Node") -> None:
 
 def _port_facts(port: "Port") -> str:
     """Type, unit, range and default of a port, in one line."""
-    from ..nodes.ports import REQUIRED, type_name
+    from ..nodes.graphs.ports import REQUIRED, type_name
 
     facts = [f"{type_name(port.type)} in {port.unit}" if port.unit else type_name(port.type)]
     if port.min is not None:

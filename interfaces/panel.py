@@ -11,8 +11,8 @@ from typing import Any, Literal
 from .. import __version__
 from ..fabrication.files import replacing_all
 from ..kernel.errors import ConvergenceError, InputError
-from ..nodes.graph import Graph
-from ..nodes.wires import Step, Wire
+from ..nodes.graphs.graph import Graph
+from ..nodes.graphs.wires import Step, Wire
 
 Progress = Callable[[str, str], None]
 

@@ -5,86 +5,16 @@ from typing import Any
 
 import numpy as np
 
-from .arcs import arc_points
-from .arrays import BoolArray, FloatArray, IntArray, dot, norm
-from .circles import face_circles
-from .cutting import cutting_planes, edge_arcs, flatten_nearly_plane
+from .arrays import BoolArray, FloatArray, IntArray
 from .errors import InputError
-from .fit import face_planes, fit_spheres
-from .mesh import Mesh, face_centroids, face_normals, local_corners
-from .pencil import pencil_angles
-from .sphere_mesh import SphereMesh, intersection_angles
-from .spheres import project
-
-
-def planarity(mesh: Mesh) -> FloatArray:
-    """
-    How far the corners of each face lie off its plane.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        The mesh.
-
-    Returns
-    -------
-    (F,) float array
-        Largest distance of a corner from the plane through the centroid across the vector
-        area, in model units; zero for triangles.
-    """
-    faces = mesh.topology.corner_faces
-    heights = np.abs(dot(local_corners(mesh), face_normals(mesh)[faces]))
-    return np.maximum.reduceat(heights, mesh.offsets[:-1])
-
-
-def circularity(mesh: Mesh) -> FloatArray:
-    """
-    How far the corners of each face lie off its best-fit circle.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        The mesh.
-
-    Returns
-    -------
-    (F,) float array
-        Largest distance of a corner from the circle, in model units; zero for triangles.
-
-    Raises
-    ------
-    InputError
-        If a face has no area.
-    """
-    return face_circles(mesh)[1]
-
-
-def beam_tilt(sphere_mesh: SphereMesh) -> FloatArray:
-    """
-    Angle between the plane in which two spheres meet and the plane that bisects them.
-
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
-        The sphere mesh.
-
-    Returns
-    -------
-    (E,) float array
-        Radians over the interior edges, from 0 (upright) to π/2 (tangential). Where spheres
-        share no circle, because they are the same or one is a plane, the beam is upright.
-
-    References
-    ----------
-    Meshes with Spherical Faces, Fig. 26 and 28.
-    """
-    flat = flatten_nearly_plane(sphere_mesh)
-    upright, _ = cutting_planes(flat, "bisector")
-    circle, _ = cutting_planes(flat, "intersection")
-    first = sphere_mesh.mesh.topology.edge_corners
-    n, m = upright[first], circle[first]
-    angles = 2 * np.arctan2(norm(n - m), norm(n + m))
-    return np.minimum(angles, np.pi - angles)
+from .meshes.mesh import Mesh, face_centroids
+from .optimization.pencil import pencil_angles
+from .panels.cutting import edge_arcs
+from .sphere_meshes.fit import face_planes, fit_spheres
+from .sphere_meshes.sphere_mesh import SphereMesh, intersection_angles
+from .spheres.arcs import arc_points
+from .spheres.circles import face_circles
+from .spheres.rows import project
 
 
 def angle_summary(sphere_mesh: SphereMesh) -> dict[str, float]:

@@ -7,11 +7,11 @@ All nodes of the library can be imported from here by name or with ``*``.
 from collections.abc import Callable
 from typing import Any
 
-from .errors import GraphError, NodeError
-from .graph import Graph
-from .node import REGISTRY, Node, NodeWarning, find_node, load_library, node, warn
-from .ports import Port, ReadPath, Units, WritePath
-from .sweep import each, sweep
+from .graphs.errors import GraphError, NodeError
+from .graphs.graph import Graph
+from .graphs.node import REGISTRY, Node, NodeWarning, find_node, load_library, node, warn
+from .graphs.ports import Port, ReadPath, Units, WritePath
+from .graphs.sweep import each, sweep
 
 __all__ = [
     "Graph",

@@ -13,10 +13,10 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from ..kernel.arrays import FloatArray, IntArray, dot, sum_by, unit
-from ..kernel.colors import mould_color
 from ..kernel.errors import InputError
-from ..kernel.panels import Panels
-from ..kernel.tessellation import tessellate
+from ..kernel.panels.panels import Panels
+from ..kernel.panels.tessellation import tessellate
+from ..kernel.parts.colors import mould_color
 from .camera import Camera, frame_scene, pixel_rays, project_points
 from .light import (
     SUN_PIXELS,

@@ -6,9 +6,9 @@ import numpy as np
 
 from ..kernel.arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..kernel.errors import InputError
-from ..kernel.panels import Panels
-from ..kernel.spheres import evaluate, normals
-from ..kernel.tessellation import PanelTriangles, surface_rows, tessellate
+from ..kernel.panels.panels import Panels
+from ..kernel.panels.tessellation import PanelTriangles, surface_rows, tessellate
+from ..kernel.spheres.rows import evaluate, normals
 from .camera import Camera, pixel_rays
 
 JOINT_WIDTH = 0.01

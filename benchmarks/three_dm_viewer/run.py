@@ -27,9 +27,9 @@ from typing import Any
 import numpy as np
 
 from spheremesh import nodes
-from spheremesh.fabrication.rhino import RhinoContents, RhinoFile, write_3dm
-from spheremesh.kernel.mesh import Mesh
-from spheremesh.kernel.panels import select_panels
+from spheremesh.fabrication.rhino.writer import RhinoContents, RhinoFile, write_3dm
+from spheremesh.kernel.meshes.mesh import Mesh
+from spheremesh.kernel.panels.panels import select_panels
 
 HERE = Path(__file__).parent
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")

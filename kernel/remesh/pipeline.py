@@ -5,22 +5,22 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import FloatArray, IntArray, norm
+from ..arrays import FloatArray, IntArray
 from ..errors import InputError, name_ids
-from ..mesh import Mesh, face_centroids
-from ..sphere_mesh import SphereMesh
-from ..spheres import minkowski, recenter, rescale
-from .congruence_mesh import CongruenceMesh, congruence_mesh
-from .conjugate import conjugate_field, form_roots
-from .directions import axis_angles, umbilic_share
-from .extraction import extract_net
-from .field_smoothing import orient_forms, smooth_forms
-from .frames import comb_frames, vertex_fans
-from .jets import fit_jets
-from .net_mesh import NetMesh, net_mesh
-from .parametrization import parametrize
-from .seams import find_seams
-from .smooth_surface import SmoothSurface, nearest_triangles
+from ..meshes.mesh import Mesh, face_centroids, shortest_edge
+from ..sphere_meshes.sphere_mesh import SphereMesh
+from ..spheres.rows import minkowski, recenter, rescale
+from .field.congruence_mesh import CongruenceMesh, congruence_mesh
+from .field.conjugate import conjugate_field, form_roots
+from .field.directions import axis_angles, umbilic_share
+from .field.frames import comb_frames, vertex_fans
+from .field.jets import fit_jets
+from .field.smooth_surface import SmoothSurface, nearest_triangles
+from .field.smoothing import orient_forms, smooth_forms
+from .map.parametrization import parametrize
+from .map.seams import find_seams
+from .net.extraction import extract_net
+from .net.net_mesh import NetMesh, net_mesh
 
 LEAST_CELLS = 4
 """A surface with room for fewer faces is smaller than the edge length."""
@@ -199,24 +199,6 @@ def _boundary_count(mesh: Mesh) -> int:
     graph = csr_array((np.ones(len(outer)), ends), shape=shape)
     # Every vertex elsewhere is a component of its own.
     return connected_components(graph, directed=False)[0] - (mesh.n_vertices - len(outer))
-
-
-def shortest_edge(mesh: Mesh) -> float:
-    """
-    Length of the shortest edge.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        The mesh.
-
-    Returns
-    -------
-    float
-        In the units of the mesh.
-    """
-    ends = mesh.vertices[mesh.corners[mesh.topology.next_corners]]
-    return float(norm(ends - mesh.vertices[mesh.corners]).min())
 
 
 def _too_large(edge_length: float) -> InputError:

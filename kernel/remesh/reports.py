@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray, dot
-from ..mesh import Mesh, face_vector_areas, mean_edge_length
-from ..sphere_mesh import SphereMesh, vertex_error
-from .pipeline import Remeshing, shortest_edge
-from .planarize import Nodes, Planarization, axis_angles, measure_nodes
+from ..meshes.mesh import Mesh, face_vector_areas, mean_edge_length, shortest_edge
+from ..sphere_meshes.sphere_mesh import SphereMesh, vertex_error
+from .pipeline import Remeshing
+from .planar.planarize import Nodes, Planarization, axis_angles, measure_nodes
 
 
 def remeshing_report(done: Remeshing, mesh: Mesh, edge_length: float) -> dict[str, Any]:

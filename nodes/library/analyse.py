@@ -5,15 +5,18 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 
-from ...kernel import analysis, cutting
-from ...kernel import sphere_mesh as measures
-from ...kernel.arcs import Arcs
+from ...kernel import analysis
 from ...kernel.arrays import BoolArray, FloatArray
-from ...kernel.fit import face_planes
-from ...kernel.mesh import Mesh
-from ...kernel.sphere_mesh import SphereMesh
-from ..node import node
-from ..ports import Port
+from ...kernel.meshes.mesh import Mesh
+from ...kernel.panels import cutting
+from ...kernel.sphere_meshes import planarity as flatness
+from ...kernel.sphere_meshes import sphere_mesh as measures
+from ...kernel.sphere_meshes.fit import face_planes
+from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
+from ...kernel.spheres.arcs import Arcs
+from ...kernel.support import beam_tilt as tilt
+from ..graphs.node import node
+from ..graphs.ports import Port
 
 
 @node
@@ -72,7 +75,7 @@ def planarity(sphere_mesh: SphereMesh | Mesh) -> FloatArray:
     (F,) float array
         Largest distance of a corner of each face, in model units.
     """
-    return analysis.planarity(_mesh(sphere_mesh))
+    return flatness.planarity(_mesh(sphere_mesh))
 
 
 @node
@@ -90,7 +93,7 @@ def circularity(sphere_mesh: SphereMesh | Mesh) -> FloatArray:
     (F,) float array
         Largest distance of a corner of each face, in model units.
     """
-    return analysis.circularity(_mesh(sphere_mesh))
+    return flatness.circularity(_mesh(sphere_mesh))
 
 
 @node
@@ -108,7 +111,7 @@ def beam_tilt(sphere_mesh: SphereMesh) -> FloatArray:
     (E,) float array
         Degrees over the interior edges: 0 upright, 90 tangential to the surface.
     """
-    return np.degrees(analysis.beam_tilt(sphere_mesh))
+    return np.degrees(tilt.beam_tilt(sphere_mesh))
 
 
 @node

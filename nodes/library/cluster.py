@@ -5,13 +5,13 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from ...kernel import clustering
 from ...kernel.analysis import angle_summary
 from ...kernel.arrays import FloatArray, IntArray
-from ...kernel.sphere_mesh import SphereMesh
+from ...kernel.optimization import clustering
+from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.tolerances import COMMON_VERTEX
-from ..node import node, warn
-from ..ports import Port
+from ..graphs.node import node, warn
+from ..graphs.ports import Port
 
 
 class Clusters(NamedTuple):

@@ -4,11 +4,12 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from ...kernel import congruence, envelopes
 from ...kernel.arrays import BoolArray, FloatArray
-from ...kernel.mesh import Mesh, mean_edge_length
+from ...kernel.congruences import envelopes
+from ...kernel.congruences import smooth as congruence
+from ...kernel.meshes.mesh import Mesh, mean_edge_length
 from ...kernel.tolerances import VERTEX_MISS
-from ..node import node, warn
+from ..graphs.node import node, warn
 
 
 class Envelope(NamedTuple):

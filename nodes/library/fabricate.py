@@ -3,19 +3,23 @@
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, NamedTuple
 
-from ...fabrication import dxf, mould_drawings, rhino, schedule, step
+from ...fabrication.drawings import beams as dxf
+from ...fabrication.drawings import moulds as mould_drawings
 from ...fabrication.files import check_suffix, replacing
-from ...kernel import cutting
+from ...fabrication.rhino import writer as rhino
+from ...fabrication.schedules import schedule
+from ...fabrication.step import writer as step
 from ...kernel.arrays import IntArray
-from ...kernel.beams import Beams
+from ...kernel.beams.beams import Beams
 from ...kernel.errors import name_ids
-from ...kernel.findings import rejected_report
-from ...kernel.mesh import Mesh
-from ...kernel.panels import Panels
-from ...kernel.sphere_mesh import SphereMesh
+from ...kernel.meshes.mesh import Mesh
+from ...kernel.panels import cutting
+from ...kernel.panels.panels import Panels
+from ...kernel.parts.findings import rejected_report
+from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...viewer.render import render_image
-from ..node import node, running_graph, warn
-from ..ports import Port, Units, WritePath
+from ..graphs.node import node, running_graph, warn
+from ..graphs.ports import Port, Units, WritePath
 
 Length = Annotated[float, Port(min=0)]
 

@@ -4,13 +4,14 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from ...fabrication import mesh_files
-from ...kernel import surfaces, triangulated
+from ...fabrication.mesh_files import formats as mesh_files
 from ...kernel.arrays import FloatArray
-from ...kernel.mesh import Mesh
-from ...kernel.sphere_mesh import SphereMesh
-from ..node import node
-from ..ports import Port, ReadPath, WritePath
+from ...kernel.meshes.mesh import Mesh
+from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
+from ...kernel.surfaces import circular_nets as surfaces
+from ...kernel.surfaces import triangulated
+from ..graphs.node import node
+from ..graphs.ports import Port, ReadPath, WritePath
 
 Count = Annotated[int, Port(min=1, max=2000)]
 Length = Annotated[float, Port(min=0)]

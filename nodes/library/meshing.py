@@ -4,11 +4,11 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from ...kernel import remeshing, subdivision, triangulation
-from ...kernel.mesh import Mesh
+from ...kernel.meshes import remeshing, subdivision, triangulation
+from ...kernel.meshes.mesh import Mesh
 from ...kernel.tolerances import MOSTLY_EVEN
-from ..node import node, warn
-from ..ports import Port
+from ..graphs.node import node, warn
+from ..graphs.ports import Port
 
 SCHEMES = {
     "loop": subdivision.subdivide_loop,

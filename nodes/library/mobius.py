@@ -4,13 +4,14 @@ from typing import Annotated, TypeVar
 
 import numpy as np
 
-from ...kernel import mobius, mobius_maps
 from ...kernel.arrays import FloatArray
 from ...kernel.errors import InputError, name_ids
-from ...kernel.mesh import Mesh
-from ...kernel.sphere_mesh import SphereMesh
-from ..node import node
-from ..ports import Port
+from ...kernel.meshes.mesh import Mesh
+from ...kernel.sphere_meshes import mobius_maps
+from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
+from ...kernel.spheres import mobius
+from ..graphs.node import node
+from ..graphs.ports import Port
 
 Geometry = TypeVar("Geometry", SphereMesh, Mesh, FloatArray)
 

@@ -4,13 +4,13 @@ from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
-from ...kernel import model_change as models
-from ...kernel import support_type as support
 from ...kernel.arrays import FloatArray
-from ...kernel.mesh import Mesh
-from ...kernel.sphere_mesh import SphereMesh
-from ..node import node
-from ..ports import Port
+from ...kernel.meshes.mesh import Mesh
+from ...kernel.sphere_meshes import model_change as models
+from ...kernel.sphere_meshes import support_type as support
+from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
+from ..graphs.node import node
+from ..graphs.ports import Port
 
 Length = Annotated[float, Port(min=0)]
 

@@ -5,17 +5,19 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 
-from ...kernel import optimization, pencil, strips
-from ...kernel.analysis import angle_summary, circularity
+from ...kernel.analysis import angle_summary
 from ...kernel.arrays import FloatArray
-from ...kernel.energies.table import EnergyWeights
 from ...kernel.errors import ConvergenceError, InputError, name_ids
-from ...kernel.fit import face_planes
-from ...kernel.mesh import Mesh, mean_edge_length
-from ...kernel.sphere_mesh import SphereMesh, vertex_error
+from ...kernel.meshes.mesh import Mesh, mean_edge_length
+from ...kernel.optimization import pencil, strips
+from ...kernel.optimization import whole_energy as optimization
+from ...kernel.optimization.energies.table import EnergyWeights
+from ...kernel.sphere_meshes.fit import face_planes
+from ...kernel.sphere_meshes.planarity import circularity
+from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ...kernel.tolerances import CIRCULAR, LITTLE_GAIN, VERTEX_MISS
-from ..node import node, warn
-from ..ports import Port
+from ..graphs.node import node, warn
+from ..graphs.ports import Port
 
 Weight = Annotated[float, Port(min=0)]
 

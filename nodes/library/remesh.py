@@ -8,17 +8,18 @@ import numpy as np
 from ...kernel.analysis import deviation
 from ...kernel.arrays import BoolArray, FloatArray, IntArray
 from ...kernel.errors import ConvergenceError, name_ids
-from ...kernel.mesh import Mesh, mean_edge_length
-from ...kernel.remesh import directions, pipeline, relax, reports
-from ...kernel.remesh.held_nets import SHORT_EDGE, planarize_held
-from ...kernel.remesh.node_sites import node_distances
-from ...kernel.remesh.planarize import Planarization, measure_nodes, planarize
-from ...kernel.remesh.relax import CongruenceQuality
-from ...kernel.remesh.smooth_surface import SmoothSurface
-from ...kernel.sphere_mesh import SphereMesh
+from ...kernel.meshes.mesh import Mesh, mean_edge_length
+from ...kernel.remesh import pipeline, reports
+from ...kernel.remesh.field import directions, relax
+from ...kernel.remesh.field.relax import CongruenceQuality
+from ...kernel.remesh.field.smooth_surface import SmoothSurface
+from ...kernel.remesh.planar.held_nets import SHORT_EDGE, planarize_held
+from ...kernel.remesh.planar.node_sites import node_distances
+from ...kernel.remesh.planar.planarize import Planarization, measure_nodes, planarize
+from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.tolerances import NODE_ON_SPHERES, TORSION_FREE
-from ..node import node, warn
-from ..ports import Port
+from ..graphs.node import node, warn
+from ..graphs.ports import Port
 
 COMPLEX_SHARE = 0.05
 """A share of the area with complex directions, or none, that is worth a warning."""

@@ -6,16 +6,18 @@ from typing import Annotated, Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...kernel import congruence, evolution, face_shapes, shex
-from ...kernel import shifted_rows as grids
 from ...kernel.arrays import FloatArray
+from ...kernel.congruences import smooth as congruence
 from ...kernel.errors import name_ids
-from ...kernel.mesh import Mesh, mean_edge_length
-from ...kernel.sphere_mesh import SphereMesh
-from ...kernel.sphere_mesh import vertex_error as vertex_errors
+from ...kernel.hexagons import dual_meshes as shex
+from ...kernel.hexagons import evolution, face_shapes
+from ...kernel.hexagons import shifted_rows as grids
+from ...kernel.meshes.mesh import Mesh, mean_edge_length
+from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
+from ...kernel.sphere_meshes.sphere_mesh import vertex_error as vertex_errors
 from ...kernel.tolerances import AXIS_SLACK
-from ..node import node, warn
-from ..ports import Port
+from ..graphs.node import node, warn
+from ..graphs.ports import Port
 
 
 class EvolvedSpheres(NamedTuple):

@@ -2,11 +2,11 @@
 
 from typing import Annotated, NamedTuple
 
-from ...kernel import central, fit
-from ...kernel.mesh import Mesh
-from ...kernel.sphere_mesh import SphereMesh
-from ..node import node
-from ..ports import Port
+from ...kernel.meshes.mesh import Mesh
+from ...kernel.sphere_meshes import central, fit
+from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
+from ..graphs.node import node
+from ..graphs.ports import Port
 
 
 class PrincipalSpheres(NamedTuple):

@@ -5,20 +5,21 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from ...kernel import annulus_support as annulus
-from ...kernel import beam_cutting, support
-from ...kernel.annuli import Annuli, corner_mismatch, mean_end_depth
 from ...kernel.arrays import BoolArray, FloatArray
-from ...kernel.beam_checks import RejectedBeam
-from ...kernel.beams import Beams, beam_lengths, beam_volumes
-from ...kernel.drilling import drill_beams
+from ...kernel.beams import cutting as beam_cutting
+from ...kernel.beams.beams import Beams, beam_lengths, beam_volumes
+from ...kernel.beams.drilling import drill_beams
 from ...kernel.errors import InputError, name_ids
-from ...kernel.findings import findings_report, rejected_report
-from ...kernel.mesh import mean_edge_length
-from ...kernel.remesh.held_nets import planarize_near
-from ...kernel.sphere_mesh import SphereMesh
-from ..node import node, warn
-from ..ports import Port
+from ...kernel.meshes.mesh import mean_edge_length
+from ...kernel.parts.findings import findings_report, rejected_report
+from ...kernel.remesh.planar.held_nets import planarize_near
+from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
+from ...kernel.support import annulus_support as annulus
+from ...kernel.support import node_axes as support
+from ...kernel.support.annuli import Annuli, corner_mismatch, mean_end_depth
+from ...kernel.support.annulus_checks import RejectedBeam
+from ..graphs.node import node, warn
+from ..graphs.ports import Port
 
 
 class LandedNodes(NamedTuple):

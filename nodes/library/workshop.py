@@ -5,20 +5,20 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from ...fabrication import audit as panel_audit
-from ...fabrication import beam_audit
-from ...kernel import congruent_panels as congruent
-from ...kernel import mould_blanks as blanks
+from ...fabrication.audit import beams as beam_audit
+from ...fabrication.audit import panels as panel_audit
 from ...kernel.analysis import angle_summary
 from ...kernel.arrays import IntArray
-from ...kernel.beams import Beams
-from ...kernel.findings import Finding, findings_report, refusals
-from ...kernel.mesh import mean_edge_length
-from ...kernel.panels import Panels
-from ...kernel.sphere_mesh import SphereMesh, vertex_error
+from ...kernel.beams.beams import Beams
+from ...kernel.meshes.mesh import mean_edge_length
+from ...kernel.panels import congruent
+from ...kernel.panels import mould_blanks as blanks
+from ...kernel.panels.panels import Panels
+from ...kernel.parts.findings import Finding, findings_report, refusals
+from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ...kernel.tolerances import SAME_PANEL
-from ..node import node, warn
-from ..ports import Port, Units
+from ..graphs.node import node, warn
+from ..graphs.ports import Port, Units
 
 Length = Annotated[float, Port(min=0)]
 Millimeters = Annotated[float, Port(unit="mm", min=0)]

@@ -12,27 +12,27 @@ import rhino3dm
 from OCP.BRepCheck import BRepCheck_Analyzer
 
 from spheremesh import Mesh, SphereMesh
-from spheremesh.fabrication.audit import audit_panels
-from spheremesh.fabrication.brep import panel_shapes
-from spheremesh.fabrication.dxf import write_dxf
-from spheremesh.fabrication.mould_drawings import write_mould_drawings
-from spheremesh.fabrication.part21 import check_part21
-from spheremesh.fabrication.rhino import RhinoContents, write_3dm
-from spheremesh.fabrication.schedule import schedule_rows, write_schedule
-from spheremesh.fabrication.step import write_step
-from spheremesh.kernel.annulus_support import annulus_support
+from spheremesh.fabrication.audit.panels import audit_panels
+from spheremesh.fabrication.drawings.beams import write_dxf
+from spheremesh.fabrication.drawings.moulds import write_mould_drawings
+from spheremesh.fabrication.rhino.writer import RhinoContents, write_3dm
+from spheremesh.fabrication.schedules.schedule import schedule_rows, write_schedule
+from spheremesh.fabrication.solids.panel_shapes import panel_shapes
+from spheremesh.fabrication.step.check import check_part21
+from spheremesh.fabrication.step.writer import write_step
 from spheremesh.kernel.arrays import FloatArray, norm
-from spheremesh.kernel.beam_cutting import cut_beams
-from spheremesh.kernel.beams import select_beams
-from spheremesh.kernel.central import central_spheres
-from spheremesh.kernel.circles import circle_pencils, face_circles, pencil_spheres
-from spheremesh.kernel.clustering import cluster_radii
-from spheremesh.kernel.cutting import cut_panels
+from spheremesh.kernel.beams.beams import select_beams
+from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.fit import face_planes, fit_spheres
-from spheremesh.kernel.panels import Panels, select_panels
-from spheremesh.kernel.pencil import minimize_angles
-from spheremesh.kernel.surfaces import roof_net, torus_net
+from spheremesh.kernel.optimization.clustering import cluster_radii
+from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.panels.cutting import cut_panels
+from spheremesh.kernel.panels.panels import Panels, select_panels
+from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
+from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
+from spheremesh.kernel.support.annulus_support import annulus_support
+from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
 
 Writer = Callable[[Panels, Path], Path]
 

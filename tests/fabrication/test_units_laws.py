@@ -11,28 +11,28 @@ import pytest
 import rhino3dm
 
 from spheremesh import Mesh, SphereMesh
-from spheremesh.fabrication.dxf import write_dxf
-from spheremesh.fabrication.mould_drawings import write_mould_drawings
-from spheremesh.fabrication.rhino import RhinoContents, write_3dm
-from spheremesh.fabrication.schedule import mould_rows, schedule_rows
-from spheremesh.fabrication.step import write_step
+from spheremesh.fabrication.drawings.beams import write_dxf
+from spheremesh.fabrication.drawings.moulds import write_mould_drawings
+from spheremesh.fabrication.rhino.writer import RhinoContents, write_3dm
+from spheremesh.fabrication.schedules.schedule import mould_rows, schedule_rows
+from spheremesh.fabrication.step.writer import write_step
 from spheremesh.fabrication.units import millimeters_per
-from spheremesh.kernel.annulus_support import annulus_support
 from spheremesh.kernel.arrays import FloatArray
-from spheremesh.kernel.beam_cutting import cut_beams
-from spheremesh.kernel.beams import Beams
-from spheremesh.kernel.central import central_spheres
-from spheremesh.kernel.clustering import cluster_radii
-from spheremesh.kernel.cutting import cut_panels
-from spheremesh.kernel.energies.table import EnergyWeights
-from spheremesh.kernel.fit import fit_spheres
-from spheremesh.kernel.mesh import mean_edge_length
-from spheremesh.kernel.optimization import Conditions, optimize_spheres
-from spheremesh.kernel.panels import Panels
-from spheremesh.kernel.pencil import minimize_angles
-from spheremesh.kernel.remesh.held_nets import planarize_near
-from spheremesh.kernel.spheres import rescale
-from spheremesh.kernel.surfaces import roof_net
+from spheremesh.kernel.beams.beams import Beams
+from spheremesh.kernel.beams.cutting import cut_beams
+from spheremesh.kernel.meshes.mesh import mean_edge_length
+from spheremesh.kernel.optimization.clustering import cluster_radii
+from spheremesh.kernel.optimization.energies.table import EnergyWeights
+from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.whole_energy import Conditions, optimize_spheres
+from spheremesh.kernel.panels.cutting import cut_panels
+from spheremesh.kernel.panels.panels import Panels
+from spheremesh.kernel.remesh.planar.held_nets import planarize_near
+from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.fit import fit_spheres
+from spheremesh.kernel.spheres.rows import rescale
+from spheremesh.kernel.support.annulus_support import annulus_support
+from spheremesh.kernel.surfaces.circular_nets import roof_net
 
 PRECISION = 1e-9
 """Of the largest number in a file."""

@@ -9,12 +9,12 @@ import pytest
 from click.testing import CliRunner, Result
 
 import spheremesh as sm
-from spheremesh.fabrication.mesh_files import write_mesh
+from spheremesh.fabrication.mesh_files.formats import write_mesh
 from spheremesh.interfaces.cli import main
 from spheremesh.interfaces.panel import PanelOptions, panel_graph
-from spheremesh.kernel.mesh import Mesh
-from spheremesh.kernel.panel_facts import panel_radii
-from spheremesh.kernel.surfaces import vase_net
+from spheremesh.kernel.meshes.mesh import Mesh
+from spheremesh.kernel.panels.facts import panel_radii
+from spheremesh.kernel.surfaces.circular_nets import vase_net
 
 FILES = {
     "panels.step", "model.3dm", "schedule.csv", "schedule.json", "moulds.dxf", "moulds.svg",

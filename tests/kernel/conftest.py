@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from spheremesh import Mesh
 from spheremesh.kernel.arrays import FloatArray, IntArray
-from spheremesh.kernel.surfaces import (
+from spheremesh.kernel.surfaces.circular_nets import (
     catenoid_net,
     ellipsoid_net,
     enneper_net,

@@ -6,23 +6,22 @@ import pytest
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.analysis import (
     angle_histogram,
-    beam_tilt,
-    circularity,
     deviation,
-    planarity,
     spiky_faces,
 )
-from spheremesh.kernel.arcs import arc_points
 from spheremesh.kernel.arrays import norm
-from spheremesh.kernel.circles import circle_pencils, face_circles, pencil_spheres
-from spheremesh.kernel.cutting import edge_arcs, edge_gaps
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.fit import face_planes, fit_spheres
-from spheremesh.kernel.mesh import face_normals, mean_edge_length
-from spheremesh.kernel.pencil import minimize_angles, pencil_angles
-from spheremesh.kernel.sphere_mesh import intersection_angles
-from spheremesh.kernel.spheres import signed_distance
-from spheremesh.kernel.surfaces import ellipsoid_net, torus_net, vase_net
+from spheremesh.kernel.meshes.mesh import face_normals, mean_edge_length
+from spheremesh.kernel.optimization.pencil import minimize_angles, pencil_angles
+from spheremesh.kernel.panels.cutting import edge_arcs, edge_gaps
+from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
+from spheremesh.kernel.sphere_meshes.planarity import circularity, planarity
+from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles
+from spheremesh.kernel.spheres.arcs import arc_points
+from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
+from spheremesh.kernel.spheres.rows import signed_distance
+from spheremesh.kernel.support.beam_tilt import beam_tilt
+from spheremesh.kernel.surfaces.circular_nets import ellipsoid_net, torus_net, vase_net
 
 
 def optimum(mesh: Mesh) -> SphereMesh:

@@ -3,15 +3,15 @@ import pytest
 from numpy.testing import assert_allclose
 
 from spheremesh.kernel.arrays import norm
-from spheremesh.kernel.colors import UNLABELLED, mould_color
-from spheremesh.kernel.cutting import cut_panels
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.fit import face_planes, fit_spheres
-from spheremesh.kernel.mesh import Mesh
-from spheremesh.kernel.panels import Panels, select_panels
-from spheremesh.kernel.sphere_mesh import SphereMesh
-from spheremesh.kernel.spheres import from_center_radius, normalize
-from spheremesh.kernel.surfaces import ellipsoid_net, roof_net, torus_net
+from spheremesh.kernel.meshes.mesh import Mesh
+from spheremesh.kernel.panels.cutting import cut_panels
+from spheremesh.kernel.panels.panels import Panels, select_panels
+from spheremesh.kernel.parts.colors import UNLABELLED, mould_color
+from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
+from spheremesh.kernel.sphere_meshes.sphere_mesh import SphereMesh
+from spheremesh.kernel.spheres.rows import from_center_radius, normalize
+from spheremesh.kernel.surfaces.circular_nets import ellipsoid_net, roof_net, torus_net
 from spheremesh.viewer.camera import frame_scene, pixel_rays, project_points
 from spheremesh.viewer.raster import rasterize
 from spheremesh.viewer.render import compare_image, render_image

@@ -1,0 +1,284 @@
+"""
+Cutting drawings of beams as DXF: exact contours, nested on sheets, in millimetres.
+
+Layers: ``CUT`` has a closed polyline with exact arcs for every beam, ``ENGRAVE`` its id, the
+names of its nodes and the bevels of its ends, ``DRILL`` circles where it is drilled, ``SHEET``
+the outlines of the sheets.
+"""
+
+import io
+import math
+import os
+from collections.abc import Generator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Final, NamedTuple, TypeAlias
+from unicodedata import east_asian_width
+
+import numpy as np
+
+from ...kernel.arrays import FloatArray, norm
+from ...kernel.beams.beams import Beams, DrillMarks, scale_beams
+from ...kernel.beams.checks import check_writable_beams
+from ...kernel.beams.contours import Contours, beam_contours, contour_boxes, shelves
+from ...kernel.beams.drilling import mark_centers
+from ...kernel.errors import InputError, MissingLibraryError
+from ...kernel.support.node_axes import node_name
+from ..files import check_suffix, replacing
+from ..units import millimeters_per
+
+# What comes from ezdxf is partly untyped.
+_Untyped: TypeAlias = Any
+
+LAYERS: Final = {"CUT": 1, "ENGRAVE": 3, "DRILL": 5, "SHEET": 8}
+"""Layers of a drawing and their colours, by AutoCAD's index."""
+
+SHEET: Final = (3000.0, 1500.0)
+"""Width and height of a usual sheet, in millimetres."""
+
+_MILLIMETERS = 4
+"""Code of the unit in a DXF file."""
+
+_LABEL = 25.0
+"""Largest height of a label, in millimetres."""
+
+_LABEL_SHARE = 0.35
+_LETTER = 0.9
+"""Labels are at most this share of the width of their beam; letters are this wide, and twice
+as wide in the scripts of East Asia."""
+
+
+class DxfFile(NamedTuple):
+    """
+    What was written.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    n_sheets : int
+        Number of sheets.
+    oversize : tuple of str
+        Beams larger than a sheet; each is drawn on a larger one of its own.
+    """
+
+    path: Path
+    n_sheets: int
+    oversize: tuple[str, ...]
+
+
+def write_dxf(
+    beams: Beams,
+    path: str | os.PathLike[str],
+    units: str = "m",
+    sheet: tuple[float, float] = SHEET,
+    spacing: float = 10.0,
+) -> DxfFile:
+    """
+    Write the flat contours of beams to a DXF file.
+
+    Parameters
+    ----------
+    beams : Beams
+        The beams; at least one.
+    path : path
+        File to write. It is replaced when the new one is complete.
+    units : str
+        Unit of the model: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
+    sheet : (float, float)
+        Width and height of the sheets, in millimetres.
+    spacing : float
+        Distance between pieces, and from the rim of the sheet, in millimetres.
+
+    Returns
+    -------
+    DxfFile
+        The file, how many sheets, and which pieces are larger than a sheet.
+
+    Raises
+    ------
+    InputError
+        If there are no beams, two have one name or one is not finite, the unit is not known,
+        sheet or spacing are no lengths, or the folder does not exist.
+    MissingLibraryError
+        If ezdxf is missing.
+
+    Notes
+    -----
+    The contour is that in the middle of the thickness (`kernel.contours`). The same beams give
+    the same bytes: the dates in the file are fixed.
+    """
+    target = Path(path)
+    check_suffix(target, ".dxf")
+    scale = millimeters_per(units)
+    check_writable_beams(beams, target)
+    if not (np.isfinite([*sheet, spacing]).all() and min(sheet) > 0 and spacing >= 0):
+        raise InputError(f"sheet {sheet} and spacing {spacing} must be lengths in millimetres")
+    beams = scale_beams(beams, scale)
+    contours = beam_contours(beams)
+    boxes = contour_boxes(contours)
+    sizes = boxes[:, 1] - boxes[:, 0]
+    places, sheets, oversize = shelves(sizes, sheet, spacing)
+    corners = _sheet_corners(sizes, sheets, oversize, sheet, spacing)
+    shifts = places - boxes[:, 0] + corners[sheets, 0]
+    with fixed_ezdxf() as library:
+        document = millimeter_drawing(library, LAYERS)
+        space = document.modelspace()
+        for low, high in corners.tolist():
+            ring = [low, [high[0], low[1]], high, [low[0], high[1]]]
+            space.add_lwpolyline(ring, close=True, dxfattribs={"layer": "SHEET"})
+        _add_contours(space, contours, shifts)
+        _add_labels(space, beams, contours, shifts)
+        if beams.marks is not None:
+            _add_marks(space, beams, beams.marks, shifts)
+        stream = io.StringIO()
+        document.write(stream)
+    with replacing(target) as temporary:
+        temporary.write_text(stream.getvalue(), encoding="utf-8")
+    return DxfFile(target, len(corners), tuple(beams.annuli.ids[i] for i in oversize))
+
+
+def _sheet_corners(
+    sizes: FloatArray,
+    sheets: list[int],
+    oversize: list[int],
+    sheet: tuple[float, float],
+    spacing: float,
+) -> FloatArray:
+    """Lower left and upper right corners (n, 2, 2) of the sheets, one above the other."""
+    extents = np.tile(np.array(sheet, float), (max(sheets) + 1, 1))
+    for piece in oversize:
+        extents[sheets[piece]] = sizes[piece] + 2 * spacing
+    gap = 0.2 * sheet[1]
+    heights = np.concatenate([[0.0], np.cumsum(extents[:-1, 1] + gap)])
+    low = np.stack([np.zeros_like(heights), heights], 1)
+    return np.stack([low, low + extents], 1)
+
+
+def millimeter_drawing(library: _Untyped, layers: Mapping[str, int]) -> _Untyped:
+    """
+    An empty drawing in millimetres.
+
+    Parameters
+    ----------
+    library : module
+        What `fixed_ezdxf` gives.
+    layers : mapping of str to int
+        Layers and their colours, by AutoCAD's index.
+
+    Returns
+    -------
+    ezdxf.document.Drawing
+        The drawing.
+    """
+    document = library.new("R2010")
+    document.units = _MILLIMETERS
+    document.header["$MEASUREMENT"] = 1
+    for name, color in layers.items():
+        document.layers.add(name, color=color)
+    return document
+
+
+def text_width(text: str) -> float:
+    """
+    Width of a line of text, on the safe side.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+
+    Returns
+    -------
+    float
+        In heights of its capitals.
+    """
+    wide = sum(east_asian_width(letter) in "WF" for letter in text)
+    return _LETTER * (len(text) + wide)
+
+
+def _add_contours(space: _Untyped, contours: Contours, shifts: FloatArray) -> None:
+    corners = contours.corners + shifts[:, None]
+    rows = np.concatenate([corners, contours.bulges[..., None]], -1)
+    for ring in rows.tolist():
+        space.add_lwpolyline(ring, format="xyb", close=True, dxfattribs={"layer": "CUT"})
+
+
+def _add_labels(space: _Untyped, beams: Beams, contours: Contours, shifts: FloatArray) -> None:
+    from ezdxf.enums import TextEntityAlignment
+
+    middle = TextEntityAlignment.MIDDLE_CENTER
+    centers = contours.centers + shifts[:, None]
+    spans = contours.centers[:, 2, 0] - contours.centers[:, 0, 0]
+    nodes: list[list[int]] = beams.annuli.edge_vertices.tolist()
+    bevels: list[list[list[float]]] = np.degrees(contours.bevels).tolist()
+    turns, curvatures = _turns(contours.centers)
+    for name, ends, cuts, points, span, width, along, curvature in zip(
+        beams.annuli.ids, nodes, bevels, centers.tolist(), spans.tolist(),
+        contours.widths.tolist(), np.degrees(turns).tolist(), curvatures.tolist(), strict=True,
+    ):  # fmt: skip
+        marks = [
+            f"{node_name(vertex)} {low:.1f}/{high:.1f}"
+            for vertex, (low, high) in zip(ends, cuts, strict=True)
+        ]
+        texts = [(marks[0], 0.5), (name, 1.0), (marks[1], 0.5)]
+        lengths = [text_width(text) * share for text, share in texts]
+        size = min(
+            _LABEL, _LABEL_SHARE * width, span / sum(lengths),
+            _straight_in_bow(max(lengths), width, curvature),
+        )  # fmt: skip
+        for (text, share), point, turn in zip(texts, points, along, strict=True):
+            look = {"layer": "ENGRAVE", "rotation": turn}
+            entity = space.add_text(text, height=share * size, dxfattribs=look)
+            entity.set_placement(point, align=middle)
+
+
+def _turns(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Directions (B, 3) at three points of circles, and the curvatures (B,) of these."""
+    chords = points[:, [1, 2, 2]] - points[:, [0, 1, 0]]
+    first, second, both = np.arctan2(chords[..., 1], chords[..., 0]).T
+    # A chord has the mean of the directions at its ends.
+    turns = np.stack([2 * first - both, both, 2 * second - both], 1)
+    return turns, 2 * np.abs(np.sin(second - first)) / norm(chords[:, 2])
+
+
+def _straight_in_bow(length: float, width: float, curvature: float) -> float:
+    """Height of a straight text, `length` heights long, that stays in a bow of some width."""
+    # Half the height, and the sagitta of the length, take up half the width.
+    sagitta = curvature * length**2 / 8
+    return width / (0.5 + math.sqrt(0.25 + 2 * sagitta * width))
+
+
+def _add_marks(space: _Untyped, beams: Beams, marks: DrillMarks, shifts: FloatArray) -> None:
+    centers = (mark_centers(beams, marks) + shifts[:, None])[marks.fits]
+    for center in centers.reshape(-1, 2).tolist():
+        space.add_circle(center, marks.diameter / 2, dxfattribs={"layer": "DRILL"})
+
+
+@contextmanager
+def fixed_ezdxf() -> Generator[_Untyped]:
+    """
+    Import ezdxf, without time and random identifiers in what it writes.
+
+    Yields
+    ------
+    module
+        The library.
+
+    Raises
+    ------
+    MissingLibraryError
+        If it is missing.
+    """
+    try:
+        import ezdxf
+    except ImportError as error:
+        raise MissingLibraryError(f"DXF needs ezdxf: {error}; install ezdxf") from error
+    library: _Untyped = ezdxf
+    options = library.options
+    before = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        yield library
+    finally:
+        options.write_fixed_meta_data_for_testing = before

@@ -1,0 +1,289 @@
+"""
+Render meshes of panels and beams as openNURBS objects, for viewers that cannot mesh solids.
+
+They are written into the streams of Breps and extrusions: the setters of rhino3dm crash it at
+exit. Layout of `ON_Mesh` 3.8 (`opennurbs_mesh.cpp`): ii counts of vertices and faces, domains
+that are not set, three empty boxes of floats, i -1, flags, faces of four indices each (a
+triangle repeats its last), buffers of float32 vertices and normals, empty buffers, the tag of
+no texture mapping, and a chunk with the vertices as float64, if that is needed.
+
+An extrusion keeps meshes in a chunk of version 1.0 (`ON_MeshCache`): for each a byte 1 and a
+chunk of version 1.0 with an id that says what it is for and the mesh; in the end a byte 0.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+
+from ...kernel.arrays import FloatArray, IntArray, norm
+from ...kernel.beams.triangles import BeamTriangles
+from ...kernel.panels.panels import Panels
+from ...kernel.panels.tessellation import tessellate
+from ...kernel.tolerances import SINGLE_EPSILON, SINGLE_IS_ENOUGH
+from .chunks import (
+    ANONYMOUS,
+    CHUNK_HEADER,
+    Buffer,
+    Chunk,
+    Piece,
+    Slot,
+    assemble,
+    class_object,
+    doubles,
+    fill,
+    ints,
+)
+
+MESH: Final = bytes.fromhex("e4d4d74e47e9d311bfe50010830122f0")
+MESH_VERSION: Final = b"\x38"
+
+UNSET_DOMAINS: Final = doubles(*[-1.23432101234321e308] * 8) + bytes(16)
+MESH_TOLERANCE: Final = 0.004
+"""Largest distance of a render mesh from its surface, relative to the radius of the piece."""
+
+_RENDER_MESH: Final = bytes.fromhex("a9bae3f5a2a7fd49b8a166eb274a5f91")
+_AROUND_CACHE: Final = (0, 44, 56)
+"""Where the chunks around the meshes of an extrusion begin: class, its data, extrusion."""
+
+_EMPTY_BOXES = np.array([*[1, 1, 1, -1, -1, -1] * 2, 1, 1, -1, -1], "<f4").tobytes()
+_IDENTITY = doubles(*np.eye(4).ravel().tolist())
+
+
+@dataclass(frozen=True)
+class RenderMeshes:
+    """
+    Triangles of panels or beams, those of the same triangulation together.
+
+    Attributes
+    ----------
+    kinds : (P,) int array
+        Triangulation of each piece.
+    triangles : tuple of (T, 3) int array
+        The triangulations; counter-clockwise about the normals.
+    starts : (P,) int array
+        First vertex of each piece; its triangulation tells how many there are.
+    points : (N, 3) float array
+        Vertices on the surfaces, in model coordinates.
+    normals : (N, 3) float array
+        Exact unit normals there.
+    has_doubles : bool
+        Whether vertices are written as float64 too: where the model lies so far from the
+        origin that float32 would show.
+    """
+
+    kinds: IntArray
+    triangles: tuple[IntArray, ...]
+    starts: IntArray
+    points: FloatArray
+    normals: FloatArray
+    has_doubles: bool
+
+
+def panel_meshes(panels: Panels, tolerance: float) -> RenderMeshes:
+    """
+    Triangulate the outer faces of panels.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+    tolerance : float
+        Largest distance of a triangle from its sphere, relative to the radius of the panel.
+
+    Returns
+    -------
+    RenderMeshes
+        The triangles.
+    """
+    pieces = tessellate(panels, tolerance, solid=False)
+    order = np.argsort(pieces.panels, kind="stable")
+    triangles = pieces.triangles[order]
+    bounds = np.searchsorted(pieces.panels[order], np.arange(panels.n_panels + 1)).tolist()
+    known: dict[bytes, int] = {}
+    kinds: list[int] = []
+    starts: list[int] = []
+    for first, last in pairwise(bounds):
+        own = triangles[first:last]
+        starts.append(int(own.min()))
+        kinds.append(known.setdefault((own - starts[-1]).tobytes(), len(known)))
+    shapes = tuple(np.frombuffer(each, np.int64).reshape(-1, 3) for each in known)
+    points = pieces.points + pieces.origin
+    sizes = np.maximum.reduceat(norm(panels.corners), panels.offsets[:-1])
+    return RenderMeshes(
+        np.array(kinds, np.int64),
+        shapes,
+        np.array(starts, np.int64),
+        points,
+        pieces.normals,
+        _needs_doubles(points, tolerance * float(sizes.min(initial=np.inf))),
+    )
+
+
+def gather_meshes(groups: Sequence[BeamTriangles], error: float) -> RenderMeshes:
+    """
+    Triangulated beams or cylinders as render meshes.
+
+    Parameters
+    ----------
+    groups : sequence of BeamTriangles
+        Every piece once.
+    error : float
+        Distance of the triangles of the smallest piece from its surface, in model units.
+
+    Returns
+    -------
+    RenderMeshes
+        The triangles.
+    """
+    n_pieces = sum(len(group.beams) for group in groups)
+    kinds, starts = np.zeros((2, n_pieces), np.int64)
+    n_points = 0
+    for kind, group in enumerate(groups):
+        n_beams, count = group.points.shape[:2]
+        kinds[group.beams] = kind
+        starts[group.beams] = n_points + count * np.arange(n_beams)
+        n_points += n_beams * count
+    points = np.concatenate([group.points.reshape(-1, 3) for group in groups])
+    return RenderMeshes(
+        kinds,
+        tuple(group.triangles for group in groups),
+        starts,
+        points,
+        np.concatenate([group.normals.reshape(-1, 3) for group in groups]),
+        _needs_doubles(points, error),
+    )
+
+
+def _needs_doubles(points: FloatArray, error: float) -> bool:
+    """Whether rounding points to float32 adds much to what triangles miss."""
+    rounding = SINGLE_EPSILON * float(np.abs(points).max(initial=0.0))
+    return rounding > SINGLE_IS_ENOUGH * error
+
+
+def mesh_numbers(meshes: RenderMeshes, members: IntArray) -> dict[str, FloatArray]:
+    """
+    Numbers that fill the slots of `mesh_object`.
+
+    Parameters
+    ----------
+    meshes : RenderMeshes
+        The triangles.
+    members : (n,) int array
+        Pieces of one triangulation.
+
+    Returns
+    -------
+    dict of str to (n, 1, V, 3) float array
+        ``points`` and ``normals``.
+    """
+    count = _n_points(meshes.triangles[int(meshes.kinds[members[0]])])
+    ids = meshes.starts[members][:, None, None] + np.arange(count)
+    return {"points": meshes.points[ids], "normals": meshes.normals[ids]}
+
+
+def mesh_object(meshes: RenderMeshes, kind: int) -> Chunk:
+    """
+    An `ON_Mesh` whose vertices and normals are still to be filled in.
+
+    Parameters
+    ----------
+    meshes : RenderMeshes
+        The triangles.
+    kind : int
+        Which of the triangulations; it uses all of its vertices.
+
+    Returns
+    -------
+    Chunk
+        The object, with slots ``points`` and ``normals``.
+    """
+    triangles = meshes.triangles[kind]
+    count = _n_points(triangles)
+    size = 1 if count < 1 << 8 else 2 if count < 1 << 16 else 4
+    faces = triangles[:, [0, 1, 2, 2]].astype(f"<u{size}").tobytes()
+    floats = (Buffer(Slot(name, 0, 3 * count, "<f4")) for name in ("points", "normals"))
+    doubles_too: tuple[Piece, ...] = (b"\0",)
+    if meshes.has_doubles:
+        precise = (ints(1, 0, count), Buffer(Slot("points", 0, 3 * count)))
+        doubles_too = (b"\1", Chunk(ANONYMOUS, precise))
+    return class_object(
+        MESH, MESH_VERSION, ints(count, len(triangles)), UNSET_DOMAINS, _EMPTY_BOXES, ints(-1),
+        bytes(5), ints(size), faces, *floats,
+        ints(0, 0, 0) + bytes(4 + 16) + ints(0),  # no textures, curvatures, colours, parameters
+        Chunk(ANONYMOUS, (ints(1, 1) + bytes(16 + 4) + _IDENTITY + ints(0),)),
+        bytes(3) + b"\0",  # manifold, oriented, solid: not known; no ngons
+        *doubles_too, UNSET_DOMAINS[:48],
+    )  # fmt: skip
+
+
+def _n_points(triangles: IntArray) -> int:
+    return int(triangles.max()) + 1
+
+
+def mesh_streams(meshes: RenderMeshes) -> list[bytes]:
+    """
+    Each mesh as the stream of an `ON_Mesh`.
+
+    Parameters
+    ----------
+    meshes : RenderMeshes
+        The triangles of P pieces.
+
+    Returns
+    -------
+    list of bytes
+        P objects, in model coordinates.
+    """
+    return _filled(meshes, lambda mesh: mesh)
+
+
+def _filled(meshes: RenderMeshes, wrap: Callable[[Chunk], Chunk]) -> list[bytes]:
+    result = [b""] * len(meshes.kinds)
+    for kind in range(len(meshes.triangles)):
+        members = np.flatnonzero(meshes.kinds == kind)
+        template = assemble(wrap(mesh_object(meshes, kind)))
+        filled = fill(template, mesh_numbers(meshes, members))
+        for piece, stream in zip(members, filled, strict=True):
+            result[piece] = stream
+    return result
+
+
+def extrusions_with_meshes(extrusions: Sequence[bytes], meshes: RenderMeshes) -> list[bytes]:
+    """
+    Put render meshes into extrusions.
+
+    Parameters
+    ----------
+    extrusions : sequence of bytes
+        Streams of B `ON_Extrusion`, as openNURBS encodes them without meshes.
+    meshes : RenderMeshes
+        The triangles of B pieces.
+
+    Returns
+    -------
+    list of bytes
+        The streams with their meshes.
+    """
+    caches = _filled(meshes, _cache)
+    (empty,) = fill(assemble(_cache()), {"": np.zeros((1, 0))})
+    result: list[bytes] = []
+    for stream, cache in zip(extrusions, caches, strict=True):
+        data = bytearray(stream)
+        # Checksums leave out inner chunks: the lengths around the cache are all that changes.
+        for start in _AROUND_CACHE:
+            typecode, length = CHUNK_HEADER.unpack_from(data, start)
+            CHUNK_HEADER.pack_into(data, start, typecode, length + len(cache) - len(empty))
+        place = data.rindex(empty)
+        data[place : place + len(empty)] = cache
+        result.append(bytes(data))
+    return result
+
+
+def _cache(*meshes: Chunk) -> Chunk:
+    pieces: list[Piece] = [ints(1, 0)]
+    for mesh in meshes:
+        pieces += [b"\1", Chunk(ANONYMOUS, (ints(1, 0) + _RENDER_MESH, mesh))]
+    return Chunk(ANONYMOUS, (*pieces, b"\0"))

@@ -1,0 +1,346 @@
+"""A Rhino model under construction: layers, materials, groups, views, and ids."""
+
+import base64
+from collections import Counter
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeAlias
+from uuid import NAMESPACE_URL, UUID, uuid5
+
+import numpy as np
+
+from ...kernel.arrays import FloatArray
+from ...kernel.parts.colors import Color
+from ..units import millimeters_per
+
+# What comes from rhino3dm is not typed: its stub lacks setters, indices and overloads.
+Untyped: TypeAlias = Any
+
+_UNIT_SYSTEMS = {
+    "mm": "Millimeters", "cm": "Centimeters", "m": "Meters", "in": "Inches", "ft": "Feet",
+}  # fmt: skip
+_TOLERANCE = 0.01
+"""Model tolerance in millimetres."""
+
+_ANGLE_TOLERANCE = 0.1
+"""Model tolerance of angles in degrees."""
+
+_NAMESPACE = uuid5(NAMESPACE_URL, "urn:spheremesh:3dm")
+_LENS = 50.0
+"""Focal length of the perspective view in millimetres; Rhino's own."""
+
+_HALF_ANGLE = float(np.arctan(12 / _LENS))
+"""Half the smaller angle of view of that lens, on film of 36 by 24 mm."""
+
+
+class RhinoModel(NamedTuple):
+    """The library rhino3dm, a model under construction, and how streams become objects."""
+
+    library: Untyped
+    file: Untyped
+    decode: Callable[[bytes], Untyped]
+
+
+class Place(NamedTuple):
+    """Indices of a layer and of the material of its objects, if they have one."""
+
+    layer: int
+    material: int | None = None
+
+
+def model_tolerance(units: str) -> float:
+    """
+    Absolute tolerance of the models written.
+
+    Parameters
+    ----------
+    units : str
+        Model units.
+
+    Returns
+    -------
+    float
+        A hundredth of a millimetre, in model units.
+    """
+    return _TOLERANCE / millimeters_per(units)
+
+
+def new_model(units: str) -> RhinoModel:
+    """
+    An empty model.
+
+    Parameters
+    ----------
+    units : str
+        Model units.
+
+    Returns
+    -------
+    RhinoModel
+        The model, with its units and tolerances.
+    """
+    tolerance = model_tolerance(units)
+    import rhino3dm
+
+    library: Untyped = rhino3dm
+    file = library.File3dm()
+    file.ApplicationName = "spheremesh"
+    settings = file.Settings
+    settings.ModelUnitSystem = getattr(library.UnitSystem, _UNIT_SYSTEMS[units])
+    settings.ModelAbsoluteTolerance = tolerance
+    settings.ModelAngleToleranceDegrees = _ANGLE_TOLERANCE
+    return RhinoModel(library, file, _decoder(library))
+
+
+def _decoder(library: Untyped) -> Callable[[bytes], Untyped]:
+    # The versions that go with a stream are those of any object.
+    header: dict[str, object] = library.Point(library.Point3d(0, 0, 0)).Encode()
+
+    def decode(stream: bytes) -> Untyped:
+        header["data"] = base64.b64encode(stream).decode("ascii")
+        return library.CommonObject.Decode(header)
+
+    return decode
+
+
+def encode_model(model: RhinoModel, version: int) -> bytes:
+    """
+    The model as a file.
+
+    Parameters
+    ----------
+    model : RhinoModel
+        The model.
+    version : int
+        Version of Rhino.
+
+    Returns
+    -------
+    bytes
+        Content of the file; empty if rhino3dm cannot encode it.
+    """
+    options = model.library.File3dmWriteOptions()
+    options.Version = version
+    # File3dm.Write would store the path of the temporary file in the model.
+    return base64.b64decode(model.file.Encode(options) or "")
+
+
+def count_objects(model: RhinoModel) -> dict[str, int]:
+    """
+    How many objects of each kind a model holds.
+
+    Parameters
+    ----------
+    model : RhinoModel
+        The model.
+
+    Returns
+    -------
+    dict of str to int
+        Counts by openNURBS's names, members of blocks included.
+    """
+    return dict(Counter(type(item.Geometry).__name__ for item in model.file.Objects))
+
+
+def object_id(name: str, role: str) -> UUID:
+    """
+    An id that is the same in every run.
+
+    Parameters
+    ----------
+    name : str
+        Panel, layer or material.
+    role : str
+        What it is there.
+
+    Returns
+    -------
+    UUID
+        The id.
+    """
+    return uuid5(_NAMESPACE, f"{name}/{role}")
+
+
+def add_layer(
+    model: RhinoModel,
+    name: str,
+    color: Color,
+    parent: Place | None = None,
+    *,
+    visible: bool = True,
+) -> Place:
+    """
+    Add a layer of lines or points.
+
+    Parameters
+    ----------
+    model : RhinoModel
+        The model.
+    name : str
+        Name of the layer.
+    color : (int, int, int)
+        Its colour.
+    parent : Place, optional
+        The layer that it lies under.
+    visible : bool
+        Whether it is switched on.
+
+    Returns
+    -------
+    Place
+        Where objects go.
+    """
+    file = model.file
+    layer = model.library.Layer()
+    layer.Id = object_id(name, "layer")
+    layer.Name = name
+    layer.Color = (*color, 255)
+    layer.Visible = visible
+    if parent:
+        layer.ParentLayerId = file.Layers[parent.layer].Id
+    return Place(file.Layers.Add(layer))
+
+
+def add_surface_layer(
+    model: RhinoModel,
+    name: str,
+    color: Color,
+    parent: Place | None = None,
+    *,
+    visible: bool = True,
+) -> Place:
+    """
+    Add a layer and a material of its colour.
+
+    Parameters
+    ----------
+    model : RhinoModel
+        The model.
+    name : str
+        Name of the layer and of the material.
+    color : (int, int, int)
+        Their colour.
+    parent : Place, optional
+        The layer that it lies under.
+    visible : bool
+        Whether it is switched on.
+
+    Returns
+    -------
+    Place
+        Where objects go.
+    """
+    material = model.library.Material()
+    material.Id = object_id(name, "material")
+    material.Name = name
+    material.DiffuseColor = (*color, 255)
+    index: int = model.file.Materials.Add(material)
+    place = add_layer(model, name, color, parent, visible=visible)
+    model.file.Layers[place.layer].RenderMaterialIndex = index
+    return place._replace(material=index)
+
+
+def add_group(model: RhinoModel, name: str) -> int:
+    """
+    Add a group.
+
+    Parameters
+    ----------
+    model : RhinoModel
+        The model.
+    name : str
+        Name of the group.
+
+    Returns
+    -------
+    int
+        Its index.
+    """
+    group = model.library.Group()
+    group.Name = name
+    group.Id = object_id(name, "group")
+    model.file.Groups.Add(group)
+    return len(model.file.Groups) - 1
+
+
+def object_attributes(model: RhinoModel, name: str, role: str, place: Place) -> Untyped:
+    """
+    Attributes with a stable id: the colour of the layer, and its material if it has one.
+
+    Parameters
+    ----------
+    model : RhinoModel
+        The model.
+    name : str
+        Name of the object, such as the id of its panel.
+    role : str
+        What the object is; tells apart those of one name.
+    place : Place
+        Where it goes.
+
+    Returns
+    -------
+    ObjectAttributes
+        The attributes.
+    """
+    attributes = model.library.ObjectAttributes()
+    attributes.Id = object_id(name, role)
+    attributes.Name = name
+    attributes.LayerIndex = place.layer
+    if place.material is not None:
+        # Many viewers know materials of objects only, and show other surfaces in white.
+        attributes.MaterialSource = model.library.ObjectMaterialSource.MaterialFromObject
+        attributes.MaterialIndex = place.material
+    return attributes
+
+
+def add_views(model: RhinoModel, points: FloatArray) -> None:
+    """
+    Add the named views Top and Perspective, which show all points.
+
+    Parameters
+    ----------
+    model : RhinoModel
+        The model.
+    points : (n, 3) float array
+        At least one point, in model coordinates.
+    """
+    low, high = points.min(0), points.max(0)
+    center, radius = (low + high) / 2, float(np.linalg.norm(high - low)) / 2
+    perspective = model.library.ViewInfo()
+    perspective.Name = "Perspective"
+    distance = radius / np.sin(_HALF_ANGLE)
+    perspective.Viewport.ChangeToPerspectiveProjection(distance, True, _LENS)  # noqa: FBT003
+    _aim(model, perspective.Viewport, center, np.array([1.0, -1.0, 0.8]), distance)
+    half, near = float(np.tan(_HALF_ANGLE)), distance - radius
+    frame = (1.5 * half * near, half * near)
+    _frame(perspective.Viewport, frame, near, distance + radius)
+    top = model.library.ViewInfo()
+    top.Name = "Top"
+    top.Viewport.ChangeToParallelProjection(True)  # noqa: FBT003
+    _aim(model, top.Viewport, center, np.array([0.0, 0.0, 1.0]), 2 * radius)
+    _frame(top.Viewport, (1.5 * radius, radius), radius, 3 * radius)
+    for view in (top, perspective):
+        model.file.NamedViews.Add(view)
+
+
+def _aim(
+    model: RhinoModel,
+    viewport: Untyped,
+    target: FloatArray,
+    backwards: FloatArray,
+    distance: float,
+) -> None:
+    backwards = backwards / np.linalg.norm(backwards)
+    upwards = np.array([0.0, 0.0, 1.0]) if backwards[2] < 1 else np.array([0.0, 1.0, 0.0])
+    right = np.cross(upwards, backwards)
+    upwards = np.cross(backwards, right / np.linalg.norm(right))
+    point, vector = model.library.Point3d, model.library.Vector3d
+    viewport.SetCameraLocation(point(*(target + distance * backwards).tolist()))
+    viewport.SetCameraDirection(vector(*(-distance * backwards).tolist()))
+    viewport.SetCameraUp(vector(*upwards.tolist()))
+    viewport.TargetPoint = point(*target.tolist())
+
+
+def _frame(viewport: Untyped, half: tuple[float, float], near: float, far: float) -> None:
+    viewport.SetScreenPort((0, 0, 1500, 1000))
+    viewport.SetFrustum(-half[0], half[0], -half[1], half[1], near, far)

@@ -1,0 +1,360 @@
+"""
+Named, layered and coloured bodies in a STEP file: assemblies of parts.
+
+Definitions of units, of colours and of the kinds of products stand once in a file and are
+shared by all parts. A part may stand in several places.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Final, Literal
+
+from ...kernel.parts.colors import Color
+from .bodies import Body
+from .values import numbers, real, references, string
+
+StepSchema = Literal["AP214IS", "AP242DIS"]
+
+UNITS: Final = {
+    "mm": "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))",
+    "cm": "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.CENTI.,.METRE.))",
+    "m": "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.))",
+    "in": "INCH",
+    "ft": "FOOT",
+}
+"""Units of length that a file can declare; the last two by their length in millimetres."""
+
+_SCHEMAS: Final[dict[str, tuple[str, str, int, str]]] = {
+    "AP214IS": (
+        "AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }",
+        "automotive_design", 2000,
+        "core data for automotive mechanical design processes",
+    ),
+    "AP242DIS": (
+        "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF {1 0 10303 442 1 1 4 }",
+        "ap242_managed_model_based_3d_engineering", 2013,
+        "Managed model based 3d engineering",
+    ),
+}  # fmt: skip
+"""Name in the header; name, year and subject of the application protocol."""
+
+Place = tuple[float, ...]
+"""Origin, z axis and x axis, nine numbers; or the origin alone where nothing is turned."""
+
+
+@dataclass(frozen=True)
+class Instance:
+    """
+    Where a part stands.
+
+    Attributes
+    ----------
+    name : str
+        Name of the instance.
+    place : tuple of 3 or 9 float
+        Origin, and unless nothing is turned the unit z and x axes, in the assembly.
+    """
+
+    name: str
+    place: Place
+
+
+@dataclass(frozen=True)
+class Part:
+    """
+    A body as it appears in a file, once or several times.
+
+    Attributes
+    ----------
+    body : Body
+        The body, at its own origin.
+    name : str
+        Name of the part.
+    layer : str
+        Layer, made where it is new.
+    color : Color
+        Red, green and blue from 0 to 255 (sRGB).
+    tolerance : float
+        Distance below which points of the part are one, in the unit of the file.
+    instances : tuple of Instance
+        Where it stands.
+    """
+
+    body: Body
+    name: str
+    layer: str
+    color: Color
+    tolerance: float
+    instances: tuple[Instance, ...]
+
+
+@dataclass(frozen=True)
+class Group:
+    """
+    An assembly.
+
+    Attributes
+    ----------
+    name : str
+        Name of the assembly.
+    members : iterable of Part and Group
+        What it consists of.
+    """
+
+    name: str
+    members: "Iterable[Part | Group]"
+
+
+@dataclass(frozen=True)
+class StepHeader:
+    """
+    What a STEP file says about itself.
+
+    Attributes
+    ----------
+    schema : {"AP214IS", "AP242DIS"}
+        Application protocol.
+    unit : str
+        Unit of length, one of `UNITS`.
+    millimeters : float
+        Millimetres in that unit.
+    tolerance : float
+        Distance below which points of assemblies are one, in that unit.
+    title : str
+        Title of the file.
+    system : str
+        Name and version of the program that wrote it.
+    """
+
+    schema: StepSchema
+    unit: str
+    millimeters: float
+    tolerance: float
+    title: str
+    system: str
+
+
+@dataclass(frozen=True)
+class _Definition:
+    """Numbers of the product definition and the shape representation of a part or group."""
+
+    product: int
+    shape: int
+
+
+def assembly_lines(root: Group, header: StepHeader) -> list[str]:
+    """
+    Lines of a STEP file.
+
+    Parameters
+    ----------
+    root : Group
+        Parts, and assemblies within.
+    header : StepHeader
+        Schema, unit and names.
+
+    Returns
+    -------
+    list of str
+        The file in pieces of whole lines, in ASCII. The same parts give the same text, but for
+        the time in the header.
+    """
+    return [*_frame(header), *_Assembler(header).lines(root), _END]
+
+
+_END: Final = "ENDSEC;\nEND-ISO-10303-21;\n"
+
+
+def _frame(header: StepHeader) -> Iterable[str]:
+    title, system = string(header.title), string(header.system)
+    now = datetime.now().astimezone().strftime("%Y-%m-%dT%H:%M:%S")
+    yield "ISO-10303-21;\nHEADER;\n"
+    yield f"FILE_DESCRIPTION(({title}),'2;1');\n"
+    yield f"FILE_NAME({title},'{now}',(''),(''),{system},{system},'');\n"
+    yield f"FILE_SCHEMA(('{_SCHEMAS[header.schema][0]}'));\nENDSEC;\nDATA;\n"
+
+
+class _Assembler:
+    """Entities of an assembly as they are numbered; what parts share is written once."""
+
+    def __init__(self, header: StepHeader) -> None:
+        self._lines: list[str] = []
+        self._count = 0
+        self._products: list[int] = []
+        self._styled: list[int] = []
+        self._layers: dict[str, list[int]] = {}
+        self._colors: dict[Color, int] = {}
+        self._styles: dict[Color, int] = {}
+        self._contexts: dict[float, int] = {}
+        _, protocol, year, subject = _SCHEMAS[header.schema]
+        self._application = self._add(f"APPLICATION_CONTEXT('{subject}')")
+        self._add(
+            f"APPLICATION_PROTOCOL_DEFINITION('international standard','{protocol}',{year},"
+            f"#{self._application})"
+        )
+        application = f"#{self._application}"
+        self._product = self._add(f"PRODUCT_CONTEXT('',{application},'mechanical')")
+        self._design = self._add(
+            f"PRODUCT_DEFINITION_CONTEXT('part definition',{application},'design')"
+        )
+        self._axes = self._directions((0.0, 0.0, 1.0, 1.0, 0.0, 0.0))
+        self._origin = self._placement((0.0, 0.0, 0.0))
+        self._units = self._declare_units(header)
+        self._context = self._representation_context(header.tolerance)
+
+    def lines(self, root: Group) -> list[str]:
+        self._add_group(root)
+        names = references(self._products)
+        self._add(f"PRODUCT_RELATED_PRODUCT_CATEGORY('part',$,({names}))")
+        for layer, items in self._layers.items():
+            self._add(
+                f"PRESENTATION_LAYER_ASSIGNMENT({string(layer)},'visible',"
+                f"({references(items)}))"
+            )
+        if self._styled:
+            self._add(
+                "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',"
+                f"({references(self._styled)}),#{self._context})"
+            )
+        return self._lines
+
+    def _add(self, text: str) -> int:
+        self._count += 1
+        return self._write(self._count, text)
+
+    def _write(self, number: int, text: str) -> int:
+        self._lines.append(f"#{number}={text};\n")
+        return number
+
+    def _directions(self, axes: Place) -> str:
+        return references(
+            self._add(f"DIRECTION('',({numbers(axes[i : i + 3])}))") for i in (0, 3)
+        )
+
+    def _placement(self, place: Place) -> int:
+        point = self._add(f"CARTESIAN_POINT('',({numbers(place[:3])}))")
+        axes = self._directions(place[3:]) if len(place) > 3 else self._axes
+        return self._add(f"AXIS2_PLACEMENT_3D('',#{point},{axes})")
+
+    def _declare_units(self, header: StepHeader) -> tuple[int, int, int]:
+        """Numbers of the units of length, angle and solid angle."""
+        unit = UNITS[header.unit]
+        if not unit.startswith("("):
+            millimeter = self._add(UNITS["mm"])
+            length = self._add(
+                f"LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE({real(header.millimeters)}),"
+                f"#{millimeter})"
+            )
+            dimensions = self._add("DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.)")
+            unit = (
+                f"(CONVERSION_BASED_UNIT('{unit}',#{length})LENGTH_UNIT()"
+                f"NAMED_UNIT(#{dimensions}))"
+            )
+        return (
+            self._add(unit),
+            self._add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))"),
+            self._add("(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())"),
+        )
+
+    def _representation_context(self, tolerance: float) -> int:
+        if tolerance not in self._contexts:
+            uncertainty = self._add(
+                f"UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE({real(tolerance)}),"
+                f"#{self._units[0]},'distance_accuracy_value','confusion accuracy')"
+            )
+            self._contexts[tolerance] = self._add(
+                "(GEOMETRIC_REPRESENTATION_CONTEXT(3)"
+                f"GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#{uncertainty}))"
+                f"GLOBAL_UNIT_ASSIGNED_CONTEXT(({references(self._units)}))"
+                "REPRESENTATION_CONTEXT('Context #1',"
+                "'3D Context with UNIT and UNCERTAINTY'))"
+            )
+        return self._contexts[tolerance]
+
+    def _define(self, name: str) -> _Definition:
+        """A product, whose shape representation is still to be written."""
+        quoted = string(name)
+        product = self._add(f"PRODUCT({quoted},{quoted},'',(#{self._product}))")
+        self._products.append(product)
+        formation = self._add(f"PRODUCT_DEFINITION_FORMATION('','',#{product})")
+        definition = self._add(f"PRODUCT_DEFINITION('design','',#{formation},#{self._design})")
+        shape = self._add(f"PRODUCT_DEFINITION_SHAPE('','',#{definition})")
+        self._count += 1
+        representation = self._count
+        self._add(f"SHAPE_DEFINITION_REPRESENTATION(#{shape},#{representation})")
+        return _Definition(definition, representation)
+
+    def _add_group(self, group: Group) -> _Definition:
+        definition = self._define(group.name)
+        items = [self._origin]
+        for member in group.members:
+            if isinstance(member, Group):
+                part, instances = self._add_group(member), (Instance(member.name, (0.0,) * 3),)
+            else:
+                part, instances = self._add_part(member), member.instances
+            items += [self._place(definition, part, instance) for instance in instances]
+        self._write(
+            definition.shape,
+            f"SHAPE_REPRESENTATION('',({references(items)}),#{self._context})",
+        )
+        return definition
+
+    def _add_part(self, part: Part) -> _Definition:
+        definition = self._define(part.name)
+        layout, first = part.body.layout, self._count + 1
+        self._count += layout.n_entities
+        self._lines.append(part.body.text(first))
+        context = self._representation_context(part.tolerance)
+        self._write(
+            definition.shape,
+            f"{layout.representation}('',(#{self._origin},#{first}),#{context})",
+        )
+        is_line = layout.representation.startswith("GEOMETRICALLY_BOUNDED_WIREFRAME")
+        style = self._line_style(part.color) if is_line else self._surface_style(part.color)
+        self._styled.append(self._add(f"STYLED_ITEM('color',(#{style}),#{first})"))
+        self._layers.setdefault(part.layer, []).append(first)
+        return definition
+
+    def _color(self, color: Color) -> int:
+        if color not in self._colors:
+            shares = numbers(value / 255 for value in color)
+            self._colors[color] = self._add(f"COLOUR_RGB('',{shares})")
+        return self._colors[color]
+
+    def _line_style(self, color: Color) -> int:
+        font = self._add("DRAUGHTING_PRE_DEFINED_CURVE_FONT('continuous')")
+        width = "POSITIVE_LENGTH_MEASURE(0.1)"
+        style = self._add(f"CURVE_STYLE('',#{font},{width},#{self._color(color)})")
+        return self._add(f"PRESENTATION_STYLE_ASSIGNMENT((#{style}))")
+
+    def _surface_style(self, color: Color) -> int:
+        if color not in self._styles:
+            entity = self._color(color)
+            for form in (
+                "FILL_AREA_STYLE_COLOUR('',{})", "FILL_AREA_STYLE('',({}))",
+                "SURFACE_STYLE_FILL_AREA({})", "SURFACE_SIDE_STYLE('',({}))",
+                "SURFACE_STYLE_USAGE(.BOTH.,{})", "PRESENTATION_STYLE_ASSIGNMENT(({}))",
+            ):  # fmt: skip
+                entity = self._add(form.format(f"#{entity}"))
+            self._styles[color] = entity
+        return self._styles[color]
+
+    def _place(self, whole: _Definition, part: _Definition, instance: Instance) -> int:
+        """Number of the placement in the assembly."""
+        name, placement = string(instance.name), self._placement(instance.place)
+        motion = self._add(f"ITEM_DEFINED_TRANSFORMATION('','',#{self._origin},#{placement})")
+        relation = self._add(
+            f"(REPRESENTATION_RELATIONSHIP('','',#{part.shape},#{whole.shape})"
+            f"REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#{motion})"
+            "SHAPE_REPRESENTATION_RELATIONSHIP())"
+        )
+        usage = self._add(
+            f"NEXT_ASSEMBLY_USAGE_OCCURRENCE({name},{name},'',#{whole.product},"
+            f"#{part.product},$)"
+        )
+        shape = self._add(
+            f"PRODUCT_DEFINITION_SHAPE('Placement','Placement of an item',#{usage})"
+        )
+        self._add(f"CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#{relation},#{shape})")
+        return placement

@@ -1,0 +1,285 @@
+"""
+Solids, surfaces and lines as entities of STEP files (ISO 10303-21), text without a CAD kernel.
+
+Bodies of the same topology differ in their numbers alone. A batch says the topology once, and
+gives the numbers of its curves and surfaces as arrays; its text is laid out once and filled for
+each body. All geometry is elementary: no curve is written in the parameters of a surface.
+"""
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Final, Literal, TypeAlias
+
+import numpy as np
+
+from ...kernel.arrays import FloatArray, IntArray, norm, unit
+from .values import real, references
+
+Ring: TypeAlias = tuple[tuple[int, bool], ...]
+"""Edges of a closed chain, each with whether it is run from its start to its end."""
+
+CURVES: Final = {"LINE": 3, "CIRCLE": 10, "ELLIPSE": 11}
+"""
+Curves and how many numbers tell them: the unit direction of a line, which leaves its start;
+centre, unit axis, unit vector to parameter 0, and one or two radii, the larger first.
+"""
+
+SURFACES: Final = {"PLANE": 6, "SPHERICAL_SURFACE": 10, "CYLINDRICAL_SURFACE": 10}
+"""
+Surfaces and how many numbers tell them: unit normal and x axis of a plane, which passes through
+a corner; origin, unit z and x axes, and the radius. Normals point away from centres and axes.
+"""
+
+
+_SENSES: Final = {True: ".T.", False: ".F."}
+
+
+@dataclass(frozen=True)
+class EdgeBatch:
+    """
+    The same edge of m bodies.
+
+    Attributes
+    ----------
+    start, end : int
+        Its corners.
+    kind : str
+        One of `CURVES`; circles and ellipses run counter-clockwise about their axes.
+    numbers : (m, n) float array
+        What tells the curves.
+    """
+
+    start: int
+    end: int
+    kind: Literal["LINE", "CIRCLE", "ELLIPSE"]
+    numbers: FloatArray
+
+
+@dataclass(frozen=True)
+class FaceBatch:
+    """
+    The same face of m bodies.
+
+    Attributes
+    ----------
+    kind : str
+        One of `SURFACES`.
+    numbers : (m, n) float array
+        What tells the surfaces.
+    ring : tuple of (int, bool)
+        Its edges, counter-clockwise about its normal.
+    is_along : bool
+        Whether the normal of the face, out of a solid, is that of the surface.
+    corner : int
+        Corner through which a plane passes.
+    """
+
+    kind: Literal["PLANE", "SPHERICAL_SURFACE", "CYLINDRICAL_SURFACE"]
+    numbers: FloatArray
+    ring: Ring
+    is_along: bool = True
+    corner: int = 0
+
+
+@dataclass(frozen=True)
+class BodyLayout:
+    """
+    Text of bodies of one topology.
+
+    Attributes
+    ----------
+    template : str
+        The entities, to be filled with numbers and then with the numbers of entities.
+    references : (n,) int array
+        Numbers of entities in the order of the text, the first entity being 0.
+    n_entities : int
+        How many entities there are.
+    representation : str
+        Type of the shape representation that holds such bodies.
+    """
+
+    template: str
+    references: IntArray
+    n_entities: int
+    representation: str
+
+
+@dataclass(frozen=True)
+class Body:
+    """
+    A body to be written.
+
+    Attributes
+    ----------
+    layout : BodyLayout
+        Its topology.
+    numbers : (n,) float array
+        Its numbers, finite, in the unit of the file.
+    """
+
+    layout: BodyLayout
+    numbers: FloatArray
+
+    def text(self, first: int) -> str:
+        """
+        Entities of the body.
+
+        Parameters
+        ----------
+        first : int
+            Number of the first of them, which is the solid, surface or set of lines.
+
+        Returns
+        -------
+        str
+            The text; every number is read back as the same number.
+        """
+        filled = self.layout.template % tuple(map(real, self.numbers.tolist()))
+        return filled % tuple((self.layout.references + first).tolist())
+
+
+def bodies(
+    corners: Iterable[FloatArray],
+    edges: Iterable[EdgeBatch],
+    faces: Iterable[FaceBatch],
+    *,
+    is_solid: bool = True,
+) -> list[Body]:
+    """
+    Bodies of one topology.
+
+    Parameters
+    ----------
+    corners : iterable of (m, 3) float array
+        Their corners.
+    edges : iterable of EdgeBatch
+        Their edges.
+    faces : iterable of FaceBatch
+        Their faces.
+    is_solid : bool
+        Whether the faces are closed.
+
+    Returns
+    -------
+    list of Body
+        m bodies.
+    """
+    corners, edges, faces = list(corners), list(edges), list(faces)
+    layout = _layout(
+        len(corners),
+        tuple((edge.start, edge.end, edge.kind) for edge in edges),
+        tuple((face.kind, face.ring, face.is_along, face.corner) for face in faces),
+        is_solid=is_solid,
+    )
+    parts = [*corners, *(edge.numbers for edge in edges), *(face.numbers for face in faces)]
+    # Negative zeros would be written as such.
+    return [Body(layout, numbers) for numbers in np.concatenate(parts, axis=1) + 0.0]
+
+
+def line_body(segments: FloatArray) -> Body:
+    """
+    A set of straight lines.
+
+    Parameters
+    ----------
+    segments : (n, 2, 3) float array
+        Their ends.
+
+    Returns
+    -------
+    Body
+        The set.
+    """
+    changes = segments[:, 1] - segments[:, 0]
+    numbers = [segments.reshape(-1, 6), unit(changes), norm(changes)[:, None]]
+    return Body(_line_layout(len(segments)), np.concatenate(numbers, axis=1).ravel() + 0.0)
+
+
+_Edge: TypeAlias = tuple[int, int, str]
+_Face: TypeAlias = tuple[str, Ring, bool, int]
+
+
+class _Entities:
+    """Entities numbered from 0 as they come, after those whose places are kept for the end."""
+
+    def __init__(self, kept: int) -> None:
+        self.lines = [""] * kept
+
+    def add(self, text: str) -> int:
+        self.lines.append(f"#{len(self.lines)}={text};\n")
+        return len(self.lines) - 1
+
+    def layout(self, representation: str) -> BodyLayout:
+        text = "".join(self.lines)
+        numbers = np.array([int(found) for found in re.findall(r"#(\d+)", text)])
+        template = re.sub(r"#\d+", "#%%d", text)
+        return BodyLayout(template, numbers, len(self.lines), representation)
+
+    def point(self, kind: str = "CARTESIAN_POINT") -> int:
+        return self.add(f"{kind}('',(%s,%s,%s))")
+
+    def placement(self, origin: int) -> int:
+        axis, along = self.point("DIRECTION"), self.point("DIRECTION")
+        return self.add(f"AXIS2_PLACEMENT_3D('',#{origin},#{axis},#{along})")
+
+    def curve(self, kind: str, start: int) -> int:
+        if kind == "LINE":
+            vector = self.add(f"VECTOR('',#{self.point('DIRECTION')},1.)")
+            return self.add(f"LINE('',#{start},#{vector})")
+        radii = "%s,%s" if kind == "ELLIPSE" else "%s"
+        return self.add(f"{kind}('',#{self.placement(self.point())},{radii})")
+
+    def surface(self, kind: str, corner: int) -> int:
+        if kind == "PLANE":
+            return self.add(f"PLANE('',#{self.placement(corner)})")
+        return self.add(f"{kind}('',#{self.placement(self.point())},%s)")
+
+
+@lru_cache(maxsize=1000)
+def _layout(
+    n_corners: int, edges: tuple[_Edge, ...], faces: tuple[_Face, ...], *, is_solid: bool
+) -> BodyLayout:
+    # The body and its shell come first; what they refer to is known at the end.
+    entities = _Entities(kept=2)
+    points = [entities.point() for _ in range(n_corners)]
+    vertices = [entities.add(f"VERTEX_POINT('',#{point})") for point in points]
+    edge_curves = [
+        entities.add(
+            f"EDGE_CURVE('',#{vertices[start]},#{vertices[end]},"
+            f"#{entities.curve(kind, points[start])},.T.)"
+        )
+        for start, end, kind in edges
+    ]
+    shell: list[int] = []
+    for kind, ring, is_along, corner in faces:
+        uses = [
+            entities.add(f"ORIENTED_EDGE('',*,*,#{edge_curves[edge]},{_SENSES[is_forward]})")
+            for edge, is_forward in ring
+        ]
+        loop = entities.add(f"EDGE_LOOP('',({references(uses)}))")
+        bound = entities.add(f"FACE_OUTER_BOUND('',#{loop},.T.)")
+        surface = entities.surface(kind, points[corner])
+        face = f"ADVANCED_FACE('',(#{bound}),#{surface},{_SENSES[is_along]})"
+        shell.append(entities.add(face))
+    body, shell_kind, representation = (
+        ("MANIFOLD_SOLID_BREP('',#1)", "CLOSED_SHELL", "ADVANCED_BREP")
+        if is_solid
+        else ("SHELL_BASED_SURFACE_MODEL('',(#1))", "OPEN_SHELL", "MANIFOLD_SURFACE")
+    )
+    entities.lines[0] = f"#0={body};\n"
+    entities.lines[1] = f"#1={shell_kind}('',({references(shell)}));\n"
+    return entities.layout(f"{representation}_SHAPE_REPRESENTATION")
+
+
+def _line_layout(count: int) -> BodyLayout:
+    entities = _Entities(kept=1)
+    lines: list[int] = []
+    for _ in range(count):
+        start, end = entities.point(), entities.point()
+        line = entities.curve("LINE", start)
+        ends = f"(#{start},PARAMETER_VALUE(0.)),(#{end},PARAMETER_VALUE(%s))"
+        lines.append(entities.add(f"TRIMMED_CURVE('',#{line},{ends},.T.,.PARAMETER.)"))
+    entities.lines[0] = f"#0=GEOMETRIC_CURVE_SET('',({references(lines)}));\n"
+    return entities.layout("GEOMETRICALLY_BOUNDED_WIREFRAME_SHAPE_REPRESENTATION")

@@ -1,0 +1,53 @@
+"""Cylinders about node axes, and the axes, as bodies of STEP files."""
+
+import numpy as np
+
+from ...kernel.arrays import FloatArray, unit
+from .bodies import Body, EdgeBatch, FaceBatch, Ring, bodies
+
+
+def cylinder_bodies(
+    bases: FloatArray, directions: FloatArray, heights: FloatArray, radius: float
+) -> list[Body]:
+    """
+    Closed solids of cylinders.
+
+    Parameters
+    ----------
+    bases : (n, 3) float array
+        Centres of the discs at which they begin.
+    directions : (n, 3) float array
+        Unit vectors along the axes.
+    heights : (n,) float array
+        Heights.
+    radius : float
+        Radius of all.
+
+    Returns
+    -------
+    list of Body
+        n solids: a cylinder, whose two ends meet in a line, and two discs.
+    """
+    x = _across(directions)
+    discs = [bases, bases + heights[:, None] * directions]
+    corners = [disc + radius * x for disc in discs]
+    radii = np.full((len(bases), 1), radius)
+    around = np.concatenate([directions, x], axis=1)
+    circles = [np.concatenate([disc, around, radii], axis=1) for disc in discs]
+    edges = [
+        EdgeBatch(0, 0, "CIRCLE", circles[0]), EdgeBatch(1, 1, "CIRCLE", circles[1]),
+        EdgeBatch(0, 1, "LINE", directions),
+    ]  # fmt: skip
+    ring: Ring = ((0, True), (2, True), (1, False), (2, False))
+    faces = [
+        FaceBatch("CYLINDRICAL_SURFACE", circles[0], ring),
+        FaceBatch("PLANE", np.concatenate([-directions, x], axis=1), ((0, False),), corner=0),
+        FaceBatch("PLANE", around, ((1, True),), corner=1),
+    ]
+    return bodies(corners, edges, faces)
+
+
+def _across(directions: FloatArray) -> FloatArray:
+    """Unit vectors at right angles to others."""
+    least = np.eye(3)[np.abs(directions).argmin(axis=1)]
+    return unit(np.cross(directions, least))

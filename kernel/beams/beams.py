@@ -1,0 +1,386 @@
+"""
+Beams: annuli of a thickness, cut at the nodes so that neighbours do not run into each other.
+
+A beam has two plane sides at half the thickness from the plane of its annulus, an outer and an
+inner face (cylinders, or planes where the arcs are straight), and at each end one or two planes
+that contain the direction of the node axis. All of them are ruled by lines along the end
+direction, so an end is told by three levels across the thickness - the lower side, the ridge
+where its two planes meet, the upper side - and by how far the cut lies inside at each.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, dot, norm
+from ..spheres.arcs import Arcs, segment_areas, sphere_arcs
+from ..spheres.rows import meet_lines, recenter, rescale
+from ..support.annuli import Annuli, select_annuli
+
+
+@dataclass(frozen=True)
+class DrillMarks:
+    """
+    Holes at the ends of beams (`kernel.drilling`).
+
+    Attributes
+    ----------
+    centers : (B, 2, n, 3) float array
+        Centres at both ends, from the outer to the inner side; local, in the planes of the
+        annuli.
+    fits : (B,) bool array
+        Beams that get them; what is said of the others is of no use.
+    diameter : float
+        Diameter of all, in model units.
+    """
+
+    centers: FloatArray
+    fits: BoolArray
+    diameter: float
+
+    @property
+    def holes(self) -> FloatArray:
+        """
+        Centres of all holes of each beam.
+
+        Returns
+        -------
+        (B, 2 n, 3) float array
+            Those of the first end first; local.
+        """
+        n_beams, n_ends, count, _ = self.centers.shape
+        return self.centers.reshape(n_beams, n_ends * count, 3)
+
+
+@dataclass(frozen=True)
+class Beams:
+    """
+    Beams that can be made, in the order of their edges.
+
+    Attributes
+    ----------
+    annuli : Annuli
+        Planes, circles and ends, one row per beam; points are local to its origins.
+    levels : (B, 2, 3) float array
+        Heights, along the normal of the plane, of the lower side, the ridge and the upper side
+        at both ends.
+    insets : (B, 2, 3) float array
+        Distances of the cut from the line of the end, into the beam, at the three levels;
+        between them the cut is plane.
+    is_flat : (B, 2) bool array
+        Whether the end is one plane; its ridge is then a line of that plane.
+    corners : (B, 2, 2, 3, 3) float array
+        Corners at both ends, on the outer and on the inner face, at the three levels; local.
+    sections : (B, 2, 2, 3) float array
+        Corners of the section in the middle of the thickness: at both ends, outer and inner.
+    thickness, node_gap, node_radius : float
+        As they were asked for, in model units.
+    marks : DrillMarks, optional
+        Where holes are to be drilled.
+    """
+
+    annuli: Annuli
+    levels: FloatArray
+    insets: FloatArray
+    is_flat: BoolArray
+    corners: FloatArray
+    sections: FloatArray
+    thickness: float
+    node_gap: float
+    node_radius: float
+    marks: DrillMarks | None = None
+
+    @property
+    def n_beams(self) -> int:
+        """
+        Number of beams.
+
+        Returns
+        -------
+        int
+            B.
+        """
+        return self.annuli.n_annuli
+
+
+def inward_directions(annuli: Annuli) -> FloatArray:
+    """
+    Unit vectors from the lines of the ends into the annuli, across them in their planes.
+
+    Parameters
+    ----------
+    annuli : Annuli
+        B annuli.
+
+    Returns
+    -------
+    (B, 2, 3) float array
+        Vectors at both ends.
+    """
+    across = np.cross(annuli.end_directions, annuli.frames[:, None, 2])
+    outer = annuli.corners[:, :, 0]
+    chords = outer[:, ::-1] - outer
+    return np.where(dot(across, chords)[..., None] < 0, -across, across)
+
+
+def insets_at(levels: FloatArray, insets: FloatArray, heights: FloatArray) -> FloatArray:
+    """
+    How far cuts lie inside at a height.
+
+    Parameters
+    ----------
+    levels, insets : (B, 2, 3) float array
+        Levels and insets of the ends, as in `Beams`.
+    heights : (B,) float array
+        Height over the plane of each annulus.
+
+    Returns
+    -------
+    (B, 2) float array
+        Insets of both ends.
+    """
+    height = heights[:, None]
+    upper = height > levels[..., 1]
+    near, far = insets[..., 1], np.where(upper, insets[..., 2], insets[..., 0])
+    span = np.where(upper, levels[..., 2], levels[..., 0]) - levels[..., 1]
+    share = np.divide(height - levels[..., 1], span, out=np.zeros_like(span), where=span != 0)
+    return near + share * (far - near)
+
+
+def cut_corners(annuli: Annuli, insets: FloatArray) -> tuple[FloatArray, BoolArray]:
+    """
+    Where lines parallel to the ends meet the circles.
+
+    Parameters
+    ----------
+    annuli : Annuli
+        B annuli.
+    insets : (B, 2, n) float array
+        Distances of the lines from those of the ends, into the annuli.
+
+    Returns
+    -------
+    points : (B, 2, 2, n, 3) float array
+        Points at both ends, on the outer and the inner circle; local, in the planes.
+    exists : (B,) bool array
+        Whether all lines of an annulus meet its circles.
+    """
+    across = inward_directions(annuli)[:, :, None, None]
+    points = annuli.corners[:, :, :, None] + insets[:, :, None, :, None] * across
+    along = np.broadcast_to(annuli.end_directions[:, :, None, None], points.shape)
+    rows = np.stack([annuli.outer, annuli.inner], 1)[:, None, :, None]
+    rows = np.broadcast_to(rows, (*points.shape[:-1], 5))
+    steps, exists = meet_lines(rows.reshape(-1, 5), points.reshape(-1, 3), along.reshape(-1, 3))
+    steps, exists = steps.reshape(points.shape[:-1]), exists.reshape(points.shape[:-1])
+    reaches = np.asarray(exists.all(axis=(1, 2, 3)))
+    return points + steps[..., None] * along, reaches
+
+
+def select_beams(beams: Beams, keep: BoolArray) -> Beams:
+    """
+    Some of the beams.
+
+    Parameters
+    ----------
+    beams : Beams
+        B beams.
+    keep : (B,) bool array
+        Which ones.
+
+    Returns
+    -------
+    Beams
+        The chosen beams, in the same order.
+    """
+    marks = beams.marks
+    return replace(
+        beams,
+        annuli=select_annuli(beams.annuli, keep),
+        levels=beams.levels[keep],
+        insets=beams.insets[keep],
+        is_flat=beams.is_flat[keep],
+        corners=beams.corners[keep],
+        sections=beams.sections[keep],
+        marks=marks and DrillMarks(marks.centers[keep], marks.fits[keep], marks.diameter),
+    )
+
+
+def scale_beams(beams: Beams, factor: float) -> Beams:
+    """
+    Beams in another unit of length.
+
+    Parameters
+    ----------
+    beams : Beams
+        B beams.
+    factor : float
+        Positive number of new units in an old one.
+
+    Returns
+    -------
+    Beams
+        The same beams; every length is multiplied by the factor.
+    """
+    annuli, marks = beams.annuli, beams.marks
+    scaled = replace(
+        annuli,
+        origins=annuli.origins * factor,
+        outer=rescale(annuli.outer, factor),
+        inner=rescale(annuli.inner, factor),
+        corners=annuli.corners * factor,
+        kappa=annuli.kappa * factor**2,
+        depth=annuli.depth * factor,
+    )
+    return replace(
+        beams,
+        annuli=scaled,
+        levels=beams.levels * factor,
+        insets=beams.insets * factor,
+        corners=beams.corners * factor,
+        sections=beams.sections * factor,
+        thickness=beams.thickness * factor,
+        node_gap=beams.node_gap * factor,
+        node_radius=beams.node_radius * factor,
+        marks=marks and DrillMarks(marks.centers * factor, marks.fits, marks.diameter * factor),
+    )
+
+
+def section_arcs(beams: Beams) -> tuple[Arcs, Arcs]:
+    """
+    Outer and inner arcs in the middle of the thickness, between the cuts of the ends.
+
+    Parameters
+    ----------
+    beams : Beams
+        B beams.
+
+    Returns
+    -------
+    outer, inner : Arcs
+        B arcs each, local, from the first to the second end.
+    """
+    return level_arcs(beams, beams.sections, np.zeros(beams.n_beams))
+
+
+def side_arcs(beams: Beams, level: int) -> tuple[Arcs, Arcs]:
+    """
+    Outer and inner arcs that bound a side.
+
+    Parameters
+    ----------
+    beams : Beams
+        B beams.
+    level : int
+        0 for the lower, 2 for the upper side.
+
+    Returns
+    -------
+    outer, inner : Arcs
+        B arcs each, local, from the first to the second end.
+    """
+    return level_arcs(beams, beams.corners[:, :, :, level], beams.levels[:, 0, level])
+
+
+def level_arcs(beams: Beams, corners: FloatArray, heights: FloatArray) -> tuple[Arcs, Arcs]:
+    """
+    Outer and inner arcs at a height, between given corners.
+
+    Parameters
+    ----------
+    beams : Beams
+        B beams.
+    corners : (B, 2, 2, 3) float array
+        Corners at both ends, outer and inner, at the height; local.
+    heights : (B,) float array
+        Heights over the planes of the annuli.
+
+    Returns
+    -------
+    outer, inner : Arcs
+        B arcs each, local, from the first to the second end.
+    """
+    planes = beams.annuli.frames[:, 2]
+    lift = heights[:, None] * planes
+    outer, inner = (
+        sphere_arcs(recenter(rows, -lift), -planes, corners[:, 0, k], corners[:, 1, k])
+        for k, rows in enumerate((beams.annuli.outer, beams.annuli.inner))
+    )
+    return outer, inner
+
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
+
+
+def beam_volumes(beams: Beams) -> FloatArray:
+    """
+    Volumes of beams.
+
+    Parameters
+    ----------
+    beams : Beams
+        B beams.
+
+    Returns
+    -------
+    (B,) float array
+        Volumes, in cubed model units: the areas of plane sections, integrated over the
+        thickness with 6 Gauss points between the levels of the two ridges.
+    """
+    half = np.full(beams.n_beams, beams.thickness / 2)
+    ridges = np.sort(beams.levels[:, :, 1], axis=1)
+    bounds = np.column_stack([-half, ridges, half])
+    total = np.zeros(beams.n_beams)
+    for low, high in zip(bounds.T[:-1], bounds.T[1:], strict=True):
+        for node, weight in zip(_NODES, _WEIGHTS, strict=True):
+            heights = (low + high) / 2 + node * (high - low) / 2
+            total += weight * (high - low) / 2 * _section_areas(beams, heights)
+    return total
+
+
+def _section_areas(beams: Beams, heights: FloatArray) -> FloatArray:
+    insets = insets_at(beams.levels, beams.insets, heights)
+    corners = cut_corners(beams.annuli, insets[..., None])[0][:, :, :, 0]
+    outer, inner = level_arcs(beams, corners, np.zeros(beams.n_beams))
+    diagonal, other = outer.ends - inner.starts, outer.starts - inner.ends
+    quadrilaterals = dot(np.cross(diagonal, other), beams.annuli.frames[:, 2]) / 2
+    return quadrilaterals + segment_areas(outer) - segment_areas(inner)
+
+
+def node_axis_segments(beams: Beams) -> tuple[tuple[int, ...], FloatArray]:
+    """
+    The lines in which the beams of each node meet.
+
+    Parameters
+    ----------
+    beams : Beams
+        B beams.
+
+    Returns
+    -------
+    vertices : tuple of int
+        The vertices that carry beams.
+    segments : (n, 2, 3) float array
+        Outer and inner corner at each, of its first beam, in model coordinates.
+    """
+    annuli = beams.annuli
+    vertices, first = np.unique(annuli.edge_vertices.ravel(), return_index=True)
+    corners = annuli.corners.reshape(-1, 2, 3) + np.repeat(annuli.origins, 2, axis=0)[:, None]
+    return tuple(vertices.tolist()), corners[first]
+
+
+def beam_lengths(beams: Beams) -> FloatArray:
+    """
+    Largest lengths of the pieces.
+
+    Parameters
+    ----------
+    beams : Beams
+        B beams.
+
+    Returns
+    -------
+    (B,) float array
+        Longest chord between the corners of the two ends, in model units.
+    """
+    ends = beams.corners.reshape(beams.n_beams, 2, 6, 3)
+    return norm(ends[:, 0, :, None] - ends[:, 1, None]).max(axis=(1, 2))

@@ -1,1 +1,0 @@
-"""The terms of energy (6) and their table."""

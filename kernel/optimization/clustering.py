@@ -1,0 +1,185 @@
+"""
+Few moulds: the radii of a sphere mesh gathered into clusters.
+
+Curvatures are clustered, not radii: the radius of a nearly flat panel is arbitrarily large and
+would decide alone. The side to which a panel curves is no property of the mould; it is kept.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, IntArray, sum_by
+from ..errors import InputError
+from ..meshes.mesh import Mesh
+from ..sphere_meshes.sphere_mesh import SphereMesh
+from ..spheres.circles import circle_pencils, face_circles, pencil_spheres
+from ..tolerances import SAME_CURVATURE
+from .energies.table import EnergyWeights
+from .pencil import pencil_angles
+from .whole_energy import Conditions, Optimization, move_vertices
+
+RELAXED_CLOSENESS = 0.05
+"""Weight that keeps vertices where they were when nothing else matters."""
+
+
+@dataclass(frozen=True)
+class RadiusClusters:
+    """
+    Moulds and the panels that are made on them.
+
+    Attributes
+    ----------
+    labels : (F,) int array
+        Mould of each face, 0 the sharpest.
+    radii : (k,) float array
+        Radius of each mould, ascending; infinite for a flat one.
+    counts : (k,) int array
+        Number of faces per mould.
+    reassigned : (F,) bool array
+        Faces whose own mould would be smaller than their circle, moved to a larger one.
+    """
+
+    labels: IntArray
+    radii: FloatArray
+    counts: IntArray
+    reassigned: BoolArray
+
+
+def cluster_radii(
+    sphere_mesh: SphereMesh, k: int, seed: int = 0
+) -> tuple[SphereMesh, RadiusClusters]:
+    """
+    Replace the radii of all panels by at most k, vertices fixed.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+    k : int
+        Number of moulds, at least 1; fewer come out where fewer curvatures differ.
+    seed : int
+        Seed of the k-means starts.
+
+    Returns
+    -------
+    sphere_mesh : SphereMesh
+        Spheres through the same circles with the radius of their mould, curved to the same
+        side: ``t = asin(ρ / R)``.
+    clusters : RadiusClusters
+        The moulds.
+
+    Raises
+    ------
+    InputError
+        If k is below 1.
+
+    Notes
+    -----
+    k-means with 10 starts on ``|κ|``, in the unit of the sharpest. A panel cannot lie on a
+    sphere smaller than its circle (R < ρ): such a face goes to the sharpest mould on which it
+    lies, and the flattest mould grows, where necessary, to carry all of its faces.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Sec. 4.3.
+    """
+    if k < 1:
+        raise InputError(f"the number of moulds must be at least 1, not {k}")
+    circles, _ = face_circles(sphere_mesh.mesh)
+    radii = np.sqrt(circles.radii_squared)
+    angles = pencil_angles(sphere_mesh, circles)
+    # What rounding leaves of a plane is no curvature.
+    angles = np.where(np.abs(np.sin(angles)) < SAME_CURVATURE, 0.0, angles)
+    curvatures = np.abs(np.sin(angles)) / radii
+    side = np.where(angles < 0, -1.0, 1.0)
+
+    centers = _centers(curvatures, k, seed)
+    centers[0] = min(centers[0], 1 / radii.max())
+    fits = centers[None, :] * radii[:, None] <= 1
+    distance = np.abs(centers[None, :] - curvatures[:, None])
+    nearest = np.argmin(distance, axis=1)
+    chosen = np.argmin(np.where(fits, distance, np.inf), axis=1)
+    used, labels = np.unique(-centers[chosen], return_inverse=True)
+    moulds = -used
+    clustered = side * np.arcsin(np.minimum(radii * moulds[labels], 1.0))
+    planes, great_spheres = circle_pencils(circles)
+    rows = pencil_spheres(planes, great_spheres, clustered)
+    with np.errstate(divide="ignore"):
+        clusters = RadiusClusters(
+            labels.astype(np.int64), 1 / moulds, np.bincount(labels), chosen != nearest
+        )
+    return SphereMesh.from_local(sphere_mesh.mesh, rows), clusters
+
+
+def relax_moulds(
+    sphere_mesh: SphereMesh,
+    clusters: RadiusClusters,
+    tolerance: float,
+    regularity: float = 0.0,
+    support: float = 0.0,
+) -> tuple[SphereMesh, Optimization]:
+    """
+    Let vertices and spheres of given radii move to where the angles are smallest.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        Spheres of the moulds' radii, as `cluster_radii` returns them.
+    clusters : RadiusClusters
+        The moulds.
+    tolerance : float
+        How far vertices may move, in mean edges.
+    regularity, support : float
+        Weights of upright planes and of nodes without torsion.
+
+    Returns
+    -------
+    sphere_mesh : SphereMesh
+        The same radii, on moved vertices.
+    optimization : Optimization
+        Where its `vertex_miss` exceeds `COMMON_VERTEX`, the vertices could not reach the
+        spheres within the tolerance.
+
+    Raises
+    ------
+    InputError
+        If the tolerance is negative or not finite.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Sec. 4.3.
+    """
+    radii = np.maximum(clusters.radii[clusters.labels], _circle_radii(sphere_mesh.mesh))
+    conditions = Conditions(tolerance=tolerance, fixed_radii=radii)
+    weights = EnergyWeights(closeness=RELAXED_CLOSENESS, regularity=regularity, support=support)
+    return move_vertices(sphere_mesh, weights, conditions)
+
+
+def _circle_radii(mesh: Mesh) -> FloatArray:
+    return np.sqrt(face_circles(mesh)[0].radii_squared)
+
+
+def _centers(curvatures: FloatArray, k: int, seed: int) -> FloatArray:
+    """Ascending cluster centres of the curvatures, at most k."""
+    scale = float(curvatures.max())
+    if scale == 0:
+        return np.zeros(1)
+    ordered = np.sort(curvatures)
+    is_next = np.diff(ordered) > SAME_CURVATURE * scale
+    groups: IntArray = np.concatenate(
+        [np.zeros(1, np.int64), np.cumsum(is_next, dtype=np.int64)]
+    )
+    count = int(groups[-1]) + 1
+    if count <= k:
+        return sum_by(groups, ordered, count) / np.bincount(groups)
+    return np.sort(_k_means(curvatures / scale, k, seed)) * scale
+
+
+def _k_means(values: FloatArray, k: int, seed: int) -> FloatArray:
+    from sklearn import cluster  # pyright: ignore[reportMissingTypeStubs]
+
+    k_means: Any = cluster.k_means  # pyright: ignore[reportUnknownVariableType, reportUnknownMemberType]
+    centers, _, _ = k_means(values[:, None], k, n_init=10, random_state=seed)
+    return np.asarray(centers, np.float64)[:, 0]

@@ -1,0 +1,68 @@
+"""
+The line of centres of two spheres, without dividing by a curvature.
+
+``D = A B' - A' B`` is the vector between the centres times ``2 A A'``; it does not depend on
+the origin and vanishes for two planes.
+"""
+
+import numpy as np
+
+from ...arrays import FloatArray, IntArray, dot
+from ...spheres.rows import normals
+from .setting import Setting, Unknowns
+
+
+def center_lines(setting: Setting, unknowns: Unknowns) -> FloatArray:
+    """
+    Vectors ``D = A B' - A' B`` across the interior edges.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed.
+    unknowns : Unknowns
+        Spheres.
+
+    Returns
+    -------
+    (E, 3) float array
+        Normals of the planes in which neighbours meet, not of unit length.
+    """
+    first, second = (unknowns.spheres[faces] for faces in setting.edge_faces.T)
+    b, c = setting.edge_middles
+    return first[:, :1] * normals(second, c) - second[:, :1] * normals(first, b)
+
+
+def center_line_gradients(
+    setting: Setting, unknowns: Unknowns, edges: IntArray, directions: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """
+    Derivatives of ``D·a`` by the rows of the two faces.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed.
+    unknowns : Unknowns
+        Spheres.
+    edges : (m,) int array
+        Edges.
+    directions : (m, 3) float array
+        Vectors a.
+
+    Returns
+    -------
+    tuple of two (m, 5) float arrays
+        The derivatives by C are zero.
+    """
+    first, second = (unknowns.spheres[faces] for faces in setting.edge_faces[edges].T)
+    b, c = (middles[edges] for middles in setting.edge_middles)
+    return (
+        _gradient(normals(second, c) + 2 * second[:, :1] * b, -second[:, :1], directions),
+        _gradient(-normals(first, b) - 2 * first[:, :1] * c, first[:, :1], directions),
+    )
+
+
+def _gradient(by_a: FloatArray, by_b: FloatArray, directions: FloatArray) -> FloatArray:
+    zero = np.zeros(len(directions))
+    return np.column_stack([dot(by_a, directions), by_b * directions, zero])

@@ -1,0 +1,66 @@
+"""E_dual: dual normals have length one. Steps are normalised: its value is rounding alone."""
+
+import numpy as np
+
+from ...arrays import FloatArray, dot
+from ...solvers.blocks import Block
+from .setting import Group, Setting, Unknowns
+
+
+def blocks(setting: Setting) -> tuple[Block, ...]:
+    """
+    What each residual depends on: the dual normal of a node.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed.
+
+    Returns
+    -------
+    tuple of Block
+        One row per interior vertex.
+    """
+    return (Block(Group.NORMAL, np.arange(len(setting.node_vertices))),)
+
+
+def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:  # noqa: ARG001 - as all terms
+    """
+    ``|n|² - 1`` of each node.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed.
+    unknowns : Unknowns
+        Dual normals.
+
+    Returns
+    -------
+    (N,) float array
+        Residuals.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Sec. 4.1.
+    """
+    return dot(unknowns.normals, unknowns.normals) - 1
+
+
+def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  # noqa: ARG001
+    """
+    Derivatives by the dual normal.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed.
+    unknowns : Unknowns
+        Dual normals.
+
+    Returns
+    -------
+    tuple of one (N, 3) float array
+        ``2 n``.
+    """
+    return (2 * unknowns.normals,)

@@ -1,0 +1,86 @@
+"""E_fair: every interior vertex lies near the mean of its neighbours."""
+
+import numpy as np
+
+from ...arrays import FloatArray
+from ...solvers.blocks import Block
+from .setting import Group, Setting, Unknowns
+
+
+def blocks(setting: Setting) -> tuple[Block, ...]:
+    """
+    What each residual depends on: an interior vertex and its neighbours.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed.
+
+    Returns
+    -------
+    tuple of Block
+        Three rows per interior vertex.
+    """
+    rings = (setting.node_vertices, *setting.ring_vertices.T)
+    return tuple(Block(Group.VERTEX, np.repeat(ids, 3)) for ids in rings)
+
+
+def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
+    """
+    Umbrella vector of each interior vertex: the vertex minus the mean of its neighbours.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed.
+    unknowns : Unknowns
+        Displacements.
+
+    Returns
+    -------
+    (3 N,) float array
+        Residuals, in mean edges.
+
+    References
+    ----------
+    Kobbelt, Campagna, Vorsatz, Seidel 1998, Interactive multi-resolution modeling on arbitrary
+    meshes, Sec. 3.
+    """
+    moved = unknowns.displacements
+    weights = _weights(setting)
+    change = moved[setting.node_vertices] - np.einsum(
+        "nk,nkc->nc", weights, moved[setting.ring_vertices]
+    )
+    return (setting.node_umbrellas + change).ravel()
+
+
+def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  # noqa: ARG001
+    """
+    Derivatives by the points of the vertex and of its neighbours.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed.
+    unknowns : Unknowns
+        Displacements.
+
+    Returns
+    -------
+    tuple of (3 N, 3) float arrays
+        The identity, and minus one over the valence times it.
+    """
+    identity = np.eye(3)
+    count = len(setting.node_vertices)
+    own = np.tile(identity, (count, 1))
+    others = (
+        (-column[:, None, None] * identity).reshape(3 * count, 3)
+        for column in _weights(setting).T
+    )
+    return own, *others
+
+
+def _weights(setting: Setting) -> FloatArray:
+    """One over the valence for neighbours, zero where the table is filled up."""
+    is_neighbour = setting.ring_vertices != setting.node_vertices[:, None]
+    return is_neighbour / np.maximum(is_neighbour.sum(axis=1, keepdims=True), 1)

@@ -1,0 +1,74 @@
+"""E_reg: the planes in which neighbouring spheres meet stand upright on the surface."""
+
+import numpy as np
+
+from ...arrays import FloatArray, dot
+from ...solvers.blocks import Block
+from .centers import center_line_gradients, center_lines
+from .setting import Group, Setting, Unknowns
+
+
+def blocks(setting: Setting) -> tuple[Block, ...]:
+    """
+    What each residual depends on: the two faces of an edge.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed.
+
+    Returns
+    -------
+    tuple of Block
+        Two rows per interior edge.
+    """
+    first, second = np.concatenate([setting.edge_faces, setting.edge_faces]).T
+    return Block(Group.SPHERE, first), Block(Group.SPHERE, second)
+
+
+def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
+    """
+    ``D·n_e`` and ``D·e`` over each edge, with D along the line of centres.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed; n_e the sum of the face normals, e the unit vector of the edge.
+    unknowns : Unknowns
+        Spheres.
+
+    Returns
+    -------
+    (2 E,) float array
+        Residuals; zero where the plane of the circle bisects the two faces, or both spheres
+        are planes.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Sec. 4.1, with unit edge vectors.
+    """
+    lines = center_lines(setting, unknowns)
+    return np.concatenate(
+        [dot(lines, setting.edge_normals), dot(lines, setting.edge_directions)]
+    )
+
+
+def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
+    """
+    Derivatives by the rows of the two faces.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed.
+    unknowns : Unknowns
+        Spheres.
+
+    Returns
+    -------
+    tuple of two (2 E, 5) float arrays
+        In the order of the residuals.
+    """
+    edges = np.tile(np.arange(len(setting.edge_faces)), 2)
+    directions = np.concatenate([setting.edge_normals, setting.edge_directions])
+    return center_line_gradients(setting, unknowns, edges, directions)

@@ -1,0 +1,73 @@
+"""E_supp: the centres of the spheres around a node lie in a plane, so the node has an axis."""
+
+from ...arrays import FloatArray, dot
+from ...solvers.blocks import Block
+from .centers import center_line_gradients, center_lines
+from .setting import Group, Setting, Unknowns
+
+
+def blocks(setting: Setting) -> tuple[Block, ...]:
+    """
+    What each residual depends on: the two faces of an edge and the dual normal of a node.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed.
+
+    Returns
+    -------
+    tuple of Block
+        One row per interior edge and interior vertex at its ends.
+    """
+    first, second = setting.edge_faces[setting.spoke_edges].T
+    return (
+        Block(Group.SPHERE, first),
+        Block(Group.SPHERE, second),
+        Block(Group.NORMAL, setting.spoke_nodes),
+    )
+
+
+def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
+    """
+    ``D·n`` with D along the line of centres across the edge and n the node's dual normal.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed.
+    unknowns : Unknowns
+        Spheres and dual normals.
+
+    Returns
+    -------
+    (S,) float array
+        Residuals; zero where the plane of the edge's circle contains the node's axis.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Sec. 4.1.
+    """
+    lines = center_lines(setting, unknowns)[setting.spoke_edges]
+    return dot(lines, unknowns.normals[setting.spoke_nodes])
+
+
+def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
+    """
+    Derivatives by the rows of the two faces and by the dual normal.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed.
+    unknowns : Unknowns
+        Spheres and dual normals.
+
+    Returns
+    -------
+    tuple of two (S, 5) and one (S, 3) float arrays
+        In the order of the blocks.
+    """
+    axes = unknowns.normals[setting.spoke_nodes]
+    first, second = center_line_gradients(setting, unknowns, setting.spoke_edges, axes)
+    return first, second, center_lines(setting, unknowns)[setting.spoke_edges]

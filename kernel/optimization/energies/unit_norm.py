@@ -1,0 +1,67 @@
+"""E_unit: every row has norm one. Steps are normalised, so its value is rounding alone."""
+
+import numpy as np
+
+from ...arrays import FloatArray
+from ...solvers.blocks import Block
+from ...spheres.rows import minkowski, minkowski_gradient
+from .setting import Group, Setting, Unknowns
+
+
+def blocks(setting: Setting) -> tuple[Block, ...]:
+    """
+    What each residual depends on: a face.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed.
+
+    Returns
+    -------
+    tuple of Block
+        One row per face.
+    """
+    return (Block(Group.SPHERE, np.arange(setting.n_faces)),)
+
+
+def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:  # noqa: ARG001 - as all terms
+    """
+    ``|B|² - 4 A C - 1`` of each face.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed.
+    unknowns : Unknowns
+        Spheres.
+
+    Returns
+    -------
+    (F,) float array
+        Residuals.
+
+    References
+    ----------
+    Meshes with Spherical Faces, eq. (8).
+    """
+    return minkowski(unknowns.spheres, unknowns.spheres) - 1
+
+
+def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  # noqa: ARG001
+    """
+    Derivatives by the row of the face.
+
+    Parameters
+    ----------
+    setting : Setting
+        What stays fixed.
+    unknowns : Unknowns
+        Spheres.
+
+    Returns
+    -------
+    tuple of one (F, 5) float array
+        ``(-4 C, 2 B, -4 A)``.
+    """
+    return (2 * minkowski_gradient(unknowns.spheres),)

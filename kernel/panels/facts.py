@@ -1,0 +1,200 @@
+"""What is to be known of every panel: for schedules, drawings, files and audits."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray, dot, norm, unit
+from ..spheres.arcs import arc_circles, arc_lengths, arc_points, arc_reaches, arc_tangents
+from ..spheres.rows import center_radius, normals
+from .mould_blanks import PanelCaps, panel_caps
+from .panels import (
+    Panels,
+    opposite_corners,
+    panel_arcs,
+    panel_areas,
+    panel_volumes,
+)
+
+
+@dataclass(frozen=True)
+class PanelRadii:
+    """
+    Centres and radii of panels, in the unit of the panels; points in model coordinates.
+
+    Attributes
+    ----------
+    radii : (P,) float array
+        Radius of the sphere that a panel was cut from, which is that of its mould; infinite
+        for planes.
+    outer_radii, inner_radii : (P,) float array
+        Radii of the outer and inner faces.
+    centers : (P, 3) float array
+        Centre of all three; infinite for planes.
+    """
+
+    radii: FloatArray
+    outer_radii: FloatArray
+    inner_radii: FloatArray
+    centers: FloatArray
+
+
+@dataclass(frozen=True)
+class PanelFacts(PanelRadii):
+    """
+    Measures of panels, in the unit of the panels; points in model coordinates.
+
+    Attributes
+    ----------
+    areas : (P,) float array
+        Areas of the outer faces.
+    volumes : (P,) float array
+        Volumes; 0 without thickness.
+    sizes : (P, 3) float array
+        Length, width and rise of the box around the outer face, its length along the chord of
+        the first edge.
+    corners : (H, 3) float array
+        Corners of the outer faces.
+    corner_angles : (H,) float array
+        Angle between the two edges at each corner, inside the outer face, in radians.
+    edge_lengths : (H,) float array
+        Lengths of the outer edges, along the arcs.
+    arc_radii : (H,) float array
+        Radii of the outer edges; infinite for straight ones.
+    sagittas : (H,) float array
+        Heights of the outer arcs over their chords.
+    wall_tilts : (H,) float array
+        Angle, in radians, between the cutting plane and the surface normal in the middle of
+        the edge, averaged with the neighbour's. That of a beam is measured against the faces
+        of the mesh, and on the boundary a beam has a plane of its own.
+    steps : (H,) float array
+        Height of the step from an outer edge to the neighbour's, the largest of those at its
+        ends and in the middle; NaN where there is no neighbour.
+    caps : PanelCaps
+        Smallest caps of the moulds that hold the panels.
+    """
+
+    areas: FloatArray
+    volumes: FloatArray
+    sizes: FloatArray
+    corners: FloatArray
+    corner_angles: FloatArray
+    edge_lengths: FloatArray
+    arc_radii: FloatArray
+    sagittas: FloatArray
+    wall_tilts: FloatArray
+    steps: FloatArray
+    caps: PanelCaps
+
+
+def panel_radii(panels: Panels) -> PanelRadii:
+    """
+    Measure the spheres of panels.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+
+    Returns
+    -------
+    PanelRadii
+        Centres and radii.
+    """
+    centers, squares = center_radius(panels.design_spheres)
+    return PanelRadii(
+        radii=np.sqrt(squares),
+        outer_radii=np.sqrt(center_radius(panels.spheres)[1]),
+        inner_radii=np.sqrt(center_radius(panels.inner_spheres)[1]),
+        centers=centers + panels.origins,
+    )
+
+
+def panel_facts(panels: Panels) -> PanelFacts:
+    """
+    Measure panels.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+
+    Returns
+    -------
+    PanelFacts
+        The measures.
+    """
+    arcs = panel_arcs(panels)
+    tilts, steps = _neighborhood(panels)
+    return PanelFacts(
+        **vars(panel_radii(panels)),
+        areas=panel_areas(panels),
+        volumes=panel_volumes(panels),
+        sizes=_bounding_sizes(panels),
+        corners=panels.corners + panels.origins[panels.corner_panels],
+        corner_angles=_corner_angles(panels),
+        edge_lengths=arc_lengths(arcs),
+        arc_radii=arc_circles(arcs).radii,
+        sagittas=arcs.sagittas,
+        wall_tilts=tilts,
+        steps=steps,
+        caps=panel_caps(panels),
+    )
+
+
+def _corner_angles(panels: Panels) -> FloatArray:
+    """From the edge that leaves a corner counter-clockwise about N to the one that enters."""
+    leaving, entering = arc_tangents(panel_arcs(panels))
+    back = np.empty_like(entering)
+    back[panels.next_corners] = -entering
+    up = unit(normals(panels.spheres[panels.corner_panels], panels.corners))
+    sine, cosine = dot(np.cross(leaving, back), up), dot(leaving, back)
+    return np.arctan2(sine, cosine) % (2 * np.pi)
+
+
+def _neighborhood(panels: Panels) -> tuple[FloatArray, FloatArray]:
+    """Tilts of the walls, and steps between the outer edges of neighbours (H)."""
+    owners, twins = panels.corner_panels, opposite_corners(panels)
+    arcs = panel_arcs(panels)
+    middles = arc_points(arcs, np.zeros(1))[:, 0]
+    up = unit(normals(panels.spheres[owners], middles))
+    has_twin = twins >= 0
+    mean = np.where(has_twin[:, None], up + up[twins], up)
+    tilts = np.arcsin(np.clip(np.abs(dot(unit(mean), panels.plane_normals)), 0.0, 1.0))
+    # Neighbours differ by the shift of their origins, which is exact, and little else.
+    shift = panels.origins[owners][twins] - panels.origins[owners]
+    points = np.stack([arcs.starts, middles, arcs.ends], 1)
+    apart = points[twins][:, ::-1] + shift[:, None] - points
+    # Along the rise of the arc, so that the joint does not count.
+    steps = np.abs(dot(apart, arcs.rises[:, None])).max(axis=1)
+    return tilts, np.where(has_twin, steps, np.nan)
+
+
+def _bounding_sizes(panels: Panels) -> FloatArray:
+    """Length, width and rise (P, 3) of the boxes around the outer faces."""
+    first: IntArray = panels.offsets[:-1]
+    up = unit(panels.spheres[:, 1:4])
+    along = panels.corners[panels.next_corners[first]] - panels.corners[first]
+    along = unit(along - dot(along, up)[:, None] * up)
+    axes = np.stack([along, np.cross(up, along), up], 1)
+    directions = axes[panels.corner_panels]
+    low = -np.maximum.reduceat(_reaches(panels, -directions), first)
+    high = np.maximum.reduceat(_reaches(panels, directions), first)
+    # The crown of the patch, above (or below) the local origin, belongs to the box as well.
+    crown = panels.spheres[:, 4] * 2 / (1 + norm(panels.spheres[:, 1:4]))
+    low[:, 2], high[:, 2] = np.minimum(low[:, 2], crown), np.maximum(high[:, 2], crown)
+    return high - low
+
+
+def _reaches(panels: Panels, directions: FloatArray) -> FloatArray:
+    """How far outer edges reach in directions (H, 3, 3) of their own."""
+    arcs, planes = panel_arcs(panels), panels.plane_normals
+    reaches: list[FloatArray] = []
+    for direction in np.moveaxis(directions, 1, 0):
+        across = dot(direction, planes)
+        within = direction - across[:, None] * planes
+        share = norm(within)
+        reaches.append(
+            share * arc_reaches(arcs, unit(within)) + across * dot(arcs.starts, planes)
+        )
+    return np.stack(reaches, 1)

@@ -1,0 +1,436 @@
+"""
+Panels: pieces of spheres cut out by planes, exact each in itself.
+
+A panel is its sphere, one cutting plane per edge, and the corners where the sphere meets two
+consecutive planes. All geometry is local to the panel (its origin is the centroid of the mesh
+face), so the site's coordinates cost no digits. `kernel.cutting` makes panels.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, IntArray, dot, unit
+from ..spheres.arcs import Arcs, patch_areas, sphere_arcs
+from ..spheres.rows import meet_lines, offset, recenter, rescale
+from ..tolerances import PARALLEL_PLANES
+
+
+@dataclass(frozen=True)
+class Panels:
+    """
+    Panels that can be made, in the order of their faces.
+
+    Attributes
+    ----------
+    ids : tuple of str
+        Stable names ``P0000``, one per panel.
+    face_ids : (P,) int array
+        Face of the sphere mesh.
+    labels : (P,) int array
+        Mould of each panel, from 0; -1 where panels were not clustered.
+    origins : (P, 3) float array
+        Origin of the coordinates local to each panel, in model coordinates.
+    spheres : (P, 5) float array
+        Unit rows of the outer faces, local; N points outwards.
+    inner_spheres : (P, 5) float array
+        Unit rows of the inner faces, local, oriented as the outer ones.
+    design_spheres : (P, 5) float array
+        Unit rows of the spheres that the panels were cut from, local, which are those of the
+        moulds: the outer faces, the inner ones, or between, by the side of the thickness.
+    offsets : (P + 1,) int array
+        First corner of each panel, and H. Corners run counter-clockwise about N.
+    plane_normals : (H, 3) float array
+        Unit normal of the cutting plane of the edge from corner h to the next; points into
+        the panel.
+    plane_offsets : (H,) float array
+        Offset d of each cutting plane ``n·x = d``, local.
+    corners : (H, 3) float array
+        Corners of the outer faces, local.
+    inner_corners : (H, 3) float array
+        Corners of the inner faces, local; equal to `corners` without thickness.
+    neighbors : (H,) int array
+        Face beyond each edge; -1 on the boundary.
+    edge_ids : (H,) int array
+        Interior edge of the mesh, the same in both panels; -1 on the boundary.
+    thicknesses : (P,) float array
+        Distance of the inner from the outer face of each panel, in model units.
+    thickness : float
+        Thickness asked for, in model units; 0 for surfaces.
+    joint_gap : float
+        Width of the joint between neighbouring panels, in model units.
+    """
+
+    ids: tuple[str, ...]
+    face_ids: IntArray
+    labels: IntArray
+    origins: FloatArray
+    spheres: FloatArray
+    inner_spheres: FloatArray
+    design_spheres: FloatArray
+    offsets: IntArray
+    plane_normals: FloatArray
+    plane_offsets: FloatArray
+    corners: FloatArray
+    inner_corners: FloatArray
+    neighbors: IntArray
+    edge_ids: IntArray
+    thicknesses: FloatArray
+    thickness: float
+    joint_gap: float
+
+    @property
+    def n_panels(self) -> int:
+        """
+        Number of panels.
+
+        Returns
+        -------
+        int
+            P.
+        """
+        return len(self.face_ids)
+
+    @property
+    def degrees(self) -> IntArray:
+        """
+        Number of corners of each panel, (P,).
+
+        Returns
+        -------
+        (P,) int array
+            Number of corners of each panel, (P,).
+        """
+        return np.diff(self.offsets)
+
+    @property
+    def corner_panels(self) -> IntArray:
+        """
+        Panel of each corner, (H,).
+
+        Returns
+        -------
+        (H,) int array
+            Panel of each corner, (H,).
+        """
+        return np.repeat(np.arange(self.n_panels), self.degrees)
+
+    @property
+    def next_corners(self) -> IntArray:
+        """
+        Following corner in the same panel, (H,).
+
+        Returns
+        -------
+        (H,) int array
+            Following corner in the same panel, (H,).
+        """
+        return _following(self.offsets)
+
+
+def _following(offsets: IntArray) -> IntArray:
+    following = np.arange(1, int(offsets[-1]) + 1)
+    following[offsets[1:] - 1] = offsets[:-1]
+    return following
+
+
+def corner_points(
+    rows: FloatArray,
+    plane_normals: FloatArray,
+    plane_offsets: FloatArray,
+    offsets: IntArray,
+    references: FloatArray,
+) -> tuple[FloatArray, BoolArray]:
+    """
+    Points in which spheres meet two consecutive cutting planes, nearest to references.
+
+    Parameters
+    ----------
+    rows : (H, 5) float array
+        Unit row of the panel of each corner, local.
+    plane_normals, plane_offsets : (H, 3), (H,) float array
+        Cutting planes of the edges that leave the corners.
+    offsets : (P + 1,) int array
+        First corner of each panel.
+    references : (H, 3) float array
+        Points near the corners.
+
+    Returns
+    -------
+    points : (H, 3) float array
+        Corners; the reference where there is none.
+    exists : (H,) bool array
+        Whether the line of the planes meets the sphere.
+
+    Notes
+    -----
+    Where the two planes are parallel (edges in line), the corner is sought along N in the
+    plane of the edge that leaves it.
+    """
+    previous = np.empty(len(rows), np.int64)
+    previous[_following(offsets)] = np.arange(len(rows))
+    leaving, entering = plane_normals, plane_normals[previous]
+    level_leaving = plane_offsets - dot(leaving, references)
+    level_entering = plane_offsets[previous] - dot(entering, references)
+    near = recenter(rows, references)
+    direction = np.cross(entering, leaving)
+    square = dot(direction, direction)
+    is_parallel = square < PARALLEL_PLANES**2
+    weight = np.where(is_parallel, 1.0, square)[:, None]
+    foot = (
+        level_entering[:, None] * np.cross(leaving, direction)
+        + level_leaving[:, None] * np.cross(direction, entering)
+    ) / weight
+    foot = np.where(is_parallel[:, None], level_leaving[:, None] * leaving, foot)
+    upright = near[:, 1:4] - dot(near[:, 1:4], leaving)[:, None] * leaving
+    direction = unit(np.where(is_parallel[:, None], upright, direction))
+    step, exists = meet_lines(near, foot, direction)
+    points = references + foot + step[:, None] * direction
+    return np.where(exists[:, None], points, references), exists
+
+
+def panel_ids(n_faces: int) -> tuple[str, ...]:
+    """
+    Stable names of the panels of a mesh.
+
+    Parameters
+    ----------
+    n_faces : int
+        Number of faces.
+
+    Returns
+    -------
+    tuple of str
+        ``P0000``, ``P0001``, ... with as many digits as the last needs, at least four.
+    """
+    width = max(4, len(str(n_faces - 1)))
+    return tuple(f"P{face:0{width}d}" for face in range(n_faces))
+
+
+def opposite_corners(panels: Panels) -> IntArray:
+    """
+    The other panel's side of each edge.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels with H corners.
+
+    Returns
+    -------
+    (H,) int array
+        Corner from which the neighbour's edge leaves; -1 on the boundary and where the panel
+        beyond is not among these.
+    """
+    result = np.full(len(panels.edge_ids), -1)
+    order = np.argsort(panels.edge_ids, kind="stable")
+    first, second = order[:-1], order[1:]
+    edges = panels.edge_ids
+    pairs = (edges[first] == edges[second]) & (edges[first] >= 0)
+    result[first[pairs]], result[second[pairs]] = second[pairs], first[pairs]
+    return result
+
+
+def neighbor_ids(panels: Panels) -> list[str | None]:
+    """
+    Panel beyond each edge, by name.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels with H corners.
+
+    Returns
+    -------
+    list of str or None
+        H names; None on the boundary and where the panel beyond is not among these.
+    """
+    names = dict(zip(panels.face_ids.tolist(), panels.ids, strict=True))
+    return [names.get(face) for face in panels.neighbors.tolist()]
+
+
+def select_panels(panels: Panels, keep: BoolArray) -> Panels:
+    """
+    Some of the panels.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+    keep : (P,) bool array
+        Which ones.
+
+    Returns
+    -------
+    Panels
+        The chosen panels, in the same order.
+    """
+    if keep.all():
+        return panels
+    chosen = np.flatnonzero(keep)
+    corner_keep = keep[panels.corner_panels]
+    return replace(
+        panels,
+        ids=tuple(panels.ids[i] for i in chosen),
+        face_ids=panels.face_ids[chosen],
+        labels=panels.labels[chosen],
+        origins=panels.origins[chosen],
+        spheres=panels.spheres[chosen],
+        inner_spheres=panels.inner_spheres[chosen],
+        design_spheres=panels.design_spheres[chosen],
+        offsets=np.concatenate([[0], np.cumsum(panels.degrees[chosen])]),
+        plane_normals=panels.plane_normals[corner_keep],
+        plane_offsets=panels.plane_offsets[corner_keep],
+        corners=panels.corners[corner_keep],
+        inner_corners=panels.inner_corners[corner_keep],
+        neighbors=panels.neighbors[corner_keep],
+        edge_ids=panels.edge_ids[corner_keep],
+        thicknesses=panels.thicknesses[chosen],
+    )
+
+
+def scale_panels(panels: Panels, factor: float) -> Panels:
+    """
+    Panels in another unit of length.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+    factor : float
+        Positive number of new units in an old one.
+
+    Returns
+    -------
+    Panels
+        The same panels; every length is multiplied by the factor.
+    """
+    return replace(
+        panels,
+        origins=panels.origins * factor,
+        spheres=rescale(panels.spheres, factor),
+        inner_spheres=rescale(panels.inner_spheres, factor),
+        design_spheres=rescale(panels.design_spheres, factor),
+        plane_offsets=panels.plane_offsets * factor,
+        corners=panels.corners * factor,
+        inner_corners=panels.inner_corners * factor,
+        thicknesses=panels.thicknesses * factor,
+        thickness=panels.thickness * factor,
+        joint_gap=panels.joint_gap * factor,
+    )
+
+
+def move_origins(panels: Panels, origins: FloatArray) -> Panels:
+    """
+    The same panels in coordinates local to other points.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+    origins : (P, 3) float array
+        New origins, in model coordinates, near the old ones.
+
+    Returns
+    -------
+    Panels
+        Panels at the same place.
+    """
+    shifts = origins - panels.origins
+    corner_shifts = shifts[panels.corner_panels]
+    return replace(
+        panels,
+        origins=origins,
+        spheres=recenter(panels.spheres, shifts),
+        inner_spheres=recenter(panels.inner_spheres, shifts),
+        design_spheres=recenter(panels.design_spheres, shifts),
+        plane_offsets=panels.plane_offsets - dot(panels.plane_normals, corner_shifts),
+        corners=panels.corners - corner_shifts,
+        inner_corners=panels.inner_corners - corner_shifts,
+    )
+
+
+def panel_arcs(panels: Panels) -> Arcs:
+    """
+    Edges of the outer faces, in local coordinates.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels with H corners.
+
+    Returns
+    -------
+    Arcs
+        H arcs, arc h from corner h to the next.
+    """
+    return _layer_arcs(panels, panels.spheres, panels.corners)
+
+
+def inner_panel_arcs(panels: Panels) -> Arcs:
+    """
+    Edges of the inner faces, in local coordinates.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels with H corners.
+
+    Returns
+    -------
+    Arcs
+        H arcs, arc h from inner corner h to the next.
+    """
+    return _layer_arcs(panels, panels.inner_spheres, panels.inner_corners)
+
+
+def _layer_arcs(panels: Panels, rows: FloatArray, corners: FloatArray) -> Arcs:
+    ends = corners[panels.next_corners]
+    return sphere_arcs(rows[panels.corner_panels], panels.plane_normals, corners, ends)
+
+
+def panel_areas(panels: Panels) -> FloatArray:
+    """
+    Areas of the outer faces, in closed form.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+
+    Returns
+    -------
+    (P,) float array
+        Areas, in squared model units.
+    """
+    return patch_areas(panels.spheres, panel_arcs(panels), panels.corner_panels)
+
+
+_LAYERS, _LAYER_WEIGHTS = np.polynomial.legendre.leggauss(16)
+
+
+def panel_volumes(panels: Panels) -> FloatArray:
+    """
+    Volumes between the outer and inner faces.
+
+    Parameters
+    ----------
+    panels : Panels
+        P panels.
+
+    Returns
+    -------
+    (P,) float array
+        Volumes, in cubed model units: the areas of the parallel layers between the two faces,
+        integrated over the thickness with 16 Gauss points.
+    """
+    total = np.zeros(panels.n_panels)
+    for node, weight in zip(_LAYERS, _LAYER_WEIGHTS, strict=True):
+        rows = offset(panels.spheres, -panels.thicknesses * (1 + node) / 2)
+        corners, _ = corner_points(
+            rows[panels.corner_panels], panels.plane_normals, panels.plane_offsets,
+            panels.offsets, panels.corners,
+        )  # fmt: skip
+        arcs = _layer_arcs(panels, rows, corners)
+        total += weight * patch_areas(rows, arcs, panels.corner_panels)
+    return total * panels.thicknesses / 2

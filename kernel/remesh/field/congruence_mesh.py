@@ -1,0 +1,220 @@
+"""A triangle mesh with a sphere at every vertex, seen in the unit of its mean edge."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...arrays import FloatArray, IntArray, dot, norm, sum_by, unit
+from ...errors import InputError, name_ids
+from ...meshes.curvature import vertex_normals
+from ...meshes.mesh import Mesh, face_centroids, face_vector_areas, mean_edge_length
+from ...meshes.topology import Topology
+from ...spheres.rows import Kind, kind, minkowski, normals, recenter, rescale
+from ...tolerances import DEGENERATE, EPSILON
+from .tree_signs import tree_signs
+
+
+@dataclass(frozen=True)
+class CongruenceMesh:
+    """
+    A triangulated sphere congruence, centred, with mean edge 1.
+
+    Attributes
+    ----------
+    points : (V, 3) float array
+        Vertices.
+    triangles : (F, 3) int array
+        Faces; corner ``3 f + i`` is the i-th of face f, as in `topology`.
+    topology : Topology
+        Half-edges of the mesh.
+    rows : (V, 5) float array
+        Unit rows of the spheres, each seen from its vertex, continuously oriented.
+    vertex_frames : (V, 3, 3) float array
+        Two tangents and the normal at each vertex, orthonormal and right-handed.
+    face_frames : (F, 3, 3) float array
+        First side, the direction across, and the normal of each face.
+    face_areas : (F,) float array
+        Areas.
+    origin : (3,) float array
+        Model coordinates of the origin.
+    size : float
+        Mean edge length of the model, in model units.
+    """
+
+    points: FloatArray
+    triangles: IntArray
+    topology: Topology
+    rows: FloatArray
+    vertex_frames: FloatArray
+    face_frames: FloatArray
+    face_areas: FloatArray
+    origin: FloatArray
+    size: float
+
+    @property
+    def vertex_areas(self) -> FloatArray:
+        """
+        A third of the areas of the faces around each vertex.
+
+        Returns
+        -------
+        (V,) float array
+            Areas, in squared mean edges.
+        """
+        shares = np.repeat(self.face_areas / 3, 3)
+        return sum_by(self.triangles.ravel(), shares, len(self.points))
+
+
+def congruence_mesh(mesh: Mesh, spheres: ArrayLike) -> CongruenceMesh:
+    """
+    Check a triangle mesh with spheres at its vertices, and bring it into local coordinates.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        A connected triangle mesh.
+    spheres : (V, 5) array_like of float
+        Real rows of any scale, not zero, in model coordinates; planes included.
+
+    Returns
+    -------
+    CongruenceMesh
+        The congruence in units of the mean edge.
+
+    Raises
+    ------
+    InputError
+        If a face is no triangle or has no area, the mesh is not connected, or a sphere is
+        missing, not finite, imaginary or a point; the message names the elements.
+
+    Notes
+    -----
+    A row far from the origin has lost the digits of its last coefficient. Where a sphere passes
+    through its vertex within that rounding, its local row does so exactly.
+
+    Signs are chosen along a spanning tree so that neighbours meet at less than 90 degrees, and
+    over all so that most spheres agree with the normals of the faces.
+    """
+    areas = _checked_areas(mesh)
+    size = mean_edge_length(mesh)
+    origin = face_centroids(mesh).mean(axis=0)
+    points = (mesh.vertices - origin) / size
+    rows = _vertex_rows(mesh, np.asarray(spheres, float), size)
+    vertex_frames = tangent_frames(vertex_normals(mesh))
+    triangles = mesh.corners.reshape(-1, 3)
+    sides = unit(points[triangles[:, 1]] - points[triangles[:, 0]])
+    face_normals = unit(areas)
+    face_frames = np.stack([sides, np.cross(face_normals, sides), face_normals], 1)
+    oriented = _oriented_rows(mesh, points, rows, vertex_frames[:, 2])
+    return CongruenceMesh(
+        points, triangles, mesh.topology, oriented, vertex_frames, face_frames,
+        norm(areas) / size**2, origin, size,
+    )  # fmt: skip
+
+
+def tangent_frames(vectors: FloatArray) -> FloatArray:
+    """
+    Right-handed orthonormal frames that end with given normals.
+
+    Parameters
+    ----------
+    vectors : (n, 3) float array
+        Unit normals.
+
+    Returns
+    -------
+    (n, 3, 3) float array
+        Two tangents and the normal as rows.
+    """
+    axes = np.eye(3)[np.abs(vectors).argmin(axis=1)]
+    first = unit(np.cross(vectors, axes))
+    return np.stack([first, np.cross(vectors, first), vectors], 1)
+
+
+def check_triangles(mesh: Mesh) -> None:
+    """
+    Refuse meshes of other faces than triangles.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Raises
+    ------
+    InputError
+        If a face is no triangle.
+    """
+    bad = np.flatnonzero(mesh.degrees != 3)
+    if len(bad):
+        raise InputError(
+            f"remeshing needs triangles, but faces {name_ids(bad.tolist())} have more corners: "
+            "use triangulate first"
+        )
+
+
+def _checked_areas(mesh: Mesh) -> FloatArray:
+    """Vector areas of the faces (F, 3) of a connected triangle mesh."""
+    check_triangles(mesh)
+    areas = face_vector_areas(mesh)
+    sides = (
+        mesh.vertices[mesh.corners[mesh.topology.next_corners]] - mesh.vertices[mesh.corners]
+    )
+    squares = sum_by(mesh.topology.corner_faces, dot(sides, sides), mesh.n_faces)
+    flat = np.flatnonzero(~(norm(areas) > DEGENERATE * squares))
+    if len(flat):
+        raise InputError(f"faces {name_ids(flat.tolist())} have no area: remove them")
+    unused = np.setdiff1d(np.arange(mesh.n_vertices), mesh.corners)
+    if len(unused):
+        raise InputError(f"vertices {name_ids(unused.tolist())} belong to no face: remove them")
+    count = _component_count(mesh)
+    if count > 1:
+        raise InputError(f"the mesh has {count} separate pieces: remesh them one by one")
+    return areas
+
+
+def _component_count(mesh: Mesh) -> int:
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+
+    left, right = mesh.topology.edge_faces.T
+    shape = (mesh.n_faces, mesh.n_faces)
+    graph = csr_array((np.ones(len(left)), (left, right)), shape=shape)
+    return int(connected_components(graph, directed=False)[0])
+
+
+def _vertex_rows(mesh: Mesh, spheres: FloatArray, size: float) -> FloatArray:
+    """Unit rows (V, 5), each seen from its vertex, in the unit `size`."""
+    if spheres.shape != (mesh.n_vertices, 5):
+        raise InputError(f"spheres must have shape ({mesh.n_vertices}, 5), not {spheres.shape}")
+    bad = np.flatnonzero(~np.isfinite(spheres).all(axis=1))
+    if len(bad):
+        raise InputError(f"the spheres of vertices {name_ids(bad.tolist())} are not finite")
+    points = mesh.vertices
+    rows = recenter(spheres, points)
+    terms = np.abs(spheres[:, 4]) + np.abs(dot(spheres[:, 1:4], points))
+    rounding = 8 * EPSILON * (terms + np.abs(spheres[:, 0]) * dot(points, points))
+    rows[np.abs(rows[:, 4]) <= rounding, 4] = 0
+    rows = rescale(rows, 1 / size)
+    kinds = kind(rows)
+    bad = np.flatnonzero((kinds == Kind.IMAGINARY) | (kinds == Kind.POINT))
+    if len(bad):
+        raise InputError(
+            f"the spheres of vertices {name_ids(bad.tolist())} are imaginary or points: "
+            "remeshing needs real spheres or planes"
+        )
+    return rows / np.sqrt(minkowski(rows, rows))[:, None]
+
+
+def _oriented_rows(
+    mesh: Mesh, points: FloatArray, rows: FloatArray, vertex_normals: FloatArray
+) -> FloatArray:
+    from scipy.sparse import csr_array
+
+    tails, heads = mesh.corners, mesh.corners[mesh.topology.next_corners]
+    products = minkowski(rows[tails], recenter(rows[heads], points[tails] - points[heads]))
+    likeness = csr_array((products, (tails, heads)), shape=(len(rows), len(rows)))
+    oriented = rows * tree_signs(likeness)[:, None]
+    agreement = dot(normals(oriented, np.zeros(3)), vertex_normals)
+    return oriented * np.copysign(1.0, agreement.sum())

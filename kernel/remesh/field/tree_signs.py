@@ -1,0 +1,37 @@
+"""Signs under which neighbours are alike."""
+
+import numpy as np
+
+from ...arrays import FloatArray
+from ...solvers.factorization import SparseArray
+
+
+def tree_signs(likeness: SparseArray) -> FloatArray:
+    """
+    Choose signs along a spanning tree of a graph.
+
+    Parameters
+    ----------
+    likeness : (n, n) sparse array
+        How alike neighbours are, between -1 and 1; stored for all edges, one way or both.
+
+    Returns
+    -------
+    (n,) float array
+        1 or -1; of the tree that prefers the edges on which the sign is clearest.
+    """
+    from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
+
+    costs, signs = likeness.copy(), likeness.copy()
+    costs.data = 2 - np.minimum(np.abs(likeness.data), 1)
+    signs.data = np.sign(likeness.data)
+    order, parents = breadth_first_order(minimum_spanning_tree(costs), 0, directed=False)
+    parents = np.where(parents < 0, 0, parents)
+    children = np.arange(len(parents))
+    along = signs[children, parents] + signs[parents, children]
+    result = np.where(np.asarray(along).ravel() < 0, -1.0, 1.0)
+    result[order[0]] = 1.0
+    # Pointer doubling: the sign of a vertex is the product of the signs on its way to the root.
+    while (parents != order[0]).any():
+        result, parents = result * result[parents], parents[parents]
+    return result * result[order[0]]

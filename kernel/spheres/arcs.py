@@ -1,0 +1,323 @@
+"""
+Circular arcs on spheres, and what is bounded by them.
+
+An arc is kept by its chord and its sagitta, so that straight edges of plane panels are arcs of
+sagitta zero and nothing is divided by a curvature. With half chord h and bulge ``b = s / h``
+(the tangent of a quarter of the sweep) the arc over ``τ in [-1, 1]`` is rational:
+
+    x = h τ (1 + b²) / (1 + b² τ²),    y = s (1 - τ²) / (1 + b² τ²).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray, dot, norm, sum_by, unit
+from .rows import normals, project
+
+
+@dataclass(frozen=True)
+class Arcs:
+    """
+    Arcs of at most a half circle.
+
+    Attributes
+    ----------
+    starts, ends : (H, 3) float array
+        End points.
+    rises : (H, 3) float array
+        Unit vectors across the chord in the plane of the arc; the sagitta is measured along it.
+    sagittas : (H,) float array
+        Signed height of the arc over its chord; 0 for a straight edge.
+    """
+
+    starts: FloatArray
+    ends: FloatArray
+    rises: FloatArray
+    sagittas: FloatArray
+
+
+@dataclass(frozen=True)
+class ArcCircles:
+    """
+    The circles that carry arcs, for writers. Defined where the sagitta is not zero.
+
+    Attributes
+    ----------
+    centers : (H, 3) float array
+        Centres.
+    axes : (H, 3) float array
+        Unit axes; the arc runs counter-clockwise about its axis.
+    radii : (H,) float array
+        Radii; infinite for straight edges.
+    sweeps : (H,) float array
+        Angles from start to end, in radians; 0 for straight edges.
+    """
+
+    centers: FloatArray
+    axes: FloatArray
+    radii: FloatArray
+    sweeps: FloatArray
+
+
+def sphere_arcs(
+    rows: FloatArray, plane_normals: FloatArray, starts: FloatArray, ends: FloatArray
+) -> Arcs:
+    """
+    Shorter arcs in which planes cut spheres, between two points of both.
+
+    Parameters
+    ----------
+    rows : (H, 5) float array
+        Unit rows; planes give straight edges.
+    plane_normals : (H, 3) float array
+        Unit normals of the cutting planes.
+    starts, ends : (H, 3) float array
+        Points on the sphere and on the plane.
+
+    Returns
+    -------
+    Arcs
+        The arcs; `rises` points along N where the plane stands upright on the sphere.
+
+    Notes
+    -----
+    The sagitta is the small root of ``A s² - w s - A h² = 0`` in the form without cancellation,
+    with w the slope of the sphere equation across the chord.
+    """
+    chords = ends - starts
+    rises = unit(np.cross(chords, plane_normals))
+    half_squared = dot(chords, chords) / 4
+    slope = dot(normals(rows, (starts + ends) / 2), rises)
+    curvature = rows[:, 0]
+    root = np.sqrt(slope**2 + 4 * curvature**2 * half_squared)
+    denominator = slope + np.copysign(root, slope)
+    # Both vanish where a plane is cut by itself: there is no arc, and any chord lies in it.
+    sagittas = np.divide(
+        -2 * curvature * half_squared,
+        denominator,
+        out=np.zeros_like(slope),
+        where=denominator != 0,
+    )
+    return Arcs(starts, ends, rises, sagittas)
+
+
+def arc_points(arcs: Arcs, parameters: FloatArray) -> FloatArray:
+    """
+    Points of arcs.
+
+    Parameters
+    ----------
+    arcs : Arcs
+        H arcs.
+    parameters : (n,) float array
+        Values of τ in [-1, 1]; the ends and the middle are exact.
+
+    Returns
+    -------
+    (H, n, 3) float array
+        Points.
+    """
+    middle = (arcs.starts + arcs.ends)[:, None] / 2
+    half_chord = (arcs.ends - arcs.starts)[:, None] / 2
+    square = _bulges(arcs)[:, None] ** 2
+    denominator = 1 + square * parameters**2
+    along = parameters * (1 + square) / denominator
+    across = arcs.sagittas[:, None] * (1 - parameters**2) / denominator
+    return middle + along[..., None] * half_chord + across[..., None] * arcs.rises[:, None]
+
+
+def _arc_derivatives(arcs: Arcs, parameters: FloatArray) -> FloatArray:
+    half_chord = (arcs.ends - arcs.starts)[:, None] / 2
+    square = _bulges(arcs)[:, None] ** 2
+    denominator = (1 + square * parameters**2) ** 2
+    along = (1 + square) * (1 - square * parameters**2) / denominator
+    across = -2 * arcs.sagittas[:, None] * parameters * (1 + square) / denominator
+    return along[..., None] * half_chord + across[..., None] * arcs.rises[:, None]
+
+
+def _bulges(arcs: Arcs) -> FloatArray:
+    half = norm(arcs.ends - arcs.starts) / 2
+    return np.divide(arcs.sagittas, half, out=np.zeros_like(half), where=half > 0)
+
+
+def arc_lengths(arcs: Arcs) -> FloatArray:
+    """
+    Lengths of arcs.
+
+    Parameters
+    ----------
+    arcs : Arcs
+        H arcs.
+
+    Returns
+    -------
+    (H,) float array
+        Lengths; for a straight edge the length of the chord.
+    """
+    bulge = np.abs(_bulges(arcs))
+    small = bulge < 1e-4
+    safe = np.where(small, 1.0, bulge)
+    ratio = np.where(small, 1 + 2 * bulge**2 / 3, (1 + safe**2) * np.arctan(safe) / safe)
+    return norm(arcs.ends - arcs.starts) * ratio
+
+
+def segment_areas(arcs: Arcs) -> FloatArray:
+    """
+    Areas between arcs and their chords.
+
+    Parameters
+    ----------
+    arcs : Arcs
+        H arcs.
+
+    Returns
+    -------
+    (H,) float array
+        Areas with the sign of the sagitta; 0 for straight edges.
+    """
+    bulge = _bulges(arcs)
+    chords = arcs.ends - arcs.starts
+    square = bulge**2
+    # The closed form cancels for flat arcs; the series is exact there.
+    small = np.abs(bulge) < 0.02
+    series = bulge * (4 / 3 + square * (4 / 15 - square * 4 / 105))
+    safe = np.where(small, 1.0, bulge)
+    closed = ((1 + safe**2) ** 2 * np.arctan(safe) - safe * (1 - safe**2)) / (2 * safe**2)
+    return dot(chords, chords) / 4 * np.where(small, series, closed)
+
+
+def arc_circles(arcs: Arcs) -> ArcCircles:
+    """
+    Centre, axis, radius and sweep of each arc.
+
+    Parameters
+    ----------
+    arcs : Arcs
+        H arcs.
+
+    Returns
+    -------
+    ArcCircles
+        The circles; straight edges have infinite radius and centre.
+    """
+    middle = (arcs.starts + arcs.ends) / 2
+    half = norm(arcs.ends - arcs.starts) / 2
+    sagittas = arcs.sagittas
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # Signed height of the centre over the chord: (s² - h²) / 2s.
+        height = (sagittas - half**2 / sagittas) / 2
+        radii = (np.abs(sagittas) + half**2 / np.abs(sagittas)) / 2
+        centers = middle + height[:, None] * arcs.rises
+    axes = np.cross(arcs.rises, unit(arcs.ends - arcs.starts))
+    axes = np.where(sagittas[:, None] < 0, -axes, axes)
+    return ArcCircles(centers, axes, radii, 4 * np.arctan(np.abs(_bulges(arcs))))
+
+
+def circle_axes(arcs: Arcs, circles: ArcCircles) -> tuple[FloatArray, FloatArray]:
+    """
+    Unit vectors from the centres to the starts, and along the arcs at their starts.
+
+    Parameters
+    ----------
+    arcs : Arcs
+        H arcs.
+    circles : ArcCircles
+        Their circles.
+
+    Returns
+    -------
+    x, y : (H, 3) float array
+        The vectors.
+    """
+    half = circles.sweeps[:, None] / 2
+    along = unit(arcs.ends - arcs.starts)
+    outward = np.copysign(1.0, arcs.sagittas)[:, None] * arcs.rises
+    x = np.cos(half) * outward - np.sin(half) * along
+    y = np.sin(half) * outward + np.cos(half) * along
+    return x, y
+
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
+
+
+def patch_areas(rows: FloatArray, arcs: Arcs, arc_rows: IntArray) -> FloatArray:
+    """
+    Areas of the pieces of spheres that lie to the left of closed chains of arcs.
+
+    Parameters
+    ----------
+    rows : (P, 5) float array
+        Unit rows in coordinates whose origin is near the piece; planes included.
+    arcs : Arcs
+        H arcs on these spheres, counter-clockwise about N.
+    arc_rows : (H,) int array
+        Row of each arc.
+
+    Returns
+    -------
+    (P,) float array
+        Areas; negative where the boundary runs clockwise.
+
+    Notes
+    -----
+    The closed integral of ``(x dy - y dx) / (1 + cos θ)`` about the point o of the sphere
+    nearest the origin, θ measured from N(o): 24 Gauss points per arc. It keeps its digits down
+    to the plane, where the theorem of Gauss and Bonnet cancels. Pieces must not reach the
+    antipode of o.
+    """
+    origin = project(rows, np.zeros((len(rows), 3)))
+    axis = normals(rows, origin)[arc_rows][:, None]
+    relative = arc_points(arcs, _NODES) - origin[arc_rows][:, None]
+    speed = _arc_derivatives(arcs, _NODES)
+    cosine = 1 - 2 * rows[arc_rows, :1] * dot(axis, relative)
+    integrand = dot(np.cross(relative, speed), axis) / (1 + cosine)
+    return sum_by(arc_rows, integrand @ _WEIGHTS, len(rows))
+
+
+def arc_tangents(arcs: Arcs) -> tuple[FloatArray, FloatArray]:
+    """
+    Directions in which arcs leave their starts and reach their ends.
+
+    Parameters
+    ----------
+    arcs : Arcs
+        H arcs.
+
+    Returns
+    -------
+    at_starts, at_ends : (H, 3) float array
+        Unit vectors, both in the sense from start to end.
+    """
+    along, square = unit(arcs.ends - arcs.starts), _bulges(arcs)[:, None] ** 2
+    # Half of the sweep, by the tangent of a quarter of it.
+    cosine, sine = (1 - square) / (1 + square), 2 * _bulges(arcs)[:, None] / (1 + square)
+    return cosine * along + sine * arcs.rises, cosine * along - sine * arcs.rises
+
+
+def arc_reaches(arcs: Arcs, directions: FloatArray) -> FloatArray:
+    """
+    How far arcs reach in a direction.
+
+    Parameters
+    ----------
+    arcs : Arcs
+        H arcs.
+    directions : (H, 3) float array
+        Unit vectors in the planes of the arcs.
+
+    Returns
+    -------
+    (H,) float array
+        Largest coordinate of a point of the arc along the direction, from the origin: that of
+        an end, or of the point of the circle that lies in that direction if the arc has it.
+    """
+    ends = np.maximum(dot(arcs.starts, directions), dot(arcs.ends, directions))
+    outward = np.copysign(1.0, arcs.sagittas)[:, None] * arcs.rises
+    apex = (arcs.starts + arcs.ends) / 2 + arcs.sagittas[:, None] * arcs.rises
+    turn = 2 * np.arctan2(norm(directions - outward), norm(directions + outward))
+    circles = arc_circles(arcs)
+    is_between = (turn < circles.sweeps / 2) & np.isfinite(circles.radii)
+    # From the apex, not from a centre that may be far away.
+    rise = np.where(is_between, circles.radii, 0.0) * 2 * np.sin(turn / 2) ** 2
+    return np.where(is_between, dot(apex, directions) + rise, ends)

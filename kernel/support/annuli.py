@@ -1,0 +1,243 @@
+"""
+Annuli: flat beams, bounded by two circular arcs and the lines of their ends.
+
+Each annulus has its own origin, near the middle of its edge and in its plane. A circle is kept
+as the unit row of the sphere that has it as a great circle, so that straight beams are planes
+and nothing divides by A. `kernel.annulus_support` finds the annuli of a sphere mesh.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by
+from ..spheres.arcs import Arcs, sphere_arcs
+
+
+@dataclass(frozen=True)
+class Annuli:
+    """
+    Annuli that can be made, in the order of their edges.
+
+    Points and rows are local: seen from the origin of the annulus, not turned.
+
+    Attributes
+    ----------
+    ids : tuple of str
+        Stable names ``B0000``, one per annulus.
+    edge_ids : (B,) int array
+        Edge of the mesh: interior and boundary edges, counted by their first half-edge.
+    edge_vertices : (B, 2) int array
+        Vertices at the two ends.
+    edge_faces : (B, 2) int array
+        Faces left and right of the edge; -1 beyond the boundary.
+    panel_ids : tuple of (str or None, str or None)
+        Names of the panels of these faces; None beyond the boundary.
+    origins : (B, 3) float array
+        Origins, in model coordinates: points of the planes near the middle of the edges.
+    frames : (B, 3, 3) float array
+        Unit vectors in rows: along the edge, across it to the outer side, and the normal of
+        the plane, which points to the right face.
+    outer, inner : (B, 5) float array
+        Unit rows of the spheres that have the outer and the inner circle as great circles;
+        N points to the outer side.
+    corners : (B, 2, 2, 3) float array
+        Corners at both ends: on the outer and on the inner circle.
+    end_directions : (B, 2, 3) float array
+        Unit directions of the lines of the two ends, to the inner side: the node axes,
+        projected to the plane.
+    node_axes : (B, 2, 3) float array
+        Unit directions of the node axes at both ends, to the inner side.
+    tilt : (B,) float array
+        Angles between the planes and the planes that bisect the faces, in radians.
+    kappa : float
+        Power ``R² - r²`` of all annuli, in squared model units; 0 for a constant depth.
+    depth : float
+        Depth on the node axes, in model units; 0 for a constant power.
+    """
+
+    ids: tuple[str, ...]
+    edge_ids: IntArray
+    edge_vertices: IntArray
+    edge_faces: IntArray
+    panel_ids: tuple[tuple[str | None, str | None], ...]
+    origins: FloatArray
+    frames: FloatArray
+    outer: FloatArray
+    inner: FloatArray
+    corners: FloatArray
+    end_directions: FloatArray
+    node_axes: FloatArray
+    tilt: FloatArray
+    kappa: float
+    depth: float
+
+    @property
+    def n_annuli(self) -> int:
+        """
+        Number of annuli.
+
+        Returns
+        -------
+        int
+            B.
+        """
+        return len(self.edge_ids)
+
+
+def beam_ids(n_edges: int) -> tuple[str, ...]:
+    """
+    Stable names of the beams of a mesh.
+
+    Parameters
+    ----------
+    n_edges : int
+        Number of edges, those of the boundary included.
+
+    Returns
+    -------
+    tuple of str
+        ``B0000``, ``B0001``, ... with as many digits as the last needs, at least four.
+
+    Examples
+    --------
+    >>> beam_ids(2)
+    ('B0000', 'B0001')
+    """
+    width = max(4, len(str(n_edges - 1)))
+    return tuple(f"B{edge:0{width}d}" for edge in range(n_edges))
+
+
+def select_annuli(annuli: Annuli, keep: BoolArray) -> Annuli:
+    """
+    Some of the annuli.
+
+    Parameters
+    ----------
+    annuli : Annuli
+        B annuli.
+    keep : (B,) bool array
+        Which ones.
+
+    Returns
+    -------
+    Annuli
+        The chosen annuli, in the same order.
+    """
+    return replace(
+        annuli,
+        ids=tuple(annuli.ids[i] for i in np.flatnonzero(keep)),
+        edge_ids=annuli.edge_ids[keep],
+        edge_vertices=annuli.edge_vertices[keep],
+        edge_faces=annuli.edge_faces[keep],
+        panel_ids=tuple(annuli.panel_ids[i] for i in np.flatnonzero(keep)),
+        origins=annuli.origins[keep],
+        frames=annuli.frames[keep],
+        outer=annuli.outer[keep],
+        inner=annuli.inner[keep],
+        corners=annuli.corners[keep],
+        end_directions=annuli.end_directions[keep],
+        node_axes=annuli.node_axes[keep],
+        tilt=annuli.tilt[keep],
+    )
+
+
+def annulus_arcs(annuli: Annuli) -> tuple[Arcs, Arcs]:
+    """
+    Outer and inner arcs, in local coordinates.
+
+    Parameters
+    ----------
+    annuli : Annuli
+        B annuli.
+
+    Returns
+    -------
+    outer, inner : Arcs
+        B arcs each, from the first to the second end; sagittas count to the outer side.
+    """
+    planes = -annuli.frames[:, 2]
+    outer, inner = (
+        sphere_arcs(rows, planes, annuli.corners[:, 0, k], annuli.corners[:, 1, k])
+        for k, rows in enumerate((annuli.outer, annuli.inner))
+    )
+    return outer, inner
+
+
+def corner_mismatch(annuli: Annuli) -> FloatArray:
+    """
+    How far the ends of the annuli that meet at a node are apart.
+
+    Parameters
+    ----------
+    annuli : Annuli
+        B annuli.
+
+    Returns
+    -------
+    (B, 2) float array
+        Distance of the corners of each end from the mean of those at the node, the larger of
+        outer and inner, in model units.
+    """
+    nodes = annuli.edge_vertices.ravel()
+    # Differences to one end per node keep their digits far from the origin.
+    _, first, groups = np.unique(nodes, return_index=True, return_inverse=True)
+    origins = np.repeat(annuli.origins, 2, axis=0)
+    shifts = origins - origins[first][groups]
+    points = annuli.corners.reshape(-1, 2, 3) + shifts[:, None]
+    count = np.bincount(groups)[:, None]
+    means = sum_by(groups, points.reshape(-1, 6), len(first)) / count
+    return norm(points - means[groups].reshape(-1, 2, 3)).max(axis=1).reshape(-1, 2)
+
+
+def axis_angles(annuli: Annuli) -> FloatArray:
+    """
+    Angles by which the planes of the annuli miss the node axes: 0 where a node has no torsion.
+
+    Parameters
+    ----------
+    annuli : Annuli
+        B annuli.
+
+    Returns
+    -------
+    (B, 2) float array
+        Angles in [0, π/2] at both ends, in radians.
+    """
+    sines = np.abs(dot(annuli.node_axes, annuli.frames[:, None, 2]))
+    return np.arcsin(np.minimum(sines, 1.0))
+
+
+def end_depths(annuli: Annuli) -> FloatArray:
+    """
+    Lengths of the ends, along the lines that the beams of a node share.
+
+    Parameters
+    ----------
+    annuli : Annuli
+        B annuli.
+
+    Returns
+    -------
+    (B, 2) float array
+        From outer to inner corner, in model units.
+    """
+    return norm(annuli.corners[:, :, 1] - annuli.corners[:, :, 0])
+
+
+def mean_end_depth(annuli: Annuli) -> float:
+    """
+    Mean length of the ends of the annuli.
+
+    Parameters
+    ----------
+    annuli : Annuli
+        B annuli.
+
+    Returns
+    -------
+    float
+        From outer to inner corner, in model units; 0 without annuli.
+    """
+    lengths = end_depths(annuli)
+    return float(lengths.mean()) if lengths.size else 0.0

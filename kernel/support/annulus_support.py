@@ -1,0 +1,334 @@
+"""
+Finding the annuli of a sphere mesh: planes, circles, ends, and what cannot be made.
+
+The outer arc of an annulus is the circle in which the spheres of its two faces meet. The inner
+one is either concentric with constant power ``R² - r² = κ``, so that all annuli of a node meet
+in the same two points (Lemma 4.4), or lies at a constant depth, measured on the node axes.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
+from ..errors import InputError
+from ..meshes.mesh import Mesh, face_centroids, face_normals, local_corners, mean_edge_length
+from ..panels.cutting import flatten_nearly_plane
+from ..panels.panels import panel_ids
+from ..parts.findings import rejected_report
+from ..sphere_meshes.sphere_mesh import SphereMesh
+from ..spheres.rows import evaluate, meet_lines, minkowski, normals, recenter
+from ..tolerances import BEAM_TILT, DEGENERATE
+from .annuli import (
+    Annuli,
+    axis_angles,
+    beam_ids,
+    corner_mismatch,
+    end_depths,
+    select_annuli,
+)
+from .annulus_checks import NO_ANNULUS, RejectedBeam, inner_reasons, standing_reasons
+from .node_axes import SupportStructure, arc_planes, support_structure
+
+
+@dataclass(frozen=True)
+class AnnulusSupport:
+    """
+    The annuli of a sphere mesh, and what cannot be made of it.
+
+    Attributes
+    ----------
+    annuli : Annuli
+        Those that can be made.
+    rejected : tuple of RejectedBeam
+        The others, each with its reason.
+    kappa_max : float
+        Largest admissible power of the annuli that stand, in squared model units; infinite
+        where all arcs are straight.
+    """
+
+    annuli: Annuli
+    rejected: tuple[RejectedBeam, ...]
+    kappa_max: float
+
+
+def annulus_support(
+    sphere_mesh: SphereMesh,
+    depth: float | None = None,
+    kappa: float | None = None,
+    max_tilt: float = BEAM_TILT,
+) -> AnnulusSupport:
+    """
+    Annuli under all edges, of constant depth or of constant power.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh.
+    depth : float, optional
+        Length of the ends, along the node axes to the inner side, in model units.
+    kappa : float, optional
+        Power ``R² - r²``, in squared model units. The ends reach from a vertex towards its
+        mirror point, to the outer side if that lies there; away from it if negative.
+    max_tilt : float
+        Planes that tilt more from the bisecting plane are rejected, in radians.
+
+    Returns
+    -------
+    AnnulusSupport
+        Annuli, rejected ones, and the range of κ.
+
+    Raises
+    ------
+    InputError
+        If not exactly one of depth and kappa is given, or it is out of range.
+
+    Notes
+    -----
+    The ends of an annulus lie on the node axes, projected to its plane. At nodes free of
+    torsion the planes contain the axis, and all annuli of a node share their end there. An
+    outer corner is where that line meets the circle.
+
+    Constant power: both circles are concentric and the concentric spheres ``r² - κ`` meet in
+    the inner ones. Constant depth: the inner corners lie at that depth on the end lines, and
+    the inner arc is the one through both whose centre is nearest to that of the outer arc: the
+    concentric one wherever the two ends are alike.
+
+    On the boundary, and between faces on the same sphere, there is no circle of intersection:
+    there the plane contains the edge and the mean of the two node axes.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Sec. 4.1, Lemma 4.4, Fig. 7 to 9.
+    """
+    _check_options(depth, kappa, max_tilt)
+    sphere_mesh = flatten_nearly_plane(sphere_mesh)
+    annuli, is_real = _outer_annuli(sphere_mesh, support_structure(sphere_mesh))
+    reasons = standing_reasons(annuli, is_real, max_tilt)
+    stands = np.ones(annuli.n_annuli, bool)
+    stands[list(reasons)] = False
+    kappa_max = _largest_kappa(annuli, stands)
+    if depth is not None:
+        annuli = _with_depth(annuli, float(depth))
+    else:
+        _check_kappa(float(kappa or 0), kappa_max)
+        annuli = _with_power(annuli, float(kappa or 0), stands)
+    reasons = inner_reasons(annuli, mean_edge_length(sphere_mesh.mesh)) | reasons
+    rejected = tuple(
+        RejectedBeam(annuli.ids[row], row, reason, NO_ANNULUS)
+        for row, reason in sorted(reasons.items())
+    )
+    keep = np.ones(annuli.n_annuli, bool)
+    keep[list(reasons)] = False
+    return AnnulusSupport(select_annuli(annuli, keep), rejected, kappa_max)
+
+
+def _check_options(depth: float | None, kappa: float | None, max_tilt: float) -> None:
+    if (depth is None) == (kappa is None):
+        raise InputError("give either a depth or a power kappa, and not both")
+    if depth is not None and not (np.isfinite(depth) and depth > 0):
+        raise InputError(f"depth must be a length above 0, not {depth}")
+    if kappa is not None and not (np.isfinite(kappa) and kappa != 0):
+        raise InputError(f"kappa must be a number other than 0, not {kappa}")
+    if not 0 < max_tilt <= np.pi / 2:
+        raise InputError(f"max_tilt must be above 0 and at most 90 degrees, not {max_tilt} rad")
+
+
+def _check_kappa(kappa: float, kappa_max: float) -> None:
+    if kappa > kappa_max:
+        raise InputError(
+            f"kappa {kappa:g} is outside the admissible range: at most {kappa_max:.6g}, the "
+            "least square of half the distance from a vertex to its mirror point; use a "
+            "smaller kappa or give a depth"
+        )
+
+
+def _edge_half_edges(mesh: Mesh) -> IntArray:
+    """First half-edge of every edge, those of the boundary included."""
+    twins = mesh.topology.twins
+    return np.flatnonzero((twins > np.arange(len(twins))) | (twins < 0))
+
+
+def _outer_annuli(
+    sphere_mesh: SphereMesh, structure: SupportStructure
+) -> tuple[Annuli, BoolArray]:
+    """Annuli with planes, outer circles and end lines; where the circles are real."""
+    mesh, topology = sphere_mesh.mesh, sphere_mesh.mesh.topology
+    first = _edge_half_edges(mesh)
+    twins = topology.twins[first]
+    is_interior = twins >= 0
+    starts = local_corners(mesh)
+    chords = (starts[topology.next_corners] - starts)[first]
+    middles = (starts + starts[topology.next_corners]) / 2
+    faces = np.stack([topology.corner_faces[first], topology.corner_faces[twins]], 1)
+    left = recenter(sphere_mesh.local_spheres[faces[:, 0]], middles[first])
+    right = recenter(sphere_mesh.local_spheres[faces[:, 1]], middles[twins])
+    right[~is_interior] = left[~is_interior]
+    vertices = np.stack([mesh.corners[first], mesh.corners[topology.next_corners[first]]], 1)
+    axes = structure.directions[vertices]
+
+    upright = left[:, 1:4] + right[:, 1:4]
+    planes = unit(np.cross(chords, upright))
+    shifts = np.zeros(len(first))
+    free = np.cross(axes.sum(axis=1), chords)
+    circles = arc_planes(sphere_mesh)
+    planes = np.where(norm(free)[:, None] > 0, unit(free), planes)
+    use = np.flatnonzero(is_interior)[circles.exists]
+    planes[use] = circles.normals[circles.exists]
+    shifts[use] = circles.offsets[circles.exists]
+    x = unit(chords - dot(chords, planes)[:, None] * planes)
+    side = np.where(dot(np.cross(planes, x), upright) < 0, -1.0, 1.0)
+    z, shifts = planes * side[:, None], shifts * side
+    feet = shifts[:, None] * z
+    outer, is_real = _great_spheres(recenter(left, feet), recenter(right, feet), z)
+
+    along = axes - dot(axes, z[:, None])[..., None] * z[:, None]
+    directions = unit(along)
+    ends = np.stack([-chords / 2, chords / 2], 1)
+    ends = ends - dot(ends, z[:, None])[..., None] * z[:, None]
+    steps, meets = meet_lines(
+        np.repeat(outer, 2, axis=0), ends.reshape(-1, 3), directions.reshape(-1, 3)
+    )
+    tops = ends + steps.reshape(-1, 2)[..., None] * directions
+    origins = face_centroids(mesh)[faces[:, 0]] + middles[first] + feet
+    across = face_normals(mesh)[faces[:, 0]] + face_normals(mesh)[faces[:, 1]]
+    across = np.where(is_interior[:, None], across, left[:, 1:4])
+    edge_faces = np.where(is_interior[:, None], faces, faces * [1, 0] - [0, 1])
+    annuli = Annuli(
+        beam_ids(len(first)), np.arange(len(first)), vertices, edge_faces,
+        _panel_ids_beside(edge_faces, mesh.n_faces), origins,
+        np.stack([x, np.cross(z, x), z], 1), outer, outer,
+        np.stack([tops, tops], 2), directions, axes,
+        _angle_of_planes(z, np.cross(chords, across)), 0.0, 0.0,
+    )  # fmt: skip
+    return annuli, is_real & meets.reshape(-1, 2).all(axis=1)
+
+
+def _panel_ids_beside(
+    edge_faces: IntArray, n_faces: int
+) -> tuple[tuple[str | None, str | None], ...]:
+    """Names of the panels beside edges."""
+    names = (*panel_ids(n_faces), None)  # -1, beyond the boundary, is the last
+    sides: list[list[int]] = edge_faces.tolist()
+    return tuple((names[left], names[right]) for left, right in sides)
+
+
+def _great_spheres(
+    left: FloatArray, right: FloatArray, plane_normals: FloatArray
+) -> tuple[FloatArray, BoolArray]:
+    """
+    Unit rows orthogonal to planes through the origin, through the circles of rows there.
+
+    Of the two spheres, that which stands more upright on the plane tells the circle better.
+    """
+    slopes = [dot(rows[:, 1:4], plane_normals) for rows in (left, right)]
+    steeper = np.abs(slopes[1]) < np.abs(slopes[0])
+    rows = np.where(steeper[:, None], right, left)
+    slope = np.where(steeper, slopes[1], slopes[0])
+    great = rows.copy()
+    great[:, 1:4] -= slope[:, None] * plane_normals
+    square = minkowski(great, great)
+    is_real = square > DEGENERATE
+    return great / np.sqrt(np.where(is_real, square, 1.0))[:, None], is_real
+
+
+def _angle_of_planes(first: FloatArray, second: FloatArray) -> FloatArray:
+    a, b = unit(first), unit(second)
+    angles = 2 * np.arctan2(norm(a - b), norm(a + b))
+    return np.minimum(angles, np.pi - angles)
+
+
+def _largest_kappa(annuli: Annuli, stands: BoolArray) -> float:
+    """Least square of half the chords on the node axes, and least squared radius."""
+    rows = annuli.outer[stands]
+    slopes = dot(
+        normals(rows[:, None], annuli.corners[stands][:, :, 0]), annuli.end_directions[stands]
+    )
+    curvature = 4 * rows[:, :1] ** 2
+    # A slope is a cosine, so half a chord is never longer than the radius.
+    squares = np.divide(
+        slopes**2, curvature, out=np.full(slopes.shape, np.inf), where=curvature > 0
+    )
+    return float(squares.min(initial=np.inf))
+
+
+def _with_power(annuli: Annuli, kappa: float, stands: BoolArray) -> Annuli:
+    curvature = annuli.outer[:, 0]
+    inner = annuli.outer.copy()
+    inner[:, 4] += curvature * kappa
+    square = 1 - 4 * curvature**2 * kappa
+    inner /= np.sqrt(np.where(stands & (square > 0), square, 1.0))[:, None]
+    steps, _ = meet_lines(
+        np.repeat(inner, 2, axis=0),
+        annuli.corners[:, :, 0].reshape(-1, 3),
+        annuli.end_directions.reshape(-1, 3),
+    )
+    corners = annuli.corners.copy()
+    corners[:, :, 1] += steps.reshape(-1, 2)[..., None] * annuli.end_directions
+    return replace(annuli, inner=inner, corners=corners, kappa=kappa)
+
+
+def _with_depth(annuli: Annuli, depth: float) -> Annuli:
+    corners = annuli.corners.copy()
+    corners[:, :, 1] += depth * annuli.end_directions
+    bottoms = corners[:, :, 1]
+    middles, chords = bottoms.mean(axis=1), bottoms[:, 1] - bottoms[:, 0]
+    levels = evaluate(annuli.outer[:, None], bottoms)
+    # The circle minus a linear function that vanishes it at both corners and changes along
+    # their chord only: the centre moves along the chord, and a line stays a line.
+    square = dot(chords, chords)
+    change = np.divide(
+        levels[:, 1] - levels[:, 0], square, out=np.zeros_like(square), where=square > 0
+    )
+    slopes = change[:, None] * chords
+    inner = annuli.outer.copy()
+    inner[:, 1:4] += slopes
+    inner[:, 4] += dot(slopes, middles) - levels.mean(axis=1)
+    norms = minkowski(inner, inner)
+    # Where no circle is left (the depth is beyond the centre) the row keeps its scale.
+    inner /= np.sqrt(np.where(norms > 0, norms, 1.0))[:, None]
+    return replace(annuli, inner=inner, corners=corners, depth=depth)
+
+
+def annulus_report(support: AnnulusSupport, size: float) -> dict[str, Any]:
+    """
+    What a user must know about annuli.
+
+    Parameters
+    ----------
+    support : AnnulusSupport
+        The annuli and what was rejected.
+    size : float
+        Mean edge of the mesh, in model units.
+
+    Returns
+    -------
+    dict
+        ``kappa_max`` (None where all arcs are straight), ``tilt_deg`` (p95 and max) of the
+        annuli made, ``corner_mismatch`` (max, relative_to_edge) between ends at a node,
+        ``axis_angle_deg`` (the largest angle between a node axis and a plane), ``end_depth``
+        (min and max length of the ends), ``outward`` (how many ends reach to the outer side),
+        ``made`` and ``rejected`` (id, code and reason).
+    """
+    annuli = support.annuli
+    tilt = np.degrees(annuli.tilt)
+    steps = annuli.corners[:, :, 1] - annuli.corners[:, :, 0]
+    lengths = end_depths(annuli)
+    mismatch = float(corner_mismatch(annuli).max(initial=0.0)) if annuli.n_annuli else 0.0
+    return {
+        "kappa_max": support.kappa_max if np.isfinite(support.kappa_max) else None,
+        "tilt_deg": {
+            "p95": float(np.percentile(tilt, 95)) if len(tilt) else 0.0,
+            "max": float(tilt.max(initial=0.0)),
+        },
+        "corner_mismatch": {"max": mismatch, "relative_to_edge": mismatch / size},
+        "axis_angle_deg": float(np.degrees(axis_angles(annuli).max(initial=0.0))),
+        "end_depth": {
+            "min": float(lengths.min()) if lengths.size else 0.0,
+            "max": float(lengths.max(initial=0.0)),
+        },
+        "outward": int((dot(steps, annuli.end_directions) < 0).sum()),
+        "made": annuli.n_annuli,
+        "rejected": rejected_report(support.rejected),
+    }

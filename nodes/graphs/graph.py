@@ -1,0 +1,459 @@
+"""The lazy graph: nodes wired together, run as far as a target needs."""
+
+import os
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, cast
+
+import numpy as np
+
+from .cache import Cache, digest
+from .errors import GraphError, nearest
+from .file import decode, decode_graph, encode_graph, write_graph
+from .mermaid import mermaid_text
+from .node import find_node, known_graph
+from .ports import UNITS, Port, Value, check_range
+from .run import OnStep, Run, output, run_steps
+from .wires import Param, Step, Target, Wire, parents, sources
+from .wiring import Place, check_name, check_names, connect, own
+
+
+class Graph:
+    """
+    Nodes wired together; only what a target needs is run, and only once.
+
+    Parameters
+    ----------
+    title : str
+        What the graph is about.
+    units : {"mm", "cm", "m", "in", "ft"}
+        Units of the model.
+    cache : Cache, optional
+        Results, shared with other graphs if one is given.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import Graph, node
+    >>> @node
+    ... def add_numbers(a: float, b: float = 1.0) -> float:
+    ...     return a + b
+    >>> graph = Graph("sum")
+    >>> a = graph.param("a", 2.0, min=0)
+    >>> total = graph.add(add_numbers, a=a)
+    >>> graph.run(total)
+    3.0
+    >>> graph.set(a=5.0)
+    >>> graph.run(total)
+    6.0
+    """
+
+    def __init__(
+        self, title: str = "", units: str = "m", *, cache: Cache | None = None
+    ) -> None:
+        if units not in UNITS:
+            raise GraphError(f"units = {units!r}: must be one of {', '.join(UNITS)}")
+        self.title = title
+        self.units = units
+        self._cache = cache or Cache()
+        self._params: dict[str, Param] = {}
+        self._values: dict[str, Any] = {}
+        self._steps: dict[str, Step] = {}
+        self._messages: dict[str, tuple[str, ...]] = {}
+
+    @property
+    def steps(self) -> Mapping[str, Step]:  # numpydoc ignore=RT01
+        """The steps by name, each after those that it needs."""
+        return MappingProxyType(self._steps)
+
+    @property
+    def params(self) -> Mapping[str, Param]:  # numpydoc ignore=RT01
+        """The sliders by name, with their present values."""
+        return {n: replace(p, value=self._values[n]) for n, p in self._params.items()}
+
+    @property
+    def ends(self) -> tuple[Step, ...]:  # numpydoc ignore=RT01
+        """The steps that no other step uses."""
+        used = {name for step in self._steps.values() for name in parents(step)}
+        return tuple(step for name, step in self._steps.items() if name not in used)
+
+    @property
+    def messages(self) -> Mapping[str, tuple[str, ...]]:  # numpydoc ignore=RT01
+        """What the steps warned about when they, or steps after them, were last asked for."""
+        return MappingProxyType(self._messages)
+
+    def param(
+        self,
+        name: str,
+        value: Value,
+        *,
+        min: float | None = None,  # noqa: A002, the words of a slider
+        max: float | None = None,  # noqa: A002
+        choices: Sequence[Any] = (),
+    ) -> Param:
+        """
+        Add a slider.
+
+        Parameters
+        ----------
+        name : str
+            A name that is free.
+        value : object
+            Its value.
+        min, max : float, optional
+            Range of a number, the ends included.
+        choices : sequence, optional
+            The values allowed.
+
+        Returns
+        -------
+        Param
+            To be wired into steps.
+
+        Raises
+        ------
+        GraphError
+            If the name is taken or the value is not allowed.
+        """
+        if name in self._params:
+            raise GraphError(f"there is a param {name!r} already; change it with set")
+        check_name(name, "param")
+        value = _plain(value)
+        port = Port(name=name, min=min, max=max, choices=tuple(choices))
+        check_range(value, port, f"param {name}")
+        self._values[name] = value
+        self._params[name] = Param(self, name, value, port)
+        return self._params[name]
+
+    def add(
+        self, node: str | Callable[..., Any], name: str | None = None, /, **inputs: Value
+    ) -> Step:
+        """
+        Add a step and wire its inputs.
+
+        Parameters
+        ----------
+        node : callable or str
+            A function decorated with `@node`, or its name.
+        name : str, optional
+            Name of the step; by default that of the node, numbered when repeated.
+        **inputs : object
+            For each input an output of another step, a slider, ``each(...)`` or a value.
+
+        Returns
+        -------
+        Step
+            Its outputs are its attributes; if there is one, the step itself can be wired.
+
+        Raises
+        ------
+        GraphError
+            If the node, an input or a type is wrong; the message names both ends.
+        """
+        found = find_node(node)
+        if name is not None and not isinstance(name, str):  # pyright: ignore[reportUnnecessaryIsInstance]
+            inputs_known = ", ".join(found.inputs)
+            raise GraphError(f"{found.name}: wire inputs by name; they are {inputs_known}")
+        if name is None:
+            name = _free_name(found.name, self._steps)
+        elif name in self._steps:
+            raise GraphError(f"there is a step {name!r} already")
+        check_name(name, "step")
+        check_names(found, name, inputs)
+        place = Place(self, self._values, name)
+        checked = {key: connect(place, found.inputs[key], inputs[key]) for key in inputs}
+        self._steps[name] = Step(self, name, found, MappingProxyType(checked))
+        return self._steps[name]
+
+    def set(self, /, **params: Value) -> None:
+        """
+        Move sliders.
+
+        Parameters
+        ----------
+        **params : object
+            New values by name.
+
+        Raises
+        ------
+        GraphError
+            If a name is unknown or a value not allowed; then no slider is moved.
+        """
+        self._values.update(self.check_params(params))
+
+    def check_params(self, params: Mapping[str, Any]) -> dict[str, Any]:
+        """
+        Values for sliders, checked against their ranges and the inputs that they feed.
+
+        Parameters
+        ----------
+        params : mapping of str to object
+            Values by name.
+
+        Returns
+        -------
+        dict of str to object
+            The same values, NumPy's scalars as Python's.
+
+        Raises
+        ------
+        GraphError
+            If a name is unknown or a value not allowed.
+        """
+        values = {name: _plain(value) for name, value in params.items()}
+        for name, value in values.items():
+            check_range(value, self.slider(name).port, f"param {name}")
+            digest(value)
+        present = {**self._values, **values}
+        for step in self._steps.values():
+            place = Place(self, present, step.name)
+            for name, given in step.inputs.items():
+                if any(isinstance(s, Param) and s.name in values for s in sources(given)):
+                    connect(place, step.node.inputs[name], given)
+        return values
+
+    def run(
+        self,
+        *targets: Target,
+        on_step: OnStep | None = None,
+        read_from: str | os.PathLike[str] | None = None,
+    ) -> Value:
+        """
+        The values of targets; only the steps that they need and that have changed are run.
+
+        Parameters
+        ----------
+        *targets : Step, Wire, Param or str
+            Outputs, whole steps, or their names ``"step.port"``.
+        on_step : callable, optional
+            Called with the name of each step touched and ``"running"``, ``"done"``,
+            ``"cached"`` or ``"failed"``.
+        read_from : path, optional
+            Folder of the relative paths that nodes read; the working directory by default.
+
+        Returns
+        -------
+        object
+            The value, or a tuple of them for several targets.
+
+        Raises
+        ------
+        NodeError
+            If a step fails; ``cause`` is what its function raised.
+        """
+        if not targets:
+            raise GraphError(f"run needs a target; {nearest('', self._steps)}")
+        wanted = [self.wire(t) if isinstance(t, str) else t for t in targets]
+        for target in wanted:
+            own(self, target)
+        names = [
+            w.step.name if isinstance(w, Wire) else w.name
+            for w in wanted
+            if not isinstance(w, Param)
+        ]
+        run = Run(
+            steps=self._steps,
+            values=self._values,
+            units=self.units,
+            cache=self._cache,
+            on_step=on_step or _silent,
+            read_from=None if read_from is None else Path(read_from),
+        )
+        try:
+            with known_graph(self.to_json):
+                run_steps(run, names)
+            values = tuple(output(run, target) for target in wanted)
+        finally:
+            for name, key in run.keys.items():
+                self._messages.pop(name, None)
+                if messages := self._cache.messages(key):
+                    self._messages[name] = messages
+            self._cache.trim(2 * len(self._steps))
+        return values[0] if len(values) == 1 else values
+
+    def wire(self, name: str) -> Step | Wire:
+        """
+        A step or an output by name.
+
+        Parameters
+        ----------
+        name : str
+            ``"step"`` or ``"step.port"``.
+
+        Returns
+        -------
+        Step or Wire
+            What has the name.
+
+        Raises
+        ------
+        GraphError
+            If nothing has; the message gives the nearest name.
+        """
+        step_name, dot, port = name.partition(".")
+        if step_name not in self._steps:
+            raise GraphError(f"no step {step_name!r}; {nearest(step_name, self._steps)}")
+        step = self._steps[step_name]
+        return getattr(step, port) if dot else step
+
+    def slider(self, name: str) -> Param:
+        """
+        A slider by name.
+
+        Parameters
+        ----------
+        name : str
+            Its name.
+
+        Returns
+        -------
+        Param
+            To be wired into steps.
+
+        Raises
+        ------
+        GraphError
+            If there is none; the message gives the nearest name.
+        """
+        if name not in self._params:
+            raise GraphError(f"no param {name!r}; {nearest(name, self._params)}")
+        return self._params[name]
+
+    def to_json(self) -> str:
+        """
+        The graph as the text of a graph file.
+
+        Returns
+        -------
+        str
+            Versioned JSON in a stable order, without code.
+        """
+        facts = {
+            n: {
+                "value": p.value,
+                "min": p.port.min,
+                "max": p.port.max,
+                "choices": list(p.port.choices) or None,
+            }
+            for n, p in self.params.items()
+        }
+        given = {
+            n: {k: v for k, v in f.items() if k == "value" or v is not None}
+            for n, f in facts.items()
+        }
+        return encode_graph(self.title, self.units, given, self._steps)
+
+    @classmethod
+    def from_json(cls, text: str, *, cache: Cache | None = None) -> "Graph":
+        """
+        The graph of a graph file's text.
+
+        Parameters
+        ----------
+        text : str
+            From `to_json`.
+        cache : Cache, optional
+            Results, shared with other graphs if one is given.
+
+        Returns
+        -------
+        Graph
+            The same graph.
+
+        Raises
+        ------
+        GraphError
+            If the text is no valid graph; the message says where.
+        """
+        content = decode_graph(text)
+        graph = cls(content["title"], content["units"], cache=cache)
+        for name, facts in content["params"].items():
+            try:
+                graph.param(name, **{key: decode(value, graph) for key, value in facts.items()})
+            except (GraphError, TypeError) as error:
+                raise GraphError(f"params.{name}: {error}") from error
+        for name, step in content["steps"].items():
+            try:
+                inputs = {port: decode(value, graph) for port, value in step["inputs"].items()}
+                added = graph.add(step["node"], name, **inputs)
+            except GraphError as error:
+                raise GraphError(f"steps.{name}: {error}") from error
+            if added.node.version != step["version"]:
+                warnings.warn(
+                    f"step {name!r} was saved with version {step['version']} of node "
+                    f"{added.node.name}, this is {added.node.version}: results may differ",
+                    stacklevel=2,
+                )
+        return graph
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """
+        Write a graph file.
+
+        Parameters
+        ----------
+        path : path
+            The file; an old one is replaced only when the new one is complete.
+        """
+        write_graph(path, self.to_json())
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> "Graph":
+        """
+        Read a graph file.
+
+        Parameters
+        ----------
+        path : path
+            The file.
+
+        Returns
+        -------
+        Graph
+            The graph; nothing has been run.
+
+        Raises
+        ------
+        GraphError
+            If it is no valid graph file; the message says where.
+        """
+        try:
+            return cls.from_json(Path(path).read_text(encoding="utf-8"))
+        except OSError as error:
+            raise GraphError(f"{os.fspath(path)}: {error.strerror}") from error
+        except UnicodeDecodeError as error:
+            raise GraphError(f"{os.fspath(path)}: not UTF-8 text") from error
+        except RecursionError as error:
+            raise GraphError(f"{os.fspath(path)}: nested too deeply") from error
+        except GraphError as error:
+            raise GraphError(f"{os.fspath(path)}: {error}") from error
+
+    def mermaid(self) -> str:
+        """
+        The graph as a Mermaid flowchart.
+
+        Returns
+        -------
+        str
+            Text that Markdown viewers draw.
+        """
+        return mermaid_text(self._values, self._steps)
+
+
+def _free_name(name: str, taken: Mapping[str, Step]) -> str:
+    if name not in taken:
+        return name
+    number = 2
+    while f"{name}_{number}" in taken:
+        number += 1
+    return f"{name}_{number}"
+
+
+def _plain(value: Value) -> Value:
+    return cast("Value", value.item()) if isinstance(value, np.generic) else value
+
+
+def _silent(step: str, state: str) -> None:
+    del step, state

@@ -1,0 +1,354 @@
+"""Typed functions as nodes: the signature is the ports, the docstring the help."""
+
+import importlib
+import inspect
+import pkgutil
+import re
+import warnings
+from collections.abc import Callable, Generator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, field, replace
+from functools import cache
+from types import UnionType
+from typing import (
+    Annotated,
+    Any,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+    overload,
+)
+
+from .cache import digest
+from .errors import GraphError, nearest
+from .ports import Hint, Port, Value, check_value
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+# A step has attributes of its own; its outputs are found beside them.
+RESERVED_OUTPUTS = ("graph", "inputs", "name", "node")
+
+
+class NodeWarning(UserWarning):
+    """A node has something to say about its result."""
+
+
+@dataclass(frozen=True, eq=False)
+class Node:
+    """
+    What is known about a registered function.
+
+    Attributes
+    ----------
+    name : str
+        Name of the function.
+    function : callable
+        The function, as it was written.
+    version : str
+        Changed by the author when the same inputs give another result.
+    category : str
+        Last part of the name of its module.
+    summary : str
+        First line of the docstring.
+    help : str
+        The docstring.
+    inputs, outputs : mapping of str to Port
+        The ports by name, in the order of the signature.
+    result_type : type
+        Annotation of the result.
+    edition : int
+        How often the name was defined anew in this process, as happens in notebooks.
+    """
+
+    name: str
+    function: Callable[..., Any] = field(repr=False)
+    version: str
+    category: str
+    summary: str
+    help: str = field(repr=False)
+    inputs: Mapping[str, Port] = field(repr=False)
+    outputs: Mapping[str, Port] = field(repr=False)
+    result_type: Hint = field(repr=False)
+    edition: int = 0
+
+    @property
+    def has_fields(self) -> bool:  # numpydoc ignore=RT01
+        """Whether the result is a NamedTuple, its fields the outputs."""
+        return _is_named_tuple(self.result_type)
+
+
+REGISTRY: dict[str, Node] = {}
+
+_messages: ContextVar[list[str] | None] = ContextVar("messages", default=None)
+_graph_text: ContextVar[Callable[[], str] | None] = ContextVar("graph_text", default=None)
+
+
+@overload
+def node(function: Function, /) -> Function: ...  # numpydoc ignore=GL08
+@overload
+def node(  # numpydoc ignore=GL08
+    *, version: str = "1"
+) -> Callable[[Function], Function]: ...
+def node(
+    function: Callable[..., Any] | None = None, /, *, version: str = "1"
+) -> Callable[..., Any]:
+    """
+    Register a typed function as a node and return it unchanged.
+
+    Parameters
+    ----------
+    function : callable
+        Every argument and the result are annotated.
+    version : str
+        To be changed when the same inputs give another result.
+
+    Returns
+    -------
+    callable
+        The function; with a version given, the decorator.
+
+    Raises
+    ------
+    GraphError
+        If the signature cannot be turned into ports, or the name is taken.
+    """
+
+    def _register(function: Function) -> Function:
+        described = _describe(function, version)
+        known = REGISTRY.get(described.name)
+        if known is not None:
+            _check_same_place(known.function, function)
+            described = replace(described, edition=known.edition + 1)
+        REGISTRY[described.name] = described
+        return function
+
+    return _register if function is None else _register(function)
+
+
+def find_node(node: str | Callable[..., Any]) -> Node:
+    """
+    The node of a name or of a function.
+
+    Parameters
+    ----------
+    node : str or callable
+        A name, or a function decorated with `@node`.
+
+    Returns
+    -------
+    Node
+        The record; the library is imported if the name is not known without it.
+
+    Raises
+    ------
+    GraphError
+        If there is no such node; the message gives the nearest name.
+    """
+    if not isinstance(node, str):
+        name = getattr(node, "__name__", repr(node))
+        found = REGISTRY.get(name)
+        if found is None or found.function is not node:
+            raise GraphError(
+                f"{name} is not a node: decorate its present definition with @node"
+            )
+        return found
+    if node not in REGISTRY:
+        load_library()
+    if node not in REGISTRY:
+        raise GraphError(f"unknown node {node!r}; {nearest(node, REGISTRY)}")
+    return REGISTRY[node]
+
+
+@cache
+def load_library() -> None:
+    """Import every module of the node library, which registers its nodes."""
+    library = importlib.import_module("..library", __package__)
+    for module in pkgutil.iter_modules(library.__path__, f"{library.__name__}."):
+        importlib.import_module(module.name)
+
+
+def warn(text: str) -> None:
+    """
+    Say something about the result of the node that is running.
+
+    Parameters
+    ----------
+    text : str
+        One sentence. It goes to Python warnings and, within a graph, to `Graph.messages`.
+    """
+    messages = _messages.get()
+    if messages is not None:
+        messages.append(text)
+    warnings.warn(text, NodeWarning, stacklevel=2)
+
+
+def running_graph() -> str:
+    """
+    The graph that is running, for files that carry how they were made.
+
+    Returns
+    -------
+    str
+        Its JSON; empty outside of a graph, or where it has values that JSON cannot hold.
+    """
+    text = _graph_text.get()
+    try:
+        return "" if text is None else text()
+    except GraphError:
+        return ""
+
+
+@contextmanager
+def known_graph(text: Callable[[], str]) -> Generator[None]:
+    """
+    Let nodes ask for the graph that runs them.
+
+    Parameters
+    ----------
+    text : callable
+        Gives the graph as JSON.
+
+    Yields
+    ------
+    None
+        While the block runs, `running_graph` answers.
+    """
+    token = _graph_text.set(text)
+    try:
+        yield
+    finally:
+        _graph_text.reset(token)
+
+
+@contextmanager
+def collected_messages() -> Generator[list[str]]:
+    """
+    Collect what nodes warn about.
+
+    Yields
+    ------
+    list of str
+        Grows while the block runs.
+    """
+    messages: list[str] = []
+    token = _messages.set(messages)
+    try:
+        yield messages
+    finally:
+        _messages.reset(token)
+
+
+def _check_same_place(known: Callable[..., Any], new: Callable[..., Any]) -> None:
+    if (known.__module__, known.__qualname__) != (new.__module__, new.__qualname__):
+        raise GraphError(
+            f"two nodes are called {new.__name__!r}: {known.__module__}.{known.__qualname__} "
+            f"and {new.__module__}.{new.__qualname__}; rename one"
+        )
+
+
+def _describe(function: Callable[..., Any], version: str) -> Node:
+    name = function.__name__
+    try:
+        hints = get_type_hints(function, include_extras=True)
+    except NameError as error:
+        raise GraphError(f"node {name}: an annotation cannot be resolved: {error}") from error
+    if "return" not in hints:
+        raise GraphError(f"node {name}: annotate its result")
+    doc = inspect.getdoc(function) or ""
+    result = hints["return"]
+    return Node(
+        name=name,
+        function=function,
+        version=version,
+        category=function.__module__.rpartition(".")[2],
+        summary=doc.partition("\n")[0],
+        help=doc,
+        inputs=_inputs(function, hints, _entries(doc, "Parameters", "Other Parameters")),
+        outputs=_outputs(name, result, _entries(doc, "Returns")),
+        result_type=_split(result)[0],
+    )
+
+
+def _inputs(
+    function: Callable[..., Any], hints: Mapping[str, Any], texts: Mapping[str, str]
+) -> dict[str, Port]:
+    ports: dict[str, Port] = {}
+    for name, parameter in inspect.signature(function).parameters.items():
+        where = f"{function.__name__}.{name}"
+        if parameter.kind not in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY):
+            raise GraphError(f"{where}: an input must be a plain argument, not {parameter}")
+        if name not in hints:
+            raise GraphError(f"{where}: annotate the input with its type")
+        kind, facts = _split(hints[name])
+        port = replace(
+            facts,
+            name=name,
+            type=kind,
+            default=parameter.default,
+            help=facts.help or texts.get(name, ""),
+        )
+        if parameter.default is not parameter.empty:
+            check_value(port, parameter.default, f"default of {where}")
+            _check_content(parameter.default, where)
+        ports[name] = port
+    return ports
+
+
+def _check_content(default: Value, where: str) -> None:
+    try:
+        digest(default)
+    except TypeError as error:
+        raise GraphError(f"default of {where}: {error}") from error
+
+
+def _outputs(node_name: str, result: Hint, texts: Mapping[str, str]) -> dict[str, Port]:
+    kind, facts = _split(result)
+    if not _is_named_tuple(kind):
+        text = next(iter(texts.values()), "")
+        port = replace(facts, name=facts.name or "result", type=kind, help=facts.help or text)
+        return {port.name: port}
+    own = _entries(inspect.getdoc(kind) or "", "Parameters", "Attributes")
+    ports: dict[str, Port] = {}
+    for name, hint in get_type_hints(kind, include_extras=True).items():
+        if name in RESERVED_OUTPUTS:
+            raise GraphError(f"node {node_name}: an output cannot be called {name!r}")
+        kind, facts = _split(hint)
+        text = facts.help or texts.get(name) or own.get(name, "")
+        ports[name] = replace(facts, name=name, type=kind, help=text)
+    return ports
+
+
+def _split(hint: Hint) -> tuple[Hint, Port]:
+    """An annotation as its type and its facts, also those of an alternative to None."""
+    if get_origin(hint) is Annotated:
+        kind, *facts = get_args(hint)
+        return kind, next((fact for fact in facts if isinstance(fact, Port)), Port())
+    options = get_args(hint) if get_origin(hint) in (Union, UnionType) else ()
+    facts = [_split(option)[1] for option in options if get_origin(option) is Annotated]
+    return hint, next(iter(facts), Port())
+
+
+def _is_named_tuple(kind: Hint) -> bool:
+    return isinstance(kind, type) and hasattr(kind, "_fields") and issubclass(kind, tuple)
+
+
+def _entries(doc: str, *titles: str) -> dict[str, str]:
+    """Name and text of each entry in sections of a numpydoc docstring."""
+    entries: dict[str, str] = {}
+    names: list[str] = []
+    inside = False
+    lines = doc.splitlines()
+    for line, below in zip(lines, [*lines, ""][1:], strict=True):
+        if re.fullmatch("-{3,}", below):
+            inside = line.strip() in titles
+        elif not inside or not line.strip() or re.fullmatch("-{3,}", line):
+            continue
+        elif not line[0].isspace():
+            names = [name.strip() for name in line.partition(" : ")[0].split(",")]
+            entries.update(dict.fromkeys(names, ""))
+        else:
+            entries.update({name: f"{entries[name]} {line.strip()}".strip() for name in names})
+    return entries

@@ -1,0 +1,299 @@
+"""Errors when wired: both ends are named, and the nearest valid name."""
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any, Literal, NamedTuple
+
+import numpy as np
+import pytest
+from numpy.typing import ArrayLike, NDArray
+
+import spheremesh as sm
+from spheremesh.nodes import GraphError, Port, node
+from spheremesh.nodes.graphs.ports import accepts, fits
+
+
+class Shape:
+    """Something that has a content."""
+
+    def content_key(self) -> bytes:
+        """Equal for all."""
+        return b""
+
+
+class Round(Shape):
+    """A kind of shape."""
+
+
+class Fit(NamedTuple):
+    """A shape and its report."""
+
+    shape: Round
+    report: Mapping[str, Any]
+
+
+def read_shape(path: str) -> Shape:
+    return Shape() if path else Round()
+
+
+def fit_shape(shape: Shape, ring: Annotated[int, Port(min=0, max=5, unit="steps")] = 1) -> Fit:
+    return Fit(Round(), {"ring": ring, "of": str(shape)})
+
+
+def measure(
+    shape: Round, kind: Literal["area", "length"] = "area", labels: Sequence[int] | None = None
+) -> float:
+    return len(kind) + len(labels or ()) + float(isinstance(shape, Round))
+
+
+def pick(kind: Annotated[str, Port(choices=("a", "b"))]) -> str:
+    return kind
+
+
+def translate(offset: tuple[float, float, float]) -> tuple[float, float, float]:
+    return offset
+
+
+def to_path(path: Path) -> Path:
+    return path / "x"
+
+
+def to_text(text: str) -> str:
+    return text.upper()
+
+
+@pytest.fixture(autouse=True)
+def toys() -> None:
+    """Register the toys for one test."""
+    for function in (read_shape, fit_shape, measure, pick, translate, to_path, to_text):
+        node(function)
+
+
+Wiring = Callable[[sm.Graph], object]
+
+MISTAKES: list[tuple[Wiring, str]] = [
+    (
+        lambda g: g.add("fit_shapes"),
+        "unknown node 'fit_shapes'; did you mean 'fit_shape'?",
+    ),
+    (
+        lambda g: g.add(fit_shape, shap=1),
+        "step 'fit_shape_2' (node fit_shape) has no input 'shap'; did you mean 'shape'?",
+    ),
+    (
+        lambda g: g.add(fit_shape, "mine"),
+        "step 'mine' (node fit_shape) misses its input 'shape' (Shape)",
+    ),
+    (
+        lambda g: g.add(fit_shape, shape=g.wire("read_shape"), ring=1.5),
+        "fit_shape_2.ring = 1.5: must be int",
+    ),
+    (
+        lambda g: g.add(fit_shape, shape=g.wire("read_shape"), ring=6),
+        "fit_shape_2.ring = 6: must be at least 0 and at most 5 steps",
+    ),
+    (
+        lambda g: g.add(fit_shape, shape=g.wire("read_shape"), ring=g.param("n", -1)),
+        "param n for fit_shape_2.ring = -1: must be at least 0 and at most 5 steps",
+    ),
+    (
+        lambda g: g.add(measure, shape=g.wire("fit_shape")),
+        "cannot wire fit_shape into measure.shape: it has several outputs; "
+        "choose fit_shape.shape",
+    ),
+    (
+        lambda g: g.add(pick, kind=g.wire("fit_shape")),
+        "cannot wire fit_shape into pick.kind: it has several outputs; none is str",
+    ),
+    (
+        lambda g: g.add(measure, shape=g.wire("read_shape")),
+        "cannot wire read_shape.result (Shape) into measure.shape (Round)",
+    ),
+    (
+        lambda g: g.add(measure, shape=g.wire("fit_shape").report),
+        "cannot wire fit_shape.report (Mapping) into measure.shape (Round); "
+        "fit_shape.shape would fit",
+    ),
+    (
+        lambda g: g.add(measure, shape=Shape()),
+        "must be Round",
+    ),
+    (
+        lambda g: g.add(measure, shape=Round(), kind="volume"),
+        "measure.kind = 'volume': must be 'area' or 'length'",
+    ),
+    (
+        lambda g: g.add(measure, shape=Round(), labels=["x"]),
+        "measure.labels = ['x']: must be Sequence of int or None",
+    ),
+    (
+        lambda g: g.add(measure, shape=Round(), labels=[1, g.wire("fit_shape").report]),
+        "cannot wire fit_shape.report (Mapping) into measure.labels[1] (int)",
+    ),
+    (
+        lambda g: g.add(measure, shape=[g.wire("fit_shape").shape]),
+        "measure.shape: a list, must be Round; use each(...)",
+    ),
+    (lambda g: g.add(pick, kind="c"), "pick.kind = 'c': must be one of 'a', 'b'"),
+    (
+        lambda g: g.add(translate, offset=[1, 2]),
+        "translate.offset = [1, 2]: must be tuple of 3",
+    ),
+    (lambda g: g.wire("fit_shape").raport, "has no output 'raport'; did you mean 'report'?"),
+    (lambda g: g.wire("fit_shap.report"), "no step 'fit_shap'; did you mean 'fit_shape'?"),
+    (lambda g: g.run("fit_shape.ring"), "has no output 'ring'; there are shape, report"),
+    (lambda g: g.run(), "run needs a target; there are read_shape, fit_shape"),
+    (
+        lambda g: g.add(measure, shape=sm.Graph().add(fit_shape, shape=Shape()).shape),
+        "fit_shape.shape is part of another graph",
+    ),
+    (
+        lambda g: g.add(fit_shape, shape=Shape(), ring=sm.Graph().param("k", 1)),
+        "k is part of another graph",
+    ),
+    (
+        lambda g: g.run(sm.Graph().add(read_shape, path="")),
+        "read_shape is part of another graph",
+    ),
+    (lambda g: g.add(read_shape, "fit_shape", path=""), "there is a step 'fit_shape' already"),
+    (lambda g: g.add(read_shape, "a.b", path=""), "step name 'a.b': use letters, digits"),
+    (lambda g: g.param("a b", 1), "param name 'a b': use letters, digits"),
+    (lambda g: [g.param("k", 1), g.param("k", 2)], "there is a param 'k' already"),
+    (lambda g: g.param("k", 3, max=2), "param k = 3: must be at most 2"),
+    (lambda g: g.param("k", float("nan"), max=2), "param k = nan: must be at most 2"),
+    (lambda g: g.param("k", 3, choices=[1, 2]), "param k = 3: must be one of 1, 2"),
+    (
+        lambda g: [g.param("moulds", 1), g.set(mould=2)],
+        "no param 'mould'; did you mean 'moulds'?",
+    ),
+]
+
+
+@pytest.mark.parametrize(("wiring", "message"), MISTAKES, ids=[text for _, text in MISTAKES])
+def test_mistakes_are_told_when_made(wiring: Wiring, message: str) -> None:
+    g = sm.Graph()
+    g.add(fit_shape, shape=g.add(read_shape, path="x"))
+    with pytest.raises(GraphError) as error:
+        wiring(g)
+    assert message in str(error.value)
+    assert list(g.steps) == ["read_shape", "fit_shape"]
+
+
+def test_a_wrong_value_moves_no_slider() -> None:
+    g = sm.Graph()
+    n, m = g.param("n", 1), g.param("m", 1, max=3)
+    g.add(fit_shape, shape=Shape(), ring=n)
+    with pytest.raises(GraphError, match=r"param n for fit_shape\.ring = 9: .* at most 5"):
+        g.set(m=2, n=9)
+    with pytest.raises(GraphError, match="param m = 4: must be at most 3"):
+        g.set(n=2, m=4)
+    assert g.run(n, m) == (1, 1)
+    g.set(n=np.int64(4))
+    assert type(g.params["n"].value) is int
+
+
+def test_hasattr_works_on_steps() -> None:
+    step = sm.Graph().add(read_shape, path="x")
+    assert hasattr(step, "result")
+    assert not hasattr(step, "shape")
+
+
+def test_names_of_inputs_cannot_collide() -> None:
+    @node
+    def odd(self: int, node: int, name: int) -> int:
+        return self + node + name
+
+    g = sm.Graph()
+    assert g.run(g.add(odd, "mine", self=1, node=2, name=3)) == 6
+
+
+def test_paths_and_lists_take_the_form_that_the_function_expects() -> None:
+    g = sm.Graph()
+    path = g.add(to_path, path="folder")
+    assert g.run(path) == Path("folder/x")
+    assert g.run(g.add(to_text, text=path)) == os.fspath(Path("FOLDER/X"))
+    assert g.run(g.add(translate, offset=[1, 2, 3])) == (1, 2, 3)
+
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+FIT = [
+    (int, float),
+    (bool, bool),
+    (np.float64, float),
+    (Round, Shape),
+    (Shape, Round | Shape),
+    (Floats, Ints),
+    (Floats, Floats | None),
+    (Floats, ArrayLike),
+    (Floats, Sequence[float]),
+    (Floats, Any),
+    (list[float], Floats),
+    (list[list[int]], Floats),
+    (list[int], Sequence[float]),
+    (list[float], tuple[float, ...]),
+    (dict[str, Any], Mapping[str, Any]),
+    (Any, int),
+    (int, Any),
+    (float, object),
+    (str, Path),
+    (Path, str | os.PathLike[str]),
+    (Literal["a"], str),
+    (str, Literal["a"]),
+    (float | None, float),
+    (Annotated[int, Port(min=1)], float),
+    (Callable[[int], int], Callable[[int], int]),
+]
+MISFIT = [
+    (float, int),
+    (bool, int),
+    (int, bool),
+    (str, float),
+    (float, str),
+    (None, float),
+    (Shape, Round),
+    (Shape, Floats),
+    (Floats, float),
+    (str, Floats),
+    (Floats, Shape | None),
+    (list[Shape], Floats),
+    (str, Sequence[str]),
+    (list[str], Sequence[float]),
+    (Sequence[int], Mapping[str, int]),
+    (Mapping[str, Any], Shape),
+    (Literal["c"], Literal["a", "b"]),
+]
+
+
+@pytest.mark.parametrize(("source", "target"), FIT)
+def test_types_that_fit(source: Any, target: Any) -> None:  # noqa: ANN401
+    assert fits(source, target)
+
+
+@pytest.mark.parametrize(("source", "target"), MISFIT)
+def test_types_that_do_not_fit(source: Any, target: Any) -> None:  # noqa: ANN401
+    assert not fits(source, target)
+
+
+@pytest.mark.parametrize(
+    ("kind", "good", "bad"),
+    [
+        (float, [1, 1.5, np.float32(1), np.int8(1)], [True, "1", None, 1j, [1.0]]),
+        (int, [1, np.int64(3)], [1.0, True, "1"]),
+        (bool, [True, np.bool_(0)], [1, 0.0, "True"]),
+        (str, ["a", Path("a")], [1, b"a"]),
+        (Floats, [np.zeros(2), [1, 2], [[1.5], (2,)]], [1.0, "abc", ["a"], [None], {}]),
+        (ArrayLike, [np.zeros(2), [1, 2], 1.5], [None, {1}, object()]),
+        (Sequence[int], [[1], (1, 2), np.arange(2)], ["ab", [1.5], 3]),
+        (Literal[1, "a"], [1, "a"], [True, 2, "b"]),
+        (tuple[int, str], [(1, "a"), [1, "a"]], [(1,), ("a", 1)]),
+        (Mapping[str, int] | None, [{}, {"a": 1}, None], [[], 1]),
+        (Shape, [Shape(), Round()], [object(), None]),
+        (Any, [None, object()], []),
+    ],
+)
+def test_values(kind: Any, good: list[Any], bad: list[Any]) -> None:  # noqa: ANN401
+    assert [value for value in good if not accepts(kind, value)] == []
+    assert [value for value in bad if accepts(kind, value)] == []
