@@ -328,7 +328,8 @@ def _print_node(node: "Node") -> None:
 
 def _port_facts(port: "Port") -> str:
     """Type, unit, range and default of a port, in one line."""
-    from ..nodes.graphs.ports import REQUIRED, type_name
+    from ..nodes.graphs.annotations import type_name
+    from ..nodes.graphs.ports import REQUIRED
 
     facts = [f"{type_name(port.type)} in {port.unit}" if port.unit else type_name(port.type)]
     if port.min is not None:

@@ -13,7 +13,7 @@ import numpy as np
 import xxhash
 from numpy.typing import NDArray
 
-from .ports import Value
+from .annotations import Value
 
 FileState = tuple[int, int] | None
 

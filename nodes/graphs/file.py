@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...fabrication.files import replacing
+from .annotations import Value
 from .errors import GraphError, nearest
-from .ports import Value
 from .wires import Each, Param, Step, Wire
 
 FORMAT = "spheremesh graph"

@@ -10,15 +10,27 @@ from typing import Any, cast
 
 import numpy as np
 
+from .annotations import Value
 from .cache import Cache, digest
 from .errors import GraphError, nearest
 from .file import decode, decode_graph, encode_graph, write_graph
 from .mermaid import mermaid_text
 from .node import find_node, known_graph
-from .ports import UNITS, Port, Value, check_range
+from .ports import UNITS, Port, check_range
 from .run import OnStep, Run, output, run_steps
-from .wires import Param, Step, Target, Wire, parents, sources
-from .wiring import Place, check_name, check_names, connect, own
+from .wires import (
+    Param,
+    Place,
+    Step,
+    Target,
+    Wire,
+    check_name,
+    check_names,
+    check_owner,
+    connect,
+    parents,
+    sources,
+)
 
 
 class Graph:
@@ -247,7 +259,7 @@ class Graph:
             raise GraphError(f"run needs a target; {nearest('', self._steps)}")
         wanted = [self.wire(t) if isinstance(t, str) else t for t in targets]
         for target in wanted:
-            own(self, target)
+            check_owner(self, target)
         names = [
             w.step.name if isinstance(w, Wire) else w.name
             for w in wanted

@@ -22,9 +22,10 @@ from typing import (
     overload,
 )
 
+from .annotations import Hint, Value
 from .cache import digest
 from .errors import GraphError, nearest
-from .ports import Hint, Port, Value, check_value
+from .ports import Port, check_value
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -322,13 +323,16 @@ def _outputs(node_name: str, result: Hint, texts: Mapping[str, str]) -> dict[str
 
 
 def _split(hint: Hint) -> tuple[Hint, Port]:
-    """An annotation as its type and its facts, also those of an alternative to None."""
+    """An annotation as its type and the facts of its port, also those of an alternative."""
     if get_origin(hint) is Annotated:
         kind, *facts = get_args(hint)
-        return kind, next((fact for fact in facts if isinstance(fact, Port)), Port())
-    options = get_args(hint) if get_origin(hint) in (Union, UnionType) else ()
-    facts = [_split(option)[1] for option in options if get_origin(option) is Annotated]
-    return hint, next(iter(facts), Port())
+        others = [fact for fact in facts if not isinstance(fact, Port)]
+        kind = Annotated[(kind, *others)] if others else kind
+    else:
+        kind = hint
+        options = get_args(hint) if get_origin(hint) in (Union, UnionType) else ()
+        facts = [fact for option in options for fact in get_args(option)[1:]]
+    return kind, next((fact for fact in facts if isinstance(fact, Port)), Port())
 
 
 def _is_named_tuple(kind: Hint) -> bool:

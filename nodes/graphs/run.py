@@ -9,10 +9,12 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from .annotations import Value
 from .cache import Cache, Entry, digest, file_state, lock_arrays, own_containers
 from .errors import GraphError, NodeError
+from .kinds import convert
 from .node import collected_messages
-from .ports import Port, Value, check_value, convert
+from .ports import Port, check_value
 from .wires import Each, Param, Step, Wire, parents, sources
 
 OnStep = Callable[[str, str], None]
@@ -231,7 +233,7 @@ def _call(step: Step, arguments: Mapping[str, Any]) -> Value:
         # What comes by wire was checked as a type; only small values are looked at again.
         if value is None or isinstance(value, bool | int | float | str):
             check_value(port, value, f"{step.name}.{name}")
-        inputs[name] = convert(port, value)
+        inputs[name] = convert(port.type, value)
     value = step.node.function(**inputs)
     if step.node.has_fields and not isinstance(value, step.node.result_type):
         kind = step.node.result_type.__name__

@@ -9,7 +9,6 @@ from ...fabrication.files import check_suffix, replacing
 from ...fabrication.rhino import writer as rhino
 from ...fabrication.schedules import schedule
 from ...fabrication.step import writer as step
-from ...kernel.arrays import IntArray
 from ...kernel.beams.beams import Beams
 from ...kernel.errors import name_ids
 from ...kernel.meshes.mesh import Mesh
@@ -20,6 +19,7 @@ from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...viewer.render import render_image
 from ..graphs.node import node, running_graph, warn
 from ..graphs.ports import Port, Units, WritePath
+from .arrays import FaceLabels
 
 Length = Annotated[float, Port(min=0)]
 
@@ -37,7 +37,7 @@ def panels(
     edges: Literal["bisector", "intersection"] = "bisector",
     thickness: Length = 0.0,
     joint_gap: Length = 0.0,
-    labels: IntArray | None = None,
+    labels: FaceLabels | None = None,
     side: Literal["inward", "outward", "centred"] = "inward",
     layer: Literal["offset", "power"] = "offset",
 ) -> PanelSet:

@@ -5,7 +5,6 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.beams import cutting as beam_cutting
 from ...kernel.beams.beams import Beams, beam_lengths, beam_volumes
 from ...kernel.beams.drilling import drill_beams
@@ -20,6 +19,7 @@ from ...kernel.support.annuli import Annuli, corner_mismatch, mean_end_depth
 from ...kernel.support.annulus_checks import RejectedBeam
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
+from .arrays import VertexAngles, VertexAxes, VertexMarks
 
 
 class LandedNodes(NamedTuple):
@@ -32,9 +32,9 @@ class LandedNodes(NamedTuple):
 class Nodes(NamedTuple):
     """The nodes of a support structure, one per vertex."""
 
-    axes: FloatArray
-    torsion: FloatArray
-    is_valid: BoolArray
+    axes: VertexAxes
+    torsion: VertexAngles
+    is_valid: VertexMarks
     report: Mapping[str, Any]
 
 
