@@ -10,6 +10,7 @@ kinds        The table of types: which values an input takes, and which wires.
 mermaid      The picture of a graph, as text.
 node         Typed functions as nodes: the signature is the ports, the docstring the help.
 ports        Facts of inputs and outputs, and the checks of what inputs are given.
+results      Results that nobody can change for others.
 run          One run of a graph: keys first, then only the steps whose results are not known.
 sweep        Many results from one graph: steps mapped over lists, sliders over ranges.
 wires        Sliders, steps, the wires between them, and the checks when they are wired.

@@ -6,15 +6,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast
 
-import numpy as np
-from numpy.typing import NDArray
-
 from .annotations import Value
-from .cache import Cache, Entry, digest, file_state, lock_arrays, own_containers
+from .cache import Cache, Entry, digest, file_state
 from .errors import GraphError, NodeError
 from .kinds import convert
 from .node import collected_messages
 from .ports import Port, check_value
+from .results import own, snapshot
 from .wires import Each, Param, Step, Wire, parents, sources
 
 OnStep = Callable[[str, str], None]
@@ -106,7 +104,7 @@ def output(run: Run, source: Step | Wire | Param) -> Value:
     value = run.entries[step.name].value
     if isinstance(source, Wire) and step.node.has_fields:
         value = getattr(value, source.port.name)
-    return own_containers(value)
+    return own(value)
 
 
 def _ancestors(run: Run, targets: Iterable[str]) -> list[Step]:
@@ -169,11 +167,7 @@ def _resolve(run: Run, value: Value) -> Value:
         return output(run, value)
     if any(True for _ in sources(value)):
         return [_resolve(run, item) for item in value]
-    if isinstance(value, np.ndarray):
-        # the caller may still write to its array, and the node may return it
-        value = cast("NDArray[Any]", value).copy()
-        lock_arrays(value)
-    return own_containers(value)
+    return own(value, snapshot)  # the caller may still write to it, and the node return it
 
 
 def _key_part(run: Run, value: Value) -> Value:
@@ -214,7 +208,6 @@ def _execute(run: Run, step: Step) -> Entry:
             what = f"step {step.name!r}" + (f" (node {name})" if name != step.name else "")
             text = str(error) or type(error).__name__
             raise NodeError(f"{what} failed: {text}", step.name, name, error) from error
-    lock_arrays(value)
     written = [
         path
         for port in step.node.inputs.values()
@@ -223,7 +216,7 @@ def _execute(run: Run, step: Step) -> Entry:
     ]
     run.on_step(step.name, "done")
     states = tuple((path, file_state(path)) for path in written)
-    return Entry(value, tuple(dict.fromkeys(messages)), states)
+    return Entry(own(value), tuple(dict.fromkeys(messages)), states)
 
 
 def _call(step: Step, arguments: Mapping[str, Any]) -> Value:
