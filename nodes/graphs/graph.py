@@ -1,22 +1,23 @@
 """The lazy graph: nodes wired together, run as far as a target needs."""
 
 import os
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
 from .annotations import Value
 from .cache import Cache, digest
 from .errors import GraphError, nearest
-from .file import decode, decode_graph, encode_graph, write_graph
+from .file import add_content, decode_graph, encode_graph, read_graph, write_graph
 from .mermaid import mermaid_text
-from .node import find_node, known_graph
+from .node import find_node, known_graph, replaced
 from .ports import UNITS, Port, check_range
+from .results import own, snapshot
 from .run import OnStep, Run, output, run_steps
 from .wires import (
     Param,
@@ -73,6 +74,7 @@ class Graph:
         self._params: dict[str, Param] = {}
         self._values: dict[str, Any] = {}
         self._steps: dict[str, Step] = {}
+        self._numbers: dict[str, int] = {}
         self._messages: dict[str, tuple[str, ...]] = {}
 
     @property
@@ -83,7 +85,7 @@ class Graph:
     @property
     def params(self) -> Mapping[str, Param]:  # numpydoc ignore=RT01
         """The sliders by name, with their present values."""
-        return {n: replace(p, value=self._values[n]) for n, p in self._params.items()}
+        return {n: replace(p, value=own(self._values[n])) for n, p in self._params.items()}
 
     @property
     def ends(self) -> tuple[Step, ...]:  # numpydoc ignore=RT01
@@ -169,7 +171,7 @@ class Graph:
             inputs_known = ", ".join(found.inputs)
             raise GraphError(f"{found.name}: wire inputs by name; they are {inputs_known}")
         if name is None:
-            name = _free_name(found.name, self._steps)
+            name = self._free_name(found.name)
         elif name in self._steps:
             raise GraphError(f"there is a step {name!r} already")
         check_name(name, "step")
@@ -178,6 +180,14 @@ class Graph:
         checked = {key: connect(place, found.inputs[key], inputs[key]) for key in inputs}
         self._steps[name] = Step(self, name, found, MappingProxyType(checked))
         return self._steps[name]
+
+    def _free_name(self, name: str) -> str:
+        free, number = name, self._numbers.get(name, 2)
+        while free in self._steps:
+            free = f"{name}_{number}"
+            number += 1
+        self._numbers[name] = max(2, number - 1)  # those below are taken
+        return free
 
     def set(self, /, **params: Value) -> None:
         """
@@ -231,9 +241,12 @@ class Graph:
         *targets: Target,
         on_step: OnStep | None = None,
         read_from: str | os.PathLike[str] | None = None,
+        write_to: str | os.PathLike[str] | None = None,
     ) -> Value:
         """
         The values of targets; only the steps that they need and that have changed are run.
+
+        What is changed while it runs is for the next run.
 
         Parameters
         ----------
@@ -242,8 +255,9 @@ class Graph:
         on_step : callable, optional
             Called with the name of each step touched and ``"running"``, ``"done"``,
             ``"cached"`` or ``"failed"``.
-        read_from : path, optional
-            Folder of the relative paths that nodes read; the working directory by default.
+        read_from, write_to : path, optional
+            Folders of the relative paths that nodes read and write; the working directory by
+            default. A file that a step has written is read where it was written.
 
         Returns
         -------
@@ -260,27 +274,27 @@ class Graph:
         wanted = [self.wire(t) if isinstance(t, str) else t for t in targets]
         for target in wanted:
             check_owner(self, target)
-        names = [
-            w.step.name if isinstance(w, Wire) else w.name
-            for w in wanted
-            if not isinstance(w, Param)
-        ]
+        steps = [t.step if isinstance(t, Wire) else t for t in wanted]
+        names = [step.name for step in steps if isinstance(step, Step)]
         run = Run(
-            steps=self._steps,
-            values=self._values,
+            steps=dict(self._steps),
+            values=own(self._values, snapshot),
             units=self.units,
             cache=self._cache,
             on_step=on_step or _silent,
-            read_from=None if read_from is None else Path(read_from),
+            read_from=_folder(read_from),
+            write_to=_folder(write_to),
         )
+        text = partial(encode_graph, self.title, self.units, self.params, run.steps)
         try:
-            with known_graph(self.to_json):
+            with known_graph(text):
                 run_steps(run, names)
             values = tuple(output(run, target) for target in wanted)
         finally:
             for name, key in run.keys.items():
+                messages = replaced(run.steps[name].node) + self._cache.messages(key)
                 self._messages.pop(name, None)
-                if messages := self._cache.messages(key):
+                if messages:
                     self._messages[name] = messages
             self._cache.trim(2 * len(self._steps))
         return values[0] if len(values) == 1 else values
@@ -342,20 +356,7 @@ class Graph:
         str
             Versioned JSON in a stable order, without code.
         """
-        facts = {
-            n: {
-                "value": p.value,
-                "min": p.port.min,
-                "max": p.port.max,
-                "choices": list(p.port.choices) or None,
-            }
-            for n, p in self.params.items()
-        }
-        given = {
-            n: {k: v for k, v in f.items() if k == "value" or v is not None}
-            for n, f in facts.items()
-        }
-        return encode_graph(self.title, self.units, given, self._steps)
+        return encode_graph(self.title, self.units, self.params, self._steps)
 
     @classmethod
     def from_json(cls, text: str, *, cache: Cache | None = None) -> "Graph":
@@ -381,23 +382,7 @@ class Graph:
         """
         content = decode_graph(text)
         graph = cls(content["title"], content["units"], cache=cache)
-        for name, facts in content["params"].items():
-            try:
-                graph.param(name, **{key: decode(value, graph) for key, value in facts.items()})
-            except (GraphError, TypeError) as error:
-                raise GraphError(f"params.{name}: {error}") from error
-        for name, step in content["steps"].items():
-            try:
-                inputs = {port: decode(value, graph) for port, value in step["inputs"].items()}
-                added = graph.add(step["node"], name, **inputs)
-            except GraphError as error:
-                raise GraphError(f"steps.{name}: {error}") from error
-            if added.node.version != step["version"]:
-                warnings.warn(
-                    f"step {name!r} was saved with version {step['version']} of node "
-                    f"{added.node.name}, this is {added.node.version}: results may differ",
-                    stacklevel=2,
-                )
+        add_content(graph, content)
         return graph
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -431,16 +416,7 @@ class Graph:
         GraphError
             If it is no valid graph file; the message says where.
         """
-        try:
-            return cls.from_json(Path(path).read_text(encoding="utf-8"))
-        except OSError as error:
-            raise GraphError(f"{os.fspath(path)}: {error.strerror}") from error
-        except UnicodeDecodeError as error:
-            raise GraphError(f"{os.fspath(path)}: not UTF-8 text") from error
-        except RecursionError as error:
-            raise GraphError(f"{os.fspath(path)}: nested too deeply") from error
-        except GraphError as error:
-            raise GraphError(f"{os.fspath(path)}: {error}") from error
+        return read_graph(path, cls.from_json)
 
     def mermaid(self) -> str:
         """
@@ -454,17 +430,13 @@ class Graph:
         return mermaid_text(self._values, self._steps)
 
 
-def _free_name(name: str, taken: Mapping[str, Step]) -> str:
-    if name not in taken:
-        return name
-    number = 2
-    while f"{name}_{number}" in taken:
-        number += 1
-    return f"{name}_{number}"
+def _folder(path: str | os.PathLike[str] | None) -> Path | None:
+    return None if path is None else Path(path).absolute()
 
 
 def _plain(value: Value) -> Value:
-    return cast("Value", value.item()) if isinstance(value, np.generic) else value
+    """NumPy's scalars as Python's; lists and arrays the graph's own."""
+    return own(value.item() if isinstance(value, np.generic) else value, snapshot)
 
 
 def _silent(step: str, state: str) -> None:

@@ -163,6 +163,29 @@ def find_node(node: str | Callable[..., Any]) -> Node:
     return REGISTRY[node]
 
 
+def replaced(node: Node) -> tuple[str, ...]:
+    """
+    What is to be said of a step whose node has been defined anew since it was added.
+
+    Parameters
+    ----------
+    node : Node
+        The node of the step.
+
+    Returns
+    -------
+    tuple of str
+        Empty if the function is the present one.
+    """
+    present = REGISTRY.get(node.name, node)
+    if present.function is node.function:
+        return ()
+    return (
+        f"its function {node.name} was replaced after the step was added, and the step keeps "
+        "the old one: add it again to use the new one",
+    )
+
+
 @cache
 def load_library() -> None:
     """Import every module of the node library, which registers its nodes."""

@@ -1,6 +1,7 @@
 """One run of a graph: keys first, then only the steps whose results are not known."""
 
 import os
+import warnings
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,7 +11,7 @@ from .annotations import Value
 from .cache import Cache, Entry, digest, file_state
 from .errors import GraphError, NodeError
 from .kinds import convert
-from .node import collected_messages
+from .node import NodeWarning, collected_messages, replaced
 from .ports import Port, check_value
 from .results import own, snapshot
 from .wires import Each, Param, Step, Wire, parents, sources
@@ -21,7 +22,7 @@ OnStep = Callable[[str, str], None]
 @dataclass(frozen=True, eq=False)
 class Run:
     """
-    A run under way.
+    A run under way: nobody else changes what it is given.
 
     Attributes
     ----------
@@ -36,8 +37,9 @@ class Run:
     on_step : callable
         Called with the name of a step and ``"running"``, ``"done"``, ``"cached"`` or
         ``"failed"``.
-    read_from : Path, optional
-        Folder of the relative paths that nodes read; the working directory by default.
+    read_from, write_to : Path, optional
+        Folders of the relative paths that nodes read and write; the working directory by
+        default. What a step has written is read where it was written.
     keys : dict of str to bytes
         Keys found so far.
     entries : dict of str to Entry
@@ -50,6 +52,7 @@ class Run:
     cache: Cache
     on_step: OnStep
     read_from: Path | None = None
+    write_to: Path | None = None
     keys: dict[str, bytes] = field(default_factory=dict[str, bytes])
     entries: dict[str, Entry] = field(default_factory=dict[str, Entry])
 
@@ -73,12 +76,15 @@ def run_steps(run: Run, targets: Iterable[str]) -> None:
     wanted = list(targets)
     needed = _ancestors(run, wanted)
     for step in needed:
+        for text in replaced(step.node):
+            warnings.warn(f"step {step.name!r}: {text}", NodeWarning, stacklevel=3)
+    for step in needed:
         ports = step.node.inputs
         files = [source for name, source in step.sources if _is_file(ports[name])]
         # The state of a file is part of the key, so its path must be known before.
         _bring(run, [w.step.name for w in files if isinstance(w, Wire)])
         run.keys[step.name] = _key(run, step)
-    writers = [step.name for step in needed if any(p.writes for p in step.node.inputs.values())]
+    writers = [step.name for step in needed if _is_writer(step)]
     _bring(run, [*wanted, *writers])
 
 
@@ -99,7 +105,7 @@ def output(run: Run, source: Step | Wire | Param) -> Value:
         What the function returned, one field of it, or the value of the slider.
     """
     if isinstance(source, Param):
-        return run.values[source.name]
+        return own(run.values[source.name])
     step = source.step if isinstance(source, Wire) else source
     value = run.entries[step.name].value
     if isinstance(source, Wire) and step.node.has_fields:
@@ -148,7 +154,21 @@ def _given(run: Run, step: Step, port: Port) -> Value:
 
 def _argument(run: Run, step: Step, port: Port) -> Value:
     value = _resolve(run, _given(run, step, port))
-    return _beside(run.read_from, value) if port.reads and run.read_from else value
+    folder = _folder(run, step, port)
+    return value if folder is None else _beside(folder, value)
+
+
+def _folder(run: Run, step: Step, port: Port) -> Path | None:
+    """Where the relative paths of an input are; None for the working directory."""
+    if not port.reads:
+        return run.write_to if port.writes else None
+    wires = sources(_given(run, step, port))
+    is_written = any(isinstance(wire, Wire) and _is_writer(wire.step) for wire in wires)
+    return run.write_to if is_written else run.read_from
+
+
+def _is_writer(step: Step) -> bool:
+    return any(port.writes for port in step.node.inputs.values())
 
 
 def _beside(folder: Path, value: Value) -> Value:
@@ -188,7 +208,7 @@ def _key(run: Run, step: Step) -> bytes:
         given = _given(run, step, port)
         parts.append(_key_part(run, given))
         if _is_file(port):
-            paths = _paths(_argument(run, step, port))
+            paths = list(map(_absolute, _paths(_argument(run, step, port))))
             parts.append(paths)
             parts.append([file_state(path) for path in paths] if port.reads else None)
     return digest(parts)
@@ -206,17 +226,46 @@ def _execute(run: Run, step: Step) -> Entry:
             run.on_step(step.name, "failed")
             name = step.node.name
             what = f"step {step.name!r}" + (f" (node {name})" if name != step.name else "")
-            text = str(error) or type(error).__name__
-            raise NodeError(f"{what} failed: {text}", step.name, name, error) from error
-    written = [
-        path
+            text = _as_given(run, str(error)) or type(error).__name__
+            raise NodeError(f"{what} failed: {text}", step.name, name, error, text) from error
+    written = _written(run, step, arguments)
+    run.on_step(step.name, "done")
+    states = tuple((path, file_state(path)) for path in map(_absolute, written))
+    texts = (_as_given(run, text) for text in messages)
+    return Entry(own(_returned(value, written)), tuple(dict.fromkeys(texts)), states)
+
+
+def _written(run: Run, step: Step, arguments: Mapping[str, Any]) -> dict[str, str]:
+    """The files that a step writes: the path that it was told, and that which was given."""
+    return {
+        told: given
         for port in step.node.inputs.values()
         if port.writes
-        for path in _paths(arguments[port.name])
-    ]
-    run.on_step(step.name, "done")
-    states = tuple((path, file_state(path)) for path in written)
-    return Entry(own(value), tuple(dict.fromkeys(messages)), states)
+        for told, given in zip(
+            _paths(arguments[port.name]),
+            _paths(_resolve(run, _given(run, step, port))),
+            strict=True,
+        )
+    }
+
+
+def _returned(value: Value, written: Mapping[str, str]) -> Value:
+    """What a step returns, with the paths of its files as they were given."""
+    if not written:
+        return value
+    if isinstance(value, str | Path):
+        given = written.get(str(value))
+        return value if given is None else type(value)(given)
+    if isinstance(value, list | tuple):
+        several = cast("Value", value)
+        items = [_returned(item, written) for item in several]
+        return getattr(several, "_make", type(several))(items)
+    return value
+
+
+def _as_given(run: Run, text: str) -> str:
+    """A message without the folder of the run, which is none of the user's."""
+    return text if run.write_to is None else text.replace(f"{run.write_to}{os.sep}", "")
 
 
 def _call(step: Step, arguments: Mapping[str, Any]) -> Value:
@@ -261,5 +310,9 @@ def _paths(value: Value) -> list[str]:
     if value is None:
         return []
     if isinstance(value, str | os.PathLike):
-        return [os.path.abspath(os.fspath(value))]  # noqa: PTH100, Path.resolve follows links
+        return [os.fspath(cast("str | os.PathLike[str]", value))]
     return [path for item in value for path in _paths(item)]
+
+
+def _absolute(path: str) -> str:
+    return os.path.abspath(path)  # noqa: PTH100, Path.resolve follows links
