@@ -66,7 +66,6 @@ def element_type(hint: Hint) -> Hint:
     Parameters
     ----------
     hint : type
-        Annotation of the list.
 
     Returns
     -------
@@ -93,7 +92,6 @@ def type_name(hint: Hint) -> str:
     Parameters
     ----------
     hint : type
-        An annotation.
 
     Returns
     -------
@@ -132,7 +130,6 @@ def members(hint: Hint, facts: ArrayFacts | None = None) -> tuple[Member, ...]:
     Parameters
     ----------
     hint : type
-        An annotation.
     facts : ArrayFacts, optional
         What was said around it.
 

@@ -133,7 +133,6 @@ def file_state(path: str | os.PathLike[str]) -> FileState:
     Parameters
     ----------
     path : path
-        The file.
 
     Returns
     -------
@@ -191,7 +190,6 @@ class Cache:
         Parameters
         ----------
         key : bytes
-            Key of a step.
 
         Returns
         -------
@@ -218,9 +216,7 @@ class Cache:
         Parameters
         ----------
         key : bytes
-            Key of the step.
         entry : Entry
-            Its outcome.
         """
         with self._lock:
             self._entries[key] = entry
@@ -236,7 +232,6 @@ class Cache:
         Parameters
         ----------
         key : bytes
-            Key of the step.
 
         Returns
         -------

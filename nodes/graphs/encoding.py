@@ -120,7 +120,6 @@ def decode(value: Value, names: Names) -> Value:
     value : object
         JSON.
     names : Names
-        Of the graph.
 
     Returns
     -------

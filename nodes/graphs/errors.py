@@ -46,9 +46,7 @@ def nearest(name: str, names: Iterable[str]) -> str:
     Parameters
     ----------
     name : str
-        The name that was asked for.
     names : iterable of str
-        The names that exist.
 
     Returns
     -------

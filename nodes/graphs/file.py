@@ -35,7 +35,6 @@ def encode_graph(
     Parameters
     ----------
     title, units : str
-        Of the graph.
     params : mapping of str to Param
         Its sliders, with their present values.
     steps : mapping of str to Step
@@ -199,9 +198,7 @@ def write_graph(path: str | os.PathLike[str], text: str) -> None:
     Parameters
     ----------
     path : path
-        The file.
     text : str
-        Its content.
     """
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
@@ -214,7 +211,6 @@ def read_graph(path: str | os.PathLike[str], parse: Callable[[str], _Parsed]) ->
     Parameters
     ----------
     path : path
-        The file.
     parse : callable
         Makes the graph of its text.
 

@@ -26,9 +26,9 @@ from .wires import (
     Target,
     Wire,
     check_name,
-    check_names,
     check_owner,
     connect,
+    connect_all,
     parents,
     sources,
 )
@@ -41,11 +41,10 @@ class Graph:
     Parameters
     ----------
     title : str
-        What the graph is about.
     units : {"mm", "cm", "m", "in", "ft"}
-        Units of the model.
+        Of the model.
     cache : Cache, optional
-        Results, shared with other graphs if one is given.
+        Results, to share them with other graphs.
 
     Examples
     --------
@@ -115,11 +114,9 @@ class Graph:
         name : str
             A name that is free.
         value : object
-            Its value.
         min, max : float, optional
             Range of a number, the ends included.
         choices : sequence, optional
-            The values allowed.
 
         Returns
         -------
@@ -174,11 +171,8 @@ class Graph:
             name = self._free_name(found.name)
         elif name in self._steps:
             raise GraphError(f"there is a step {name!r} already")
-        check_name(name, "step")
-        check_names(found, name, inputs)
-        place = Place(self, self._values, name)
-        checked = {key: connect(place, found.inputs[key], inputs[key]) for key in inputs}
-        self._steps[name] = Step(self, name, found, MappingProxyType(checked))
+        connected = connect_all(Place(self, self._values, name), found, inputs)
+        self._steps[name] = Step(self, name, found, MappingProxyType(connected))
         return self._steps[name]
 
     def _free_name(self, name: str) -> str:
@@ -191,17 +185,11 @@ class Graph:
 
     def set(self, /, **params: Value) -> None:
         """
-        Move sliders.
+        Move sliders; none if a name is unknown or a value not allowed.
 
         Parameters
         ----------
         **params : object
-            New values by name.
-
-        Raises
-        ------
-        GraphError
-            If a name is unknown or a value not allowed; then no slider is moved.
         """
         self._values.update(self.check_params(params))
 
@@ -212,17 +200,11 @@ class Graph:
         Parameters
         ----------
         params : mapping of str to object
-            Values by name.
 
         Returns
         -------
         dict of str to object
             The same values, NumPy's scalars as Python's.
-
-        Raises
-        ------
-        GraphError
-            If a name is unknown or a value not allowed.
         """
         values = {name: _plain(value) for name, value in params.items()}
         for name, value in values.items():
@@ -276,14 +258,15 @@ class Graph:
             check_owner(self, target)
         steps = [t.step if isinstance(t, Wire) else t for t in wanted]
         names = [step.name for step in steps if isinstance(step, Step)]
+        values = own(self._values, snapshot)
+        folders = _folder(read_from), _folder(write_to)
         run = Run(
-            steps=dict(self._steps),
-            values=own(self._values, snapshot),
-            units=self.units,
-            cache=self._cache,
-            on_step=on_step or _silent,
-            read_from=_folder(read_from),
-            write_to=_folder(write_to),
+            dict(self._steps),
+            values,
+            self.units,
+            self._cache,
+            on_step or (lambda _step, _state: None),
+            *folders,
         )
         text = partial(encode_graph, self.title, self.units, self.params, run.steps)
         try:
@@ -311,12 +294,7 @@ class Graph:
         Returns
         -------
         Step or Wire
-            What has the name.
-
-        Raises
-        ------
-        GraphError
-            If nothing has; the message gives the nearest name.
+            What has the name; if nothing has, the error gives the nearest.
         """
         step_name, dot, port = name.partition(".")
         if step_name not in self._steps:
@@ -331,17 +309,11 @@ class Graph:
         Parameters
         ----------
         name : str
-            Its name.
 
         Returns
         -------
         Param
-            To be wired into steps.
-
-        Raises
-        ------
-        GraphError
-            If there is none; the message gives the nearest name.
+            To be wired into steps; if there is none, the error gives the nearest name.
         """
         if name not in self._params:
             raise GraphError(f"no param {name!r}; {nearest(name, self._params)}")
@@ -366,19 +338,14 @@ class Graph:
         Parameters
         ----------
         text : str
-            From `to_json`.
+            From `to_json`; if it is no valid graph, the error says where.
         cache : Cache, optional
-            Results, shared with other graphs if one is given.
+            Results, to share them with other graphs.
 
         Returns
         -------
         Graph
             The same graph.
-
-        Raises
-        ------
-        GraphError
-            If the text is no valid graph; the message says where.
         """
         content = decode_graph(text)
         graph = cls(content["title"], content["units"], cache=cache)
@@ -392,7 +359,7 @@ class Graph:
         Parameters
         ----------
         path : path
-            The file; an old one is replaced only when the new one is complete.
+            An old file is replaced only when the new one is complete.
         """
         write_graph(path, self.to_json())
 
@@ -404,17 +371,12 @@ class Graph:
         Parameters
         ----------
         path : path
-            The file.
+            If it is no valid graph file, the error says where.
 
         Returns
         -------
         Graph
-            The graph; nothing has been run.
-
-        Raises
-        ------
-        GraphError
-            If it is no valid graph file; the message says where.
+            Nothing has been run.
         """
         return read_graph(path, cls.from_json)
 
@@ -437,7 +399,3 @@ def _folder(path: str | os.PathLike[str] | None) -> Path | None:
 def _plain(value: Value) -> Value:
     """NumPy's scalars as Python's; lists and arrays the graph's own."""
     return own(value.item() if isinstance(value, np.generic) else value, snapshot)
-
-
-def _silent(step: str, state: str) -> None:
-    del step, state

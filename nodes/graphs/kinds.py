@@ -28,7 +28,6 @@ def accepts(hint: Hint, value: Value) -> bool:
     Parameters
     ----------
     hint : type
-        An annotation.
     value : object
 
     Returns
@@ -79,7 +78,6 @@ def convert(hint: Hint, value: Value) -> Value:
     Parameters
     ----------
     hint : type
-        Annotation of the argument.
     value : object
         A value that it accepts.
 

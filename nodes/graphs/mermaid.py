@@ -13,9 +13,7 @@ def mermaid_text(values: Mapping[str, Value], steps: Mapping[str, Step]) -> str:
     Parameters
     ----------
     values : mapping of str to object
-        The sliders.
     steps : mapping of str to Step
-        The steps.
 
     Returns
     -------

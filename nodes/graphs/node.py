@@ -45,7 +45,6 @@ class Node:
     Attributes
     ----------
     name : str
-        Name of the function.
     function : callable
         The function, as it was written.
     version : str
@@ -55,11 +54,9 @@ class Node:
     summary : str
         First line of the docstring.
     help : str
-        The docstring.
     inputs, outputs : mapping of str to Port
         The ports by name, in the order of the signature.
     result_type : type
-        Annotation of the result.
     edition : int
         How often the name was defined anew in this process, as happens in notebooks.
     """
@@ -170,7 +167,6 @@ def replaced(node: Node) -> tuple[str, ...]:
     Parameters
     ----------
     node : Node
-        The node of the step.
 
     Returns
     -------

@@ -96,7 +96,6 @@ def check_range(value: object, port: Port, where: str) -> None:
     Parameters
     ----------
     value : object
-        The value.
     port : Port
         Holds the range and the choices.
     where : str

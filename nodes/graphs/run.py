@@ -31,7 +31,6 @@ class Run:
     values : mapping of str to object
         Values of the sliders.
     units : str
-        Units of the graph.
     cache : Cache
         Results of earlier runs.
     on_step : callable

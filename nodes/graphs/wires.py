@@ -212,7 +212,7 @@ def connect(place: Place, port: Port, given: Value, at: str = "") -> Value:
     elif isinstance(given, Param):
         check_owner(place.graph, given)
         value = place.values[given.name]
-        check_literal(port, value, f"param {given.name} for {where}")
+        _check_literal(port, value, f"param {given.name} for {where}")
     elif isinstance(given, list | tuple) and _has_sources(given):
         if not accepts(port.type, []):
             raise GraphError(f"{where}: a list, must be {type_name(port.type)}; use each(...)")
@@ -220,7 +220,7 @@ def connect(place: Place, port: Port, given: Value, at: str = "") -> Value:
         items = cast("Sequence[Value]", given)
         return [connect(place, item_port, x, f"{at}[{i}]") for i, x in enumerate(items)]
     else:
-        check_literal(port, given, where)
+        _check_literal(port, given, where)
     return cast("Value", given)
 
 
@@ -247,55 +247,6 @@ def check_owner(graph: object, target: Step | Wire | Param) -> None:
         raise GraphError(f"{name} is part of another graph")
 
 
-def check_literal(port: Port, value: Value, where: str) -> None:
-    """
-    Refuse a value that an input does not accept, or that cannot be part of a key.
-
-    Parameters
-    ----------
-    port : Port
-    value : object
-    where : str
-        How the message names the input.
-
-    Raises
-    ------
-    GraphError
-        The message says what is allowed.
-    """
-    check_value(port, value, where)
-    try:
-        digest(value)
-    except TypeError as error:
-        raise GraphError(f"{where}: {error}") from error
-
-
-def check_names(node: Node, step: str, inputs: Mapping[str, Value]) -> None:
-    """
-    Refuse inputs that a node does not have, and require those without a default.
-
-    Parameters
-    ----------
-    node : Node
-    step : str
-        Its name.
-    inputs : mapping of str to object
-        What was given.
-
-    Raises
-    ------
-    GraphError
-        The message gives the nearest name.
-    """
-    at = f"step {step!r}" + (f" (node {node.name})" if node.name != step else "")
-    for name in inputs:
-        if name not in node.inputs:
-            raise GraphError(f"{at} has no input {name!r}; {nearest(name, node.inputs)}")
-    for name, port in node.inputs.items():
-        if port.default is REQUIRED and name not in inputs:
-            raise GraphError(f"{at} misses its input {name!r} ({type_name(port.type)})")
-
-
 def check_name(name: str, what: str) -> None:
     """
     Refuse a name that could not be told from others in ``step.port``.
@@ -313,6 +264,47 @@ def check_name(name: str, what: str) -> None:
     """
     if not name.isidentifier():
         raise GraphError(f"{what} name {name!r}: use letters, digits and _ only")
+
+
+def connect_all(place: Place, node: Node, inputs: Mapping[str, Value]) -> dict[str, Value]:
+    """
+    What is kept of all that is given for a step.
+
+    Parameters
+    ----------
+    place : Place
+    node : Node
+    inputs : mapping of str to object
+        By name of the port, as for `connect`.
+
+    Returns
+    -------
+    dict of str to object
+        The same with `Wire` for steps.
+
+    Raises
+    ------
+    GraphError
+        If an input is unknown, missing or does not fit.
+    """
+    check_name(place.step, "step")
+    at = f"step {place.step!r}" + (f" (node {node.name})" if node.name != place.step else "")
+    for name in inputs:
+        if name not in node.inputs:
+            raise GraphError(f"{at} has no input {name!r}; {nearest(name, node.inputs)}")
+    for name, port in node.inputs.items():
+        if port.default is REQUIRED and name not in inputs:
+            raise GraphError(f"{at} misses its input {name!r} ({type_name(port.type)})")
+    return {name: connect(place, node.inputs[name], given) for name, given in inputs.items()}
+
+
+def _check_literal(port: Port, value: Value, where: str) -> None:
+    """Refuse what an input does not accept, or what cannot be part of a key."""
+    check_value(port, value, where)
+    try:
+        digest(value)
+    except TypeError as error:
+        raise GraphError(f"{where}: {error}") from error
 
 
 def _has_sources(values: Value) -> bool:
