@@ -2,7 +2,7 @@
 
 import os
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast
@@ -256,9 +256,9 @@ def _returned(value: Value, written: Mapping[str, str]) -> Value:
         given = written.get(str(value))
         return value if given is None else type(value)(given)
     if isinstance(value, list | tuple):
-        several = cast("Value", value)
-        items = [_returned(item, written) for item in several]
-        return getattr(several, "_make", type(several))(items)
+        kind: Any = type(cast("Value", value))
+        items = [_returned(item, written) for item in cast("Sequence[Value]", value)]
+        return getattr(kind, "_make", kind)(items)
     return value
 
 
