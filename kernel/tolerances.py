@@ -81,6 +81,9 @@ AT_BOUND: Final = 1e-9
 ENERGY_CHANGE: Final = 1e-6
 """A descent has converged when a step lowers the energy by less than this share."""
 
+RESTING_CHANGE: Final = 1e-9
+"""A descent in a flat valley is at rest when a step lowers the energy by less than this."""
+
 STAGE_CHANGE: Final = 1e-4
 """A descent that others follow may end at this relative change of the energy."""
 
