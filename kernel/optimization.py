@@ -322,7 +322,7 @@ def _tightened(problem: _Problem, weights: EnergyWeights, hard: tuple[str, ...])
     for factor in factors:
         raised = {name: factor * getattr(weights, name) for name in hard}
         stage = f"{' and '.join(hard)} x {factor}", replace(weights, **raised)
-        change = ENERGY_CHANGE if factor == factors[-1] else STAGE_CHANGE
+        change = ENERGY_CHANGE if factor == max(factors) else STAGE_CHANGE
         problem = _descend(problem, stage, change)
     return problem
 
