@@ -55,6 +55,8 @@ class Edges:
         Half-edges ``3 t + k``, from corner k of triangle t to the next; -1 on the boundary.
     corner_edges : (T, 3) int array
         Edge that leaves each corner.
+    line_edges : (n,) int array
+        The edges of `Triangles.lines`.
     is_rim, is_line : (E,) bool array
         Edges on the boundary; on the boundary or a crease.
     is_rim_vertex, is_line_vertex : (V,) bool array
@@ -65,6 +67,7 @@ class Edges:
     keys: IntArray
     halves: IntArray
     corner_edges: IntArray
+    line_edges: IntArray
     is_rim: BoolArray
     is_line: BoolArray
     is_rim_vertex: BoolArray
@@ -122,14 +125,24 @@ def find_edges(triangles: Triangles) -> Edges:
     second[ids[others]] = np.flatnonzero(others)
     ends = ends[first]
     is_rim = second < 0
-    is_line = is_rim | np.isin(keys, pair_keys(triangles.lines, count))
+    line_edges = np.searchsorted(keys, pair_keys(triangles.lines, count)).astype(np.int64)
+    is_line = is_rim.copy()
+    is_line[line_edges] = True
     is_rim_vertex, is_line_vertex = np.zeros((2, count), bool)
     is_rim_vertex[ends[is_rim]] = True
     is_line_vertex[ends[is_line]] = True
     halves = np.stack([first, second], 1).astype(np.int64)
     corner_edges = ids.reshape(-1, 3).astype(np.int64)
     return Edges(
-        ends, keys, halves, corner_edges, is_rim, is_line, is_rim_vertex, is_line_vertex
+        ends,
+        keys,
+        halves,
+        corner_edges,
+        line_edges,
+        is_rim,
+        is_line,
+        is_rim_vertex,
+        is_line_vertex,
     )
 
 

@@ -52,14 +52,13 @@ def split_long_edges(triangles: Triangles) -> Triangles:
     while True:
         edges = find_edges(triangles)
         is_long = exceeds(edge_lengths(triangles, edges), LONG)
-        rows = np.searchsorted(edges.keys, pair_keys(triangles.lines, len(triangles.vertices)))
-        is_long[rows[strays(triangles)]] = True
+        is_long[edges.line_edges[strays(triangles)]] = True
         if not is_long.any():
             return triangles
-        halved = is_long[rows]
+        halved = is_long[edges.line_edges]
         arcs = triangles.arcs.mean(axis=1)[halved]
         middles = triangles.vertices[edges.ends].mean(axis=1)
-        middles[rows[halved]] = triangles.curves.at(arcs)
+        middles[edges.line_edges[halved]] = triangles.curves.at(arcs)
         middles = middles[is_long]
         ids = np.full(len(is_long), -1, np.int64)
         ids[is_long] = len(triangles.vertices) + np.arange(len(middles))
@@ -71,7 +70,7 @@ def split_long_edges(triangles: Triangles) -> Triangles:
             vertices=vertices,
             faces=faces,
             is_fixed=fixed,
-            lines=_halved(triangles.lines, ids[rows[halved]], halved),
+            lines=_halved(triangles.lines, ids[edges.line_edges[halved]], halved),
             arcs=_halved(triangles.arcs, arcs, halved),
         )
 
@@ -194,8 +193,7 @@ def _merged_arcs(triangles: Triangles, edges: Edges, chosen: IntArray) -> FloatA
     arcs = np.full(len(edges.keys), np.nan)
     is_fixed = triangles.is_fixed[triangles.lines]
     weights = np.where(is_fixed.any(axis=1, keepdims=True), is_fixed, 0.5)
-    rows = np.searchsorted(edges.keys, pair_keys(triangles.lines, len(triangles.vertices)))
-    arcs[rows] = dot(weights, triangles.arcs)
+    arcs[edges.line_edges] = dot(weights, triangles.arcs)
     return arcs[chosen]
 
 
