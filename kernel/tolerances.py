@@ -133,7 +133,7 @@ NOISE_MARGIN: Final = 8.0
 """How many times its estimated noise a number must exceed to differ from zero."""
 
 SAME_LENGTH: Final = 1e-6
-"""Diagonals whose lengths differ by a smaller share are equally short."""
+"""Lengths that differ by a smaller share are equal, and an index decides."""
 
 CREASE: Final = 0.6981317007977318
 """Triangles that meet at a larger angle (40 degrees) make a crease, not a curved surface."""
