@@ -81,6 +81,9 @@ AT_BOUND: Final = 1e-9
 ENERGY_CHANGE: Final = 1e-6
 """A descent has converged when a step lowers the energy by less than this share."""
 
+RESTING_CHANGE: Final = 1e-9
+"""A descent in a flat valley is at rest when a step lowers the energy by less than this."""
+
 STAGE_CHANGE: Final = 1e-4
 """A descent that others follow may end at this relative change of the energy."""
 
@@ -130,7 +133,7 @@ NOISE_MARGIN: Final = 8.0
 """How many times its estimated noise a number must exceed to differ from zero."""
 
 SAME_LENGTH: Final = 1e-6
-"""Diagonals whose lengths differ by a smaller share are equally short."""
+"""Lengths that differ by a smaller share are equal, and an index decides."""
 
 CREASE: Final = 0.6981317007977318
 """Triangles that meet at a larger angle (40 degrees) make a crease, not a curved surface."""
