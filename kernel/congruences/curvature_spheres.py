@@ -28,7 +28,6 @@ def touching_spheres(
     Parameters
     ----------
     points : (..., 3) float array
-        Points.
     normals : (..., 3) float array
         Unit normals.
     curvatures : (...) array_like of float

@@ -40,7 +40,6 @@ def has_real_envelopes(jet: SphereJet) -> BoolArray:
     Parameters
     ----------
     jet : SphereJet
-        The congruence.
 
     Returns
     -------
@@ -63,7 +62,6 @@ def envelope_points(jet: SphereJet) -> tuple[FloatArray, FloatArray]:
     Parameters
     ----------
     jet : SphereJet
-        The congruence.
 
     Returns
     -------

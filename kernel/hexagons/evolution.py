@@ -268,7 +268,6 @@ def descend(
     Parameters
     ----------
     surface : TangentSurface
-        The surface.
     offsets, aims : (V,) float array
         Offsets to start from and to end at.
     bound : float

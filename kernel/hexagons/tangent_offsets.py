@@ -99,7 +99,6 @@ def grow_offsets(surface: TangentSurface, aims: FloatArray, bound: float) -> Flo
     Parameters
     ----------
     surface : TangentSurface
-        The surface.
     aims : (V,) float array
         Upper bounds of the offsets.
     bound : float
@@ -186,7 +185,6 @@ def mesh_edges(mesh: Mesh) -> tuple[IntArray, IntArray]:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------

@@ -85,7 +85,6 @@ def vertex_rows(mesh: Mesh, spheres: ArrayLike) -> FloatArray:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     spheres : (V, 5) array_like of float
         Real rows of any scale, in model coordinates; the orientation is kept.
 

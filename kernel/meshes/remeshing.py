@@ -86,7 +86,6 @@ def even_share(mesh: Mesh, edge_length: float) -> float:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     edge_length : float
         The length, in model units.
 

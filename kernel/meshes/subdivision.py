@@ -100,7 +100,6 @@ def subdivide_loop(mesh: Mesh) -> Mesh:
     Parameters
     ----------
     mesh : Mesh
-        Triangles.
 
     Returns
     -------

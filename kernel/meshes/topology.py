@@ -21,7 +21,6 @@ class Topology:
     Attributes
     ----------
     corner_faces : (H,) int array
-        Face of each corner.
     next_corners : (H,) int array
         Following corner in the same face.
     twins : (H,) int array
@@ -56,7 +55,6 @@ def build_topology(corners: IntArray, offsets: IntArray, n_vertices: int) -> Top
     offsets : (F + 1,) int array
         First corner of each face, and H.
     n_vertices : int
-        Number of vertices.
 
     Returns
     -------

@@ -70,7 +70,6 @@ def find_edges(triangles: Triangles) -> Edges:
     Parameters
     ----------
     triangles : Triangles
-        The triangles.
 
     Returns
     -------
@@ -104,9 +103,7 @@ def pair_keys(pairs: IntArray, count: int) -> IntArray:
     Parameters
     ----------
     pairs : (n, 2) int array
-        Pairs.
     count : int
-        Number of vertices.
 
     Returns
     -------
@@ -123,9 +120,7 @@ def edge_lengths(triangles: Triangles, edges: Edges) -> FloatArray:
     Parameters
     ----------
     triangles : Triangles
-        The triangles.
     edges : Edges
-        Their edges.
 
     Returns
     -------
@@ -142,7 +137,6 @@ def triangle_normals(corners: FloatArray) -> FloatArray:
     Parameters
     ----------
     corners : (..., 3, 3) float array
-        Corners of the triangles.
 
     Returns
     -------
@@ -160,7 +154,6 @@ def thickness(corners: FloatArray) -> FloatArray:
     Parameters
     ----------
     corners : (..., 3, 3) float array
-        Corners of the triangles.
 
     Returns
     -------

@@ -36,7 +36,6 @@ def split_long_edges(triangles: Triangles) -> Triangles:
     Parameters
     ----------
     triangles : Triangles
-        The triangles.
 
     Returns
     -------
@@ -98,7 +97,6 @@ def collapse_short_edges(triangles: Triangles, max_batches: int = 12) -> Triangl
     Parameters
     ----------
     triangles : Triangles
-        The triangles.
     max_batches : int
         Most batches to make.
 
@@ -201,7 +199,6 @@ def flip_edges(triangles: Triangles, max_batches: int = 12) -> Triangles:
     Parameters
     ----------
     triangles : Triangles
-        The triangles.
     max_batches : int
         Most batches to make.
 

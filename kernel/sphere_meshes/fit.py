@@ -20,7 +20,6 @@ def face_planes(mesh: Mesh) -> SphereMesh:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------
@@ -48,7 +47,6 @@ def fit_spheres(mesh: Mesh, ring: int = 1) -> SphereMesh:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     ring : int
         How many rings of faces, joined along edges, take part around each face.
 

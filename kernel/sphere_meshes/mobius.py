@@ -33,9 +33,7 @@ def map_mesh(mesh: Mesh, transform: ArrayLike) -> Mesh:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     transform : (5, 5) array_like of float
-        The transform.
 
     Returns
     -------
@@ -59,9 +57,7 @@ def map_sphere_mesh(sphere_mesh: SphereMesh, transform: ArrayLike) -> SphereMesh
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     transform : (5, 5) array_like of float
-        The transform.
 
     Returns
     -------

@@ -126,7 +126,6 @@ def change_model(
     radius : float
         Radius of the absolute sphere; in hyperbolic geometry all vertices lie inside or on it.
     center : (3,) array_like of float
-        Centre of the absolute sphere.
     branch : {"inner", "outer"}
         Image inside or outside the absolute sphere.
 

@@ -53,7 +53,6 @@ def support_type(sphere_mesh: SphereMesh, tolerance: float = SUPPORT_MISS) -> Su
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     tolerance : float
         Largest residual at which there is said to be one.
 

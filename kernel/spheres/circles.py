@@ -36,7 +36,6 @@ class Circles:
     Attributes
     ----------
     centers : (..., 3) float array
-        Centres.
     normals : (..., 3) float array
         Unit normals of the planes.
     radii_squared : (...) float array
@@ -127,7 +126,6 @@ def circle_pencils(circles: Circles) -> tuple[FloatArray, FloatArray]:
     Parameters
     ----------
     circles : Circles
-        Real circles.
 
     Returns
     -------
@@ -229,7 +227,6 @@ def face_circles(mesh: Mesh) -> tuple[Circles, FloatArray]:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------

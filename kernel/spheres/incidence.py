@@ -12,7 +12,6 @@ def evaluate(rows: FloatArray, points: FloatArray) -> FloatArray:
     Parameters
     ----------
     rows : (..., 5) float array
-        Rows.
     points : (..., 3) float array
         Points, broadcast against the rows.
 
@@ -35,9 +34,7 @@ def normals(rows: FloatArray, points: FloatArray) -> FloatArray:
     Parameters
     ----------
     rows : (..., 5) float array
-        Rows.
     points : (..., 3) float array
-        Points.
 
     Returns
     -------
@@ -56,7 +53,6 @@ def signed_distance(rows: FloatArray, points: FloatArray) -> FloatArray:
     rows : (..., 5) float array
         Unit rows, planes included.
     points : (..., 3) float array
-        Points.
 
     Returns
     -------

@@ -34,7 +34,6 @@ def check_transform(transform: ArrayLike) -> FloatArray:
     Parameters
     ----------
     transform : (5, 5) array_like of float
-        The matrix, on pentaspherical coordinates.
 
     Returns
     -------
@@ -252,7 +251,6 @@ def inverse(transform: ArrayLike) -> FloatArray:
     Parameters
     ----------
     transform : (5, 5) array_like of float
-        The transform.
 
     Returns
     -------
@@ -274,7 +272,6 @@ def read_transform(transform: ArrayLike) -> LocalMap:
     Parameters
     ----------
     transform : (5, 5) array_like of float
-        Möbius map.
 
     Returns
     -------

@@ -28,7 +28,6 @@ def map_spheres(rows: FloatArray, transform: ArrayLike) -> FloatArray:
     rows : (..., 5) float array
         Rows of any scale, in model coordinates.
     transform : (5, 5) array_like of float
-        The transform.
 
     Returns
     -------
@@ -58,9 +57,7 @@ def sent_to_infinity(points: FloatArray, transform: ArrayLike) -> BoolArray:
     Parameters
     ----------
     points : (..., 3) float array
-        Points.
     transform : (5, 5) array_like of float
-        The transform.
 
     Returns
     -------
@@ -83,9 +80,7 @@ def map_points(points: FloatArray, transform: ArrayLike) -> FloatArray:
     Parameters
     ----------
     points : (..., 3) float array
-        Points.
     transform : (5, 5) array_like of float
-        The transform.
 
     Returns
     -------
@@ -114,7 +109,6 @@ def map_circles(circles: Circles, transform: ArrayLike) -> Circles:
     circles : Circles
         Real circles, in model coordinates.
     transform : (5, 5) array_like of float
-        The transform.
 
     Returns
     -------
@@ -168,7 +162,6 @@ def map_arcs(arcs: Arcs, transform: ArrayLike) -> Arcs:
     arcs : Arcs
         H arcs, in model coordinates.
     transform : (5, 5) array_like of float
-        The transform.
 
     Returns
     -------

@@ -117,7 +117,6 @@ def bend_vectors(local: LocalMap, points: FloatArray) -> tuple[FloatArray, Float
     Parameters
     ----------
     local : LocalMap
-        The map.
     points : (..., 3) float array
         Points, in model coordinates.
 
@@ -142,7 +141,6 @@ def move_origin(local: LocalMap, origin: FloatArray) -> LocalMap:
     Parameters
     ----------
     local : LocalMap
-        The map.
     origin : (3,) float array
         The point; not sent to infinity.
 
@@ -219,9 +217,7 @@ def point_images(local: LocalMap, points: FloatArray) -> FloatArray:
     Parameters
     ----------
     local : LocalMap
-        The map.
     points : (..., 3) float array
-        Points.
 
     Returns
     -------
@@ -242,9 +238,7 @@ def turn_vectors(local: LocalMap, points: FloatArray, vectors: FloatArray) -> Fl
     Parameters
     ----------
     local : LocalMap
-        The map.
     points : (..., 3) float array
-        Points.
     vectors : (..., 3) float array
         Vectors at the points.
 
@@ -267,7 +261,6 @@ def row_images(local: LocalMap, rows: FloatArray, points: FloatArray) -> FloatAr
     Parameters
     ----------
     local : LocalMap
-        The map.
     rows : (..., 5) float array
         Rows seen from the points.
     points : (..., 3) float array
@@ -305,7 +298,6 @@ def offset_images(local: LocalMap, points: FloatArray, offsets: FloatArray) -> F
     Parameters
     ----------
     local : LocalMap
-        The map.
     points : (..., 3) float array
         Points that are not sent to infinity.
     offsets : (..., 3) float array

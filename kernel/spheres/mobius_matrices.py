@@ -21,7 +21,6 @@ def to_matrix(local: LocalMap) -> FloatArray:
     Parameters
     ----------
     local : LocalMap
-        The map.
 
     Returns
     -------
@@ -132,9 +131,7 @@ def local_reflection(a: float, b: FloatArray, c: float) -> LocalMap:
     a : float
         Coefficient A of the row; 0 for a plane.
     b : (3,) float array
-        Coefficients B.
     c : float
-        Coefficient C.
 
     Returns
     -------

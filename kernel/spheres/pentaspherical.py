@@ -16,7 +16,6 @@ def pentaspherical(rows: FloatArray) -> FloatArray:
     Parameters
     ----------
     rows : (..., 5) float array
-        Rows.
 
     Returns
     -------
@@ -54,7 +53,6 @@ def stereographic(points: FloatArray) -> FloatArray:
     Parameters
     ----------
     points : (..., 3) float array
-        Points.
 
     Returns
     -------

@@ -51,7 +51,6 @@ def from_center_radius(center: FloatArray, radius_squared: FloatArray) -> FloatA
     Parameters
     ----------
     center : (..., 3) float array
-        Centres.
     radius_squared : (...) float array
         Squared radii; zero for points, negative for imaginary spheres.
 
@@ -99,7 +98,6 @@ def lift_points(points: FloatArray) -> FloatArray:
     Parameters
     ----------
     points : (..., 3) float array
-        Points.
 
     Returns
     -------
@@ -168,7 +166,6 @@ def recenter(rows: FloatArray, origin: FloatArray) -> FloatArray:
     Parameters
     ----------
     rows : (..., 5) float array
-        Rows.
     origin : (..., 3) float array
         New origins, in the old coordinates.
 
