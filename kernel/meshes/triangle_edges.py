@@ -8,7 +8,7 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, norm
 from ..tolerances import SAME_LENGTH
 from .surface_lines import Curves, loop_starts, trace_curves
 
-THIN = 0.15
+SLIVER = 0.15
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,6 @@ def find_edges(triangles: Triangles) -> Edges:
     Parameters
     ----------
     triangles : Triangles
-        The triangles.
 
     Returns
     -------
@@ -153,9 +152,7 @@ def pair_keys(pairs: IntArray, count: int) -> IntArray:
     Parameters
     ----------
     pairs : (n, 2) int array
-        Pairs.
     count : int
-        Number of vertices.
 
     Returns
     -------
@@ -172,9 +169,7 @@ def edge_lengths(triangles: Triangles, edges: Edges) -> FloatArray:
     Parameters
     ----------
     triangles : Triangles
-        The triangles.
     edges : Edges
-        Their edges.
 
     Returns
     -------
@@ -208,7 +203,6 @@ def triangle_normals(corners: FloatArray) -> FloatArray:
     Parameters
     ----------
     corners : (..., 3, 3) float array
-        Corners of the triangles.
 
     Returns
     -------
@@ -226,12 +220,11 @@ def thickness(corners: FloatArray) -> FloatArray:
     Parameters
     ----------
     corners : (..., 3, 3) float array
-        Corners of the triangles.
 
     Returns
     -------
     (...) float array
-        From 0 to 0.87, for an equilateral triangle; below `THIN` a sliver, whose normal says
+        From 0 to 0.87, for an equilateral triangle; below `SLIVER` a sliver, whose normal says
         nothing about the surface.
     """
     sides = np.roll(corners, -1, axis=-2) - corners

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..tolerances import SAME_LENGTH
 from .triangle_edges import (
-    THIN,
+    SLIVER,
     Edges,
     Triangles,
     edge_lengths,
@@ -42,7 +42,6 @@ def split_long_edges(triangles: Triangles) -> Triangles:
     Parameters
     ----------
     triangles : Triangles
-        The triangles.
 
     Returns
     -------
@@ -134,7 +133,6 @@ def collapse_short_edges(triangles: Triangles, max_batches: int = 12) -> Triangl
     Parameters
     ----------
     triangles : Triangles
-        The triangles.
     max_batches : int
         Most batches to make.
 
@@ -228,9 +226,9 @@ def _keeps_shape(triangles: Triangles, ends: IntArray, places: FloatArray) -> Bo
     sides = norm(np.roll(moved, -1, axis=1) - moved)
     sides_before = norm(np.roll(corners, -1, axis=1) - corners)
     grown = exceeds(sides, LONG) & exceeds(sides, sides_before)
-    is_thin = exceeds(np.minimum(thickness_before, THIN), thickness(moved))
+    is_thin = exceeds(np.minimum(thickness_before, SLIVER), thickness(moved))
     # The normal of a sliver turns easily.
-    least = np.where(thickness_before < THIN, 0.0, LEAST_COSINE)
+    least = np.where(thickness_before < SLIVER, 0.0, LEAST_COSINE)
     folds = dot(before, after) <= least
     good = np.ones(len(ends), bool)
     good[merges[grown.any(axis=1) | folds | is_thin]] = False
@@ -278,7 +276,6 @@ def flip_edges(triangles: Triangles, max_batches: int = 12) -> Triangles:
     Parameters
     ----------
     triangles : Triangles
-        The triangles.
     max_batches : int
         Most batches to make.
 
@@ -322,7 +319,7 @@ def _flip_gains(triangles: Triangles, edges: Edges, quads: IntArray) -> IntArray
     gains = 2 * (a + b - c - d) - 4
     points = triangles.vertices[quads]
     least = np.minimum(*(thickness(points[:, corners]) for corners in BEFORE_FLIP))
-    return np.where(least < THIN, SLIVER_GAIN, gains)
+    return np.where(least < SLIVER, SLIVER_GAIN, gains)
 
 
 def _may_flip(triangles: Triangles, edges: Edges, quads: IntArray) -> BoolArray:
@@ -334,7 +331,7 @@ def _may_flip(triangles: Triangles, edges: Edges, quads: IntArray) -> BoolArray:
     new_keys = pair_keys(quads[:, 2:], len(triangles.vertices))
     is_good = ~np.isin(new_keys, edges.keys)
     for corners in AFTER_FLIP:
-        is_good &= exceeds(thickness(points[:, corners]), np.minimum(least, THIN))
+        is_good &= exceeds(thickness(points[:, corners]), np.minimum(least, SLIVER))
         after = unit(triangle_normals(points[:, corners]))
         is_good &= dot(before, after) > LEAST_COSINE
     return is_good

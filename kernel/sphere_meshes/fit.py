@@ -8,7 +8,8 @@ from ..arrays import FloatArray, IntArray, batches_by_count, dot, sum_by
 from ..errors import InputError
 from ..meshes.mesh import Mesh, face_centroids, mean_edge_length
 from ..spheres.circles import circle_pencils, face_circles, pencil_spheres
-from ..spheres.rows import evaluate, minkowski
+from ..spheres.incidence import evaluate
+from ..spheres.minkowski import minkowski
 from ..tolerances import CIRCULAR
 from .sphere_mesh import SphereMesh
 
@@ -20,7 +21,6 @@ def face_planes(mesh: Mesh) -> SphereMesh:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------
@@ -48,7 +48,6 @@ def fit_spheres(mesh: Mesh, ring: int = 1) -> SphereMesh:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     ring : int
         How many rings of faces, joined along edges, take part around each face.
 
