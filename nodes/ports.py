@@ -159,7 +159,8 @@ def convert(port: Port, value: Value) -> Value:
     if isinstance(value, list) and tuple in kinds:
         return tuple(cast("Sequence[Value]", value))
     if isinstance(value, list | tuple) and np.ndarray in kinds:
-        return np.asarray(cast("Sequence[Value]", value), _array_dtype(port.type))
+        numbers = cast("Sequence[Value]", value)
+        return cast("Value", np.asarray(numbers, _array_dtype(port.type)))
     if isinstance(value, str) and Path in kinds:
         return Path(value)
     if isinstance(value, os.PathLike) and str in kinds:
