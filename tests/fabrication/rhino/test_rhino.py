@@ -17,7 +17,7 @@ import rhino3dm
 from spheremesh import nodes
 from spheremesh.fabrication.mesh_files.formats import read_mesh
 from spheremesh.fabrication.opennurbs.brep_audit import BrepErrors, verify_breps
-from spheremesh.fabrication.opennurbs.brep_layout import read_brep_streams
+from spheremesh.fabrication.opennurbs.brep_reader import read_brep_streams
 from spheremesh.fabrication.opennurbs.render_meshes import (
     MESH_TOLERANCE,
     RenderMeshes,
