@@ -26,7 +26,7 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Shape
 
 from spheremesh.fabrication.opennurbs.brep_audit import verify_breps
-from spheremesh.fabrication.opennurbs.brep_layout import read_brep_streams
+from spheremesh.fabrication.opennurbs.brep_reader import read_brep_streams
 from spheremesh.fabrication.rhino.writer import write_3dm
 from spheremesh.fabrication.solids.panel_shapes import panel_shapes
 from spheremesh.fabrication.step.writer import write_step

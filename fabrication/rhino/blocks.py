@@ -5,22 +5,20 @@ rhino3dm gives definitions random ids; their streams are written here (`ON_Insta
 `opennurbs_instance.cpp`), so that a file of the same panels has the same ids.
 """
 
-from typing import Final
 from uuid import UUID
-
-import numpy as np
 
 from ...kernel.arrays import FloatArray
 from ...kernel.panels.mould_caps import mould_caps
 from ...kernel.panels.panels import Panels
 from ...kernel.parts.colors import UNLABELLED
 from ..opennurbs.brep_audit import verify_breps
-from ..opennurbs.chunks import ANONYMOUS, Chunk, assemble, class_object, doubles, fill, ints
-from ..opennurbs.panel_breps import brep_streams
+from ..opennurbs.brep_writer import brep_streams
 from ..opennurbs.render_meshes import MESH_TOLERANCE, panel_meshes
+from ..opennurbs.stream_codes import ANONYMOUS
+from ..opennurbs.stream_writer import Chunk, class_object, doubles, encode, ints
 from .model import RhinoModel, Untyped, add_surface_layer, object_attributes, object_id
 
-INSTANCE_DEFINITION: Final = UUID("26f8bff6-2618-417f-a158-153d64a94989").bytes_le
+_INSTANCE_DEFINITION = UUID("26f8bff6-2618-417f-a158-153d64a94989").bytes_le
 
 _COMPONENT = 0x40008002
 """Type of the chunk that says what a component of a model is called."""
@@ -82,9 +80,7 @@ def definition_stream(name: str, definition: UUID, member: UUID) -> bytes:
     body = Chunk(
         ANONYMOUS, (ints(1, 0), component, ints(_STATIC), no_units, bytes(12), box, members)
     )
-    template = assemble(class_object(INSTANCE_DEFINITION, body))
-    (stream,) = fill(template, {"": np.zeros((1, 0))})
-    return stream
+    return encode(class_object(_INSTANCE_DEFINITION, body))
 
 
 def add_instance(

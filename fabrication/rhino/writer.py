@@ -28,10 +28,10 @@ from ...kernel.panels.panels import Panels, select_panels
 from ...kernel.parts.colors import UNLABELLED, mould_color, mould_name
 from ..files import check_suffix, replacing
 from ..opennurbs.brep_audit import verify_breps
-from ..opennurbs.brep_layout import read_brep_streams
-from ..opennurbs.brep_shell import join_panels
-from ..opennurbs.panel_breps import brep_streams, edge_streams
+from ..opennurbs.brep_reader import read_brep_streams
+from ..opennurbs.brep_writer import brep_streams, edge_streams
 from ..opennurbs.render_meshes import MESH_TOLERANCE, panel_meshes
+from ..opennurbs.shell_writer import join_panels
 from ..schedules.panel_text import panel_text
 from .beams import add_beams
 from .blocks import add_definition, add_instance, add_mould_blocks

@@ -5,9 +5,9 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 
-from ...kernel.congruences import smooth as congruence
+from ...kernel.congruences import curvature_spheres as congruence
 from ...kernel.errors import name_ids
-from ...kernel.hexagons import dual_meshes as shex
+from ...kernel.hexagons import dual_sphere_mesh as shex
 from ...kernel.hexagons import evolution, face_shapes
 from ...kernel.hexagons import shifted_rows as grids
 from ...kernel.meshes.mesh import Mesh, mean_edge_length

@@ -17,7 +17,7 @@ import rhino3dm
 from spheremesh import nodes
 from spheremesh.fabrication.mesh_files.formats import read_mesh
 from spheremesh.fabrication.opennurbs.brep_audit import BrepErrors, verify_breps
-from spheremesh.fabrication.opennurbs.brep_layout import read_brep_streams
+from spheremesh.fabrication.opennurbs.brep_reader import read_brep_streams
 from spheremesh.fabrication.opennurbs.render_meshes import (
     MESH_TOLERANCE,
     RenderMeshes,
@@ -35,7 +35,7 @@ from spheremesh.kernel.panels.panels import Panels, panel_areas, select_panels
 from spheremesh.kernel.parts.colors import mould_color
 from spheremesh.kernel.sphere_meshes.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
-from spheremesh.kernel.spheres.rows import normals, signed_distance
+from spheremesh.kernel.spheres.incidence import normals, signed_distance
 from spheremesh.kernel.surfaces.circular_nets import roof_net
 from spheremesh.nodes import NodeWarning
 

@@ -1,4 +1,4 @@
-"""Reads the stream of an openNURBS object and notes where numbers and checksums stand."""
+"""Reads the byte stream of openNURBS objects: where numbers and checksums stand."""
 
 import struct
 import zlib
@@ -6,7 +6,7 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from typing import NamedTuple
 
-from .chunks import (
+from .stream_codes import (
     ANONYMOUS,
     CHUNK_HEADER,
     CLASS,
@@ -23,7 +23,7 @@ class UnreadableError(Exception):
     """A stream that is not what it should be; the message says where."""
 
 
-class Buffer(NamedTuple):
+class BufferPlace(NamedTuple):
     """A buffer: where its bytes stand, and whether they are deflated."""
 
     start: int
@@ -31,7 +31,7 @@ class Buffer(NamedTuple):
     is_deflated: bool
 
 
-class Cursor:
+class StreamReader:
     """
     Reads a stream from front to back.
 
@@ -69,7 +69,6 @@ class Cursor:
         Parameters
         ----------
         count : int
-            How many.
 
         Returns
         -------
@@ -89,15 +88,13 @@ class Cursor:
         Parameters
         ----------
         count : int
-            How many.
 
         Returns
         -------
         tuple of int
             The numbers.
         """
-        start = self.take(4 * count)
-        return struct.unpack_from(f"<{count}i", self.data, start)
+        return struct.unpack_from(f"<{count}i", self.data, self.take(4 * count))
 
     def doubles(self, count: int) -> int:
         """
@@ -106,7 +103,6 @@ class Cursor:
         Parameters
         ----------
         count : int
-            How many.
 
         Returns
         -------
@@ -135,7 +131,6 @@ class Cursor:
         Parameters
         ----------
         expected : bytes
-            What they must be.
         name : str
             What they are, for the message.
         """
@@ -216,7 +211,7 @@ class Cursor:
                 raise UnreadableError(f"a table of unknown version before {self.position}")
             yield self.ints(1)[0]
 
-    def buffer(self, size: int) -> Buffer:
+    def buffer(self, size: int) -> BufferPlace:
         """
         Pass a buffer.
 
@@ -227,30 +222,30 @@ class Cursor:
 
         Returns
         -------
-        Buffer
+        BufferPlace
             Where its bytes stand.
         """
         begin = self.position
         if self.ints(1)[0] != size:
             raise UnreadableError(f"the buffer at byte {begin} does not hold {size} bytes")
         if size == 0:
-            return Buffer(self.position, self.position, is_deflated=False)
+            return BufferPlace(self.position, self.position, is_deflated=False)
         place = self.take(CRC.size)
         method = self.data[self.take(1)]
         if method == 0:
             start = self.take(size)
             self.checksums.append(Checksum(place, ((start, self.position),)))
-            return Buffer(start, self.position, is_deflated=False)
+            return BufferPlace(start, self.position, is_deflated=False)
         with self.chunk(ANONYMOUS):
             start = self.take(self.limit - self.position)
-            found = Buffer(start, self.position, is_deflated=True)
+            found = BufferPlace(start, self.position, is_deflated=True)
         content = inflated(self.data, found)
         if len(content) != size or CRC.unpack_from(self.data, place)[0] != zlib.crc32(content):
             raise UnreadableError(f"the buffer at byte {begin} does not inflate to its content")
         return found
 
 
-def inflated(data: bytes, buffer: Buffer) -> bytes:
+def inflated(data: bytes, buffer: BufferPlace) -> bytes:
     """
     Content of a deflated buffer.
 
@@ -258,8 +253,7 @@ def inflated(data: bytes, buffer: Buffer) -> bytes:
     ----------
     data : bytes
         The stream.
-    buffer : Buffer
-        The buffer.
+    buffer : BufferPlace
 
     Returns
     -------

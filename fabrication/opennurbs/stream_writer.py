@@ -1,73 +1,29 @@
 """
-Streams of openNURBS objects: chunks with checksums, laid out once and filled for many objects.
+Writes the byte stream of openNURBS objects: laid out once, filled for many objects.
 
-All numbers are little-endian: i = int32, q = int64, d = float64. A chunk is
-``i type, q length`` and a body of that length. Where bit 15 of the type is set, the body ends
-in the CRC-32 of those of its bytes that belong to no inner chunk; where bit 31 is set, there is
-no body (`opennurbs_archive.cpp`). An object is::
-
-    CLASS { CLASS_UUID { 16 bytes, crc }  CLASS_DATA { the object, crc }  CLASS_END }
-
-A buffer is ``i size, i crc, byte method`` and bytes: themselves for method 0, a chunk of
-deflated ones for method 1. It is no chunk: its bytes belong to the chunk around it.
+A stream is built of pieces (constant bytes, numbers to be filled in, chunks, buffers), which
+are laid out as a template with the places of its numbers and checksums.
 """
 
 import math
 import struct
-import zlib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Final, NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-CLASS: Final = 0x00027FFA
-CLASS_UUID: Final = 0x0002FFFB
-CLASS_DATA: Final = 0x0002FFFC
-CLASS_END: Final = 0x80027FFF
-ANONYMOUS: Final = 0x40008000
-
-CRC_FLAG: Final = 0x8000
-SHORT_FLAG: Final = 0x80000000
-
-CHUNK_HEADER: Final = struct.Struct("<Iq")
-CRC: Final = struct.Struct("<I")
-
-
-class Checksum(NamedTuple):
-    """
-    Place of a CRC-32 in a stream and the ranges (start, stop) of bytes that it covers.
-
-    Attributes
-    ----------
-    place : int
-        Where its four bytes begin.
-    ranges : tuple of (int, int)
-        The bytes of its chunk that are in no inner chunk.
-    """
-
-    place: int
-    ranges: tuple[tuple[int, int], ...]
-
-    def compute(self, stream: memoryview) -> int:
-        """
-        The checksum of a stream.
-
-        Parameters
-        ----------
-        stream : memoryview
-            The bytes.
-
-        Returns
-        -------
-        int
-            CRC-32 of the ranges, one after the other.
-        """
-        value = 0
-        for start, stop in self.ranges:
-            value = zlib.crc32(stream[start:stop], value)
-        return value
+from .stream_codes import (
+    ANONYMOUS,
+    CHUNK_HEADER,
+    CLASS,
+    CLASS_DATA,
+    CLASS_END,
+    CLASS_UUID,
+    CRC,
+    CRC_FLAG,
+    Checksum,
+)
 
 
 class Slot(NamedTuple):
@@ -86,69 +42,44 @@ class Chunk(NamedTuple):
     body: "tuple[Piece, ...]"
 
 
-class Buffer(NamedTuple):
+class PlainBuffer(NamedTuple):
     """Bytes with their size and checksum, not deflated."""
 
     content: Slot
 
 
-Piece: TypeAlias = bytes | Slot | Chunk | Buffer
+Piece: TypeAlias = bytes | Slot | Chunk | PlainBuffer
 
 
-@dataclass(frozen=True)
-class Template:
-    """
-    A stream whose numbers are still zero.
-
-    Attributes
-    ----------
-    data : bytes
-        The stream.
-    slots : tuple of (Slot, int)
-        The slots and where they begin.
-    checksums : tuple of Checksum
-        The checksums, inner ones first.
-    """
+class _Template(NamedTuple):
+    """A stream of zeros, the places of its slots, and its checksums, inner ones first."""
 
     data: bytes
     slots: tuple[tuple[Slot, int], ...]
     checksums: tuple[Checksum, ...]
 
 
-def assemble(piece: Piece) -> Template:
-    """
-    Lay out a piece: constant bytes, places of numbers, places of checksums.
-
-    Parameters
-    ----------
-    piece : bytes, Slot, Chunk or Buffer
-        The piece.
-
-    Returns
-    -------
-    Template
-        To be filled by `fill`.
-    """
+def _assemble(piece: Piece) -> _Template:
     if isinstance(piece, bytes):
-        return Template(piece, (), ())
+        return _Template(piece, (), ())
     if isinstance(piece, Slot):
         size = np.dtype(piece.dtype).itemsize * piece.size
-        return Template(bytes(size), ((piece, 0),), ())
-    if isinstance(piece, Buffer):
-        inner = assemble(piece.content)
+        return _Template(bytes(size), ((piece, 0),), ())
+    if isinstance(piece, PlainBuffer):
+        inner = _assemble(piece.content)
         head = 4 + CRC.size + 1
         data = ints(len(inner.data)) + bytes(CRC.size + 1) + inner.data
-        return Template(data, ((piece.content, head),), (Checksum(4, ((head, len(data)),)),))
+        return _Template(data, ((piece.content, head),), (Checksum(4, ((head, len(data)),)),))
     return _assemble_chunk(piece)
 
 
-def _assemble_chunk(chunk: Chunk) -> Template:
+def _assemble_chunk(chunk: Chunk) -> _Template:
     data = bytearray(CHUNK_HEADER.size)
     slots: list[tuple[Slot, int]] = []
     checksums: list[Checksum] = []
     own: list[tuple[int, int]] = []
     for piece in chunk.body:
-        inner, here = assemble(piece), len(data)
+        inner, here = _assemble(piece), len(data)
         slots += [(slot, here + place) for slot, place in inner.slots]
         checksums += [_shifted(checksum, here) for checksum in inner.checksums]
         data += inner.data
@@ -158,7 +89,7 @@ def _assemble_chunk(chunk: Chunk) -> Template:
         checksums.append(Checksum(len(data), tuple(own)))
         data += bytes(CRC.size)
     CHUNK_HEADER.pack_into(data, 0, chunk.typecode, len(data) - CHUNK_HEADER.size)
-    return Template(bytes(data), tuple(slots), tuple(checksums))
+    return _Template(bytes(data), tuple(slots), tuple(checksums))
 
 
 def _shifted(checksum: Checksum, by: int) -> Checksum:
@@ -166,14 +97,13 @@ def _shifted(checksum: Checksum, by: int) -> Checksum:
     return Checksum(checksum.place + by, ranges)
 
 
-def fill(template: Template, numbers: Mapping[str, NDArray[Any]]) -> Iterator[bytes]:
+def fill(piece: Piece, numbers: Mapping[str, NDArray[Any]]) -> Iterator[bytes]:
     """
-    Streams of a template.
+    Streams of one layout.
 
     Parameters
     ----------
-    template : Template
-        The template.
+    piece : bytes, Slot, Chunk or PlainBuffer
     numbers : mapping of str to (n, count of slots, ...) array
         Numbers of the slots, one row per stream; more than a slot takes are left out.
 
@@ -182,6 +112,7 @@ def fill(template: Template, numbers: Mapping[str, NDArray[Any]]) -> Iterator[by
     bytes
         Each of the n streams.
     """
+    template = _assemble(piece)
     rows = len(next(iter(numbers.values())))
     streams = np.tile(np.frombuffer(template.data, np.uint8), (rows, 1))
     for slot, place in template.slots:
@@ -197,6 +128,22 @@ def fill(template: Template, numbers: Mapping[str, NDArray[Any]]) -> Iterator[by
         yield bytes(stream)
 
 
+def encode(piece: Piece) -> bytes:
+    """
+    The stream of a piece without slots.
+
+    Parameters
+    ----------
+    piece : bytes, Chunk or PlainBuffer
+
+    Returns
+    -------
+    bytes
+        One stream.
+    """
+    return next(fill(piece, {"": np.zeros((1, 0))}))
+
+
 def ints(*values: int) -> bytes:
     """
     Bytes of int32 numbers.
@@ -204,7 +151,6 @@ def ints(*values: int) -> bytes:
     Parameters
     ----------
     *values : int
-        The numbers.
 
     Returns
     -------
@@ -221,7 +167,6 @@ def doubles(*values: float) -> bytes:
     Parameters
     ----------
     *values : float
-        The numbers.
 
     Returns
     -------
@@ -239,7 +184,7 @@ def class_object(uuid: bytes, *body: Piece) -> Chunk:
     ----------
     uuid : bytes
         Id of the class.
-    *body : bytes, Slot, Chunk or Buffer
+    *body : bytes, Slot, Chunk or PlainBuffer
         What the class writes.
 
     Returns
@@ -261,7 +206,6 @@ def table(minor: int, records: Sequence[tuple[Piece, ...]]) -> Chunk:
     minor : int
         Version 1.`minor` of the table.
     records : sequence of tuple of pieces
-        The records.
 
     Returns
     -------

@@ -1,7 +1,7 @@
 """
-All panels joined into one Brep: neighbours share their edges and vertices.
+Writes all panels joined into one Brep: neighbours share their edges and vertices.
 
-Records are those of one-faced Breps (`fabrication.opennurbs`). An edge is the arc of the first
+Records are those of one-faced Breps (`brep_writer`). An edge is the arc of the first
 of its two panels; how far the other one misses it is the tolerance of the edge.
 """
 
@@ -16,9 +16,10 @@ from ...kernel.arrays import FloatArray, IntArray, norm
 from ...kernel.errors import InputError
 from ...kernel.panels.panels import Panels, panel_arcs
 from ...kernel.spheres.arcs import arc_lengths, arc_points
-from .chunks import ANONYMOUS, Chunk, assemble, class_object, doubles, fill, ints, table
-from .panel_breps import BOUNDARY_TRIM, BREP, OUTER_LOOP, edge_streams, face_streams
+from .brep_writer import edge_streams, face_streams
 from .render_meshes import RenderMeshes, mesh_streams
+from .stream_codes import ANONYMOUS, BOUNDARY_TRIM, BREP, OUTER_LOOP
+from .stream_writer import Chunk, class_object, doubles, encode, ints, table
 
 _MATED_TRIM: Final = 2
 _SAMPLES = 5
@@ -60,11 +61,10 @@ def join_panels(panels: Panels, largest_gap: float, meshes: RenderMeshes | None)
     Parameters
     ----------
     panels : Panels
-        P panels, at least one.
+        At least one.
     largest_gap : float
         How far edges of neighbours that are joined may lie apart, in model units.
     meshes : RenderMeshes, optional
-        Their render meshes.
 
     Returns
     -------
@@ -106,8 +106,7 @@ def join_panels(panels: Panels, largest_gap: float, meshes: RenderMeshes | None)
         Chunk(ANONYMOUS, (bytes(panels.n_panels),)), ints(0),
         Chunk(ANONYMOUS, (ints(1, 1), b"\0")),
     )  # fmt: skip
-    (stream,) = fill(assemble(brep), {"": np.zeros((1, 0))})
-    return Shell(stream, joints.n_open)
+    return Shell(encode(brep), joints.n_open)
 
 
 def _join(panels: Panels, largest_gap: float) -> _Joints:
@@ -196,7 +195,7 @@ def _edge_records(panels: Panels, joints: _Joints) -> list[tuple[bytes]]:
 
 
 def _trim_records(panels: Panels, joints: _Joints) -> list[tuple[bytes]]:
-    """The records of `opennurbs`, for every side of every panel."""
+    """The records of `brep_writer`, for every side of every panel."""
     is_mated = np.bincount(joints.edges)[joints.edges] > 1
     columns = np.stack([
         joints.edges, joints.vertices, joints.vertices[panels.next_corners],

@@ -1,11 +1,11 @@
 """
-Exact trimmed spherical faces as openNURBS objects, written byte by byte.
+Writes the outer faces of panels as openNURBS Breps: exact trimmed spheres, byte by byte.
 
 rhino3dm can read any Brep but builds only simple ones; it decodes the streams made here. The
 layout is that of openNURBS, which is public (`opennurbs_3dm.h` for type codes,
 `opennurbs_brep_io.cpp`, `opennurbs_arccurve.cpp`, `opennurbs_linecurve.cpp`,
 `opennurbs_nurbscurve.cpp`, `opennurbs_nurbssurface.cpp`, `opennurbs_planesurface.cpp`); chunks
-and objects are those of `fabrication.chunks`. An object begins with one byte, 16 x major +
+and objects are those of `stream_codes`. An object begins with one byte, 16 x major +
 minor version:
 
 - `ON_LineCurve` 1.0: from ddd, to ddd, domain dd, i dimension.
@@ -22,76 +22,45 @@ minor version:
   i solid, a chunk with the region topology (none). The records are in `_brep`.
 
 Knot vectors of openNURBS lack the first and last knot of other notations.
-
-Geometry. A sphere of row (A, B, C), seen from its point o with normal N, is the image of
-
-    x(u, v) = o + (u e1 + v e2 + A (u² + v²) N) / (1 + A² (u² + v²)),
-
-the inverse stereographic projection from the point opposite o: biquadratic, (u, v) in model
-units, N along x_u × x_v, and at A = 0 the plane itself. Circles on
-the sphere are circular arcs in (u, v): trims are exact rational quadratics.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import Final
 
 import numpy as np
 
-from ...kernel.arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
+from ...kernel.arrays import FloatArray, unit
 from ...kernel.panels.panels import Panels, panel_arcs
-from ...kernel.spheres.arcs import ArcCircles, Arcs, arc_circles, arc_lengths, arc_points
-from ...kernel.spheres.rows import normals, project
-from .chunks import (
+from ...kernel.spheres.arcs import ArcCircles, Arcs, arc_circles, arc_lengths
+from .render_meshes import RenderMeshes, mesh_numbers, mesh_object
+from .sphere_patches import (
+    PanelCharts,
+    panel_charts,
+    patch_control_points,
+    select_charts,
+    span_counts,
+    trim_control_points,
+)
+from .stream_codes import (
     ANONYMOUS,
+    ARC_CURVE,
+    BOUNDARY_TRIM,
+    BREP,
+    LINE_CURVE,
+    NURBS_CURVE,
+    NURBS_SURFACE,
+    OUTER_LOOP,
+    PLANE_SURFACE,
+)
+from .stream_writer import (
     Chunk,
     Piece,
     Slot,
-    assemble,
     class_object,
     doubles,
     fill,
     ints,
     table,
 )
-from .render_meshes import RenderMeshes, mesh_numbers, mesh_object
-
-ARC_CURVE: Final = bytes.fromhex("2abe33cfb409d411bffb0010830122f0")
-LINE_CURVE: Final = bytes.fromhex("dbd4d74e47e9d311bfe50010830122f0")
-NURBS_CURVE: Final = bytes.fromhex("ddd4d74e47e9d311bfe50010830122f0")
-NURBS_SURFACE: Final = bytes.fromhex("ded4d74e47e9d311bfe50010830122f0")
-PLANE_SURFACE: Final = bytes.fromhex("dfd4d74e47e9d311bfe50010830122f0")
-BREP: Final = bytes.fromhex("c5dbb56060e6d311bfe40010830122f0")
-
-BOUNDARY_TRIM: Final = 1
-OUTER_LOOP: Final = 1
-
-_MARGIN = 0.02
-"""How far the patch reaches beyond its trims, relative to its size."""
-
-_ONE_SPAN_BULGE = 0.5
-_ONE_SPAN_WEIGHT = 0.25
-"""Arcs that bulge more, and patches with a smaller middle weight, are cut into two spans."""
-
-
-@dataclass(frozen=True)
-class _Charts:
-    """
-    Panels of one degree k in their stereographic charts, P of them.
-
-    `frames` holds e1, e2, N as rows; `uv` the corners, `bulges` the tangents of a quarter of
-    the sweep of the trims, positive where they turn left; `reaches` how far patches extend to
-    both sides of the origin, along u and v.
-    """
-
-    ids: IntArray
-    corner_ids: IntArray
-    curvatures: FloatArray
-    origins: FloatArray
-    frames: FloatArray
-    uv: FloatArray
-    bulges: FloatArray
-    reaches: FloatArray
 
 
 def brep_streams(panels: Panels, meshes: RenderMeshes | None = None) -> list[bytes]:
@@ -132,8 +101,8 @@ def brep_streams(panels: Panels, meshes: RenderMeshes | None = None) -> list[byt
         if meshes is not None:
             numbers |= mesh_numbers(meshes, group.ids)
             face_mesh = (b"\1", mesh_object(meshes, kind))
-        template = assemble(_brep(int(corners.shape[1]), spans, face_mesh))
-        for panel, stream in zip(group.ids, fill(template, numbers), strict=True):
+        brep = _brep(int(corners.shape[1]), spans, face_mesh)
+        for panel, stream in zip(group.ids, fill(brep, numbers), strict=True):
             result[panel] = stream
     return result
 
@@ -157,11 +126,10 @@ def face_streams(panels: Panels) -> tuple[list[bytes], list[bytes]]:
     surfaces, trims = [b""] * panels.n_panels, [b""] * len(panels.corners)
     for group, spans, _ in _groups(panels, panel_arcs(panels), None):
         numbers = _patch_numbers(group, spans)
-        filled = fill(assemble(_surface(spans)), numbers)
-        for panel, stream in zip(group.ids, filled, strict=True):
+        for panel, stream in zip(group.ids, fill(_surface(spans), numbers), strict=True):
             surfaces[panel] = stream
         for side, corners in enumerate(group.corner_ids.T):
-            filled = fill(assemble(_trim_curve(side, spans)), numbers)
+            filled = fill(_trim_curve(side, spans), numbers)
             for corner, stream in zip(corners, filled, strict=True):
                 trims[corner] = stream
     return surfaces, trims
@@ -169,16 +137,16 @@ def face_streams(panels: Panels) -> tuple[list[bytes], list[bytes]]:
 
 def _groups(
     panels: Panels, arcs: Arcs, meshes: RenderMeshes | None
-) -> Iterator[tuple[_Charts, int, int]]:
+) -> Iterator[tuple[PanelCharts, int, int]]:
     """Panels whose streams have one layout, their spans and the kind of their meshes."""
     degrees: list[int] = np.unique(panels.degrees).tolist()
     for degree in degrees:
-        charts = _charts(panels, arcs, np.flatnonzero(panels.degrees == degree))
-        spans = _spans(charts)
+        charts = panel_charts(panels, arcs, np.flatnonzero(panels.degrees == degree))
+        spans = span_counts(charts)
         kinds = np.zeros_like(spans) if meshes is None else meshes.kinds[charts.ids]
         pairs: list[list[int]] = np.unique(np.stack([spans, kinds], 1), axis=0).tolist()
         for count, kind in pairs:
-            yield _take(charts, (spans == count) & (kinds == kind)), count, kind
+            yield select_charts(charts, (spans == count) & (kinds == kind)), count, kind
 
 
 def edge_streams(panels: Panels) -> list[bytes]:
@@ -201,8 +169,8 @@ def edge_streams(panels: Panels) -> list[bytes]:
     result = [b""] * len(records)
     for is_straight in np.unique(is_line).tolist():
         ids = np.flatnonzero(is_line == is_straight)
-        template = assemble(_edge_curve(0, is_straight=is_straight))
-        streams = fill(template, {"curve": records[ids, None]})
+        curve = _edge_curve(0, is_straight=is_straight)
+        streams = fill(curve, {"curve": records[ids, None]})
         for edge, stream in zip(ids, streams, strict=True):
             result[edge] = stream
     return result
@@ -323,75 +291,11 @@ def _planes(origins: FloatArray, x: FloatArray, y: FloatArray, z: FloatArray) ->
     return np.column_stack([origins, x, y, z, z, -level])
 
 
-def _charts(panels: Panels, arcs: Arcs, ids: IntArray) -> _Charts:
-    """Stereographic charts of panels of the same degree."""
-    corner_ids = panels.offsets[ids][:, None] + np.arange(int(panels.degrees[ids[0]]))
-    rows = panels.spheres[ids]
-    feet = project(rows, np.zeros((len(ids), 3)))
-    n_axes = unit(normals(rows, feet))
-    corners = panels.corners[corner_ids] - feet[:, None]
-    middles = arc_points(arcs, np.zeros(1))[corner_ids, 0] - feet[:, None]
-    # With u nearly along the first edge the patch is small, and its isocurves look natural.
-    chords = corners[:, 1] - corners[:, 0]
-    e1 = unit(chords - dot(chords, n_axes)[:, None] * n_axes)
-    frames = np.stack([e1, np.cross(n_axes, e1), n_axes], 1)
-    frames = _turned(frames, _project_chart(rows[:, 0], frames, corners))
-    uv, middle_uv = (_project_chart(rows[:, 0], frames, x) for x in (corners, middles))
-    first, second = middle_uv - uv, np.roll(uv, -1, 1) - middle_uv
-    cross = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
-    # The tangent turns by half of the sweep between the two half chords.
-    bulges = cross / (norm(first) * norm(second) + dot(first, second))
-    charts = _Charts(
-        ids, corner_ids, rows[:, 0], feet + panels.origins[ids], frames, uv, bulges, uv[:, 0]
-    )
-    hull = _trim_points(charts, 2)
-    hull = (hull[..., :2] / hull[..., 2:]).reshape(len(ids), -1, 2)
-    # On a domain symmetric about the origin the middle isocurves are great circles: by them
-    # Rhino recognises the sphere.
-    return replace(charts, reaches=(1 + _MARGIN) * np.abs(hull).max(1))
-
-
-def _turned(frames: FloatArray, uv: FloatArray) -> FloatArray:
-    """
-    Frames turned about N so that no trim runs along u or v.
-
-    openNURBS wants such trims flagged, by a tolerance of its own. The first of 1, 2, ...
-    degrees is taken that keeps all chords of the trims clear of the axes.
-    """
-    chords = np.roll(uv, -1, 1) - uv
-    angles = np.arctan2(chords[..., 1], chords[..., 0])
-    turns: FloatArray = np.radians(np.arange(1.0, uv.shape[1] + 2))
-    off = (angles[..., None] - turns) % (np.pi / 2)
-    is_clear = (np.minimum(off, np.pi / 2 - off) > np.radians(0.4)).all(1)
-    turn = turns[is_clear.argmax(1)]
-    cosine, sine, zero, one = np.cos(turn), np.sin(turn), 0 * turn, 0 * turn + 1
-    rotation = np.stack([cosine, sine, zero, -sine, cosine, zero, zero, zero, one], 1)
-    return rotation.reshape(-1, 3, 3) @ frames
-
-
-def _project_chart(curvatures: FloatArray, frames: FloatArray, x: FloatArray) -> FloatArray:
-    """Chart coordinates (P, k, 2) of points (P, k, 3) relative to the origin of the chart."""
-    along = np.einsum("pij,pkj->pki", frames, x)
-    return along[..., :2] / (1 - curvatures[:, None, None] * along[..., 2:])
-
-
-def _take(charts: _Charts, chosen: BoolArray) -> _Charts:
-    return _Charts(*(values[chosen] for values in vars(charts).values()))
-
-
-def _spans(charts: _Charts) -> IntArray:
-    """Bézier spans of the trims and, each way, of the patch: 1 or 2; 0 for planes."""
-    middle_weights = 1 - charts.curvatures**2 * dot(charts.reaches, charts.reaches)
-    is_bent = np.abs(charts.bulges).max(1) > _ONE_SPAN_BULGE
-    spans = np.where(is_bent | (middle_weights < _ONE_SPAN_WEIGHT), 2, 1)
-    return np.where(charts.curvatures == 0, 0, spans)
-
-
-def _patch_numbers(charts: _Charts, spans: int) -> dict[str, FloatArray]:
+def _patch_numbers(charts: PanelCharts, spans: int) -> dict[str, FloatArray]:
     """Trims, surface and box of panels whose patches have the same number of spans."""
     share = np.repeat(np.linspace(-1, 1, max(spans, 1) + 1), 2)
     knots = charts.reaches[..., None] * share
-    net = _patch_points(charts, knots)
+    net = patch_control_points(charts, knots)
     hull = (net[..., :3] / net[..., 3:]).reshape(len(net), -1, 3)
     box = np.concatenate([hull.min(1), hull.max(1)], 1)
     if spans == 0:
@@ -400,53 +304,12 @@ def _patch_numbers(charts: _Charts, spans: int) -> dict[str, FloatArray]:
         domains = knots[..., 1:3].reshape(-1, 4)
         patch, trims = np.column_stack([plane, domains, domains]), _line_trims(charts)
     else:
-        patch, trims = net, _trim_points(charts, spans)
+        patch, trims = net, trim_control_points(charts, spans)
     return {"trim": trims, "knots": knots, "patch": patch[:, None], "box": box[:, None]}
 
 
-def _line_trims(charts: _Charts) -> FloatArray:
+def _line_trims(charts: PanelCharts) -> FloatArray:
     """Numbers of straight trims, (P, k, 8)."""
     ends = np.roll(charts.uv, -1, 1)
     zero = np.zeros((*ends.shape[:2], 1))
     return np.concatenate([charts.uv, zero, ends, zero, zero - 1, zero + 1], 2)
-
-
-def _trim_points(charts: _Charts, spans: int) -> FloatArray:
-    """
-    Homogeneous control points of the trims over [-1, 1], (P, k, 2 spans + 1, 3).
-
-    The arc ``(h τ (1 + b²), h b (1 - τ²)) / (1 + b² τ²)`` over its chord, see `kernel.arcs`;
-    a control point is its polar form at two consecutive knots.
-    """
-    knots = np.repeat(np.linspace(-1, 1, spans + 1), 2)
-    total, product = knots[:-1] + knots[1:], knots[:-1] * knots[1:]
-    starts, ends = charts.uv, np.roll(charts.uv, -1, 1)
-    bulge = charts.bulges[..., None]
-    scale = 1 + bulge**2
-    weight = ((1 + bulge**2 * product) / scale)[..., None]
-    along = np.broadcast_to(total / 2, weight.shape[:-1])[..., None]
-    across = (bulge * (1 - product) / scale)[..., None]
-    half = ((ends - starts) / 2)[:, :, None]
-    # An arc that turns left lies to the right of its chord.
-    right = np.stack([half[..., 1], -half[..., 0]], -1)
-    middle = ((starts + ends) / 2)[:, :, None]
-    points = middle * weight + half * along + right * across
-    points[:, :, 0], points[:, :, -1] = starts, ends
-    return np.concatenate([points, weight], -1)
-
-
-def _patch_points(charts: _Charts, knots: FloatArray) -> FloatArray:
-    """Homogeneous control points of the patches, (P, n, n, 4), of knots (P, 2, n + 1)."""
-    mean = (knots[..., :-1] + knots[..., 1:]) / 2
-    product = knots[..., :-1] * knots[..., 1:]
-    square = product[:, 0, :, None] + product[:, 1, None, :]
-    a = charts.curvatures[:, None, None]
-    weight = (1 + a**2 * square)[..., None]
-    e1, e2, n_axis = charts.frames[:, :, None, None].transpose(1, 0, 2, 3, 4)
-    relative = (
-        mean[:, 0, :, None, None] * e1
-        + mean[:, 1, None, :, None] * e2
-        + (a * square)[..., None] * n_axis
-    )
-    origin = charts.origins[:, None, None]
-    return np.concatenate([relative + weight * origin, weight], -1)
