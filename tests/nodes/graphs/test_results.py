@@ -1,6 +1,7 @@
 """Results that nobody can change for others."""
 
 from collections import Counter, OrderedDict, defaultdict, deque
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -41,6 +42,22 @@ class Open:
     others: list[Any] = field(default_factory=list[Any])
 
 
+@dataclass(frozen=True, eq=False)
+class Report(Mapping[str, Any]):
+    """A record that reads like a dictionary."""
+
+    rows: Any
+
+    def __getitem__(self, key: str) -> Any:  # noqa: ANN401
+        return getattr(self, key)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(("rows",))
+
+    def __len__(self) -> int:
+        return 1
+
+
 class Pair(NamedTuple):
     """Two things."""
 
@@ -56,7 +73,7 @@ class Numbers(list[int]):
 
 def inside(value: Any) -> list[Any]:  # noqa: ANN401
     """What a value holds."""
-    if isinstance(value, Record | Slim | Open):
+    if isinstance(value, Record | Report | Slim | Open):
         return [value.rows]
     if isinstance(value, dict):
         return list(value.values())
@@ -93,6 +110,7 @@ MUTABLE: list[Any] = [
     Record([1, 2]),
     Record(Record((1, {"a": [2]}))),
     Slim([1]),
+    Report([{"a": 1}]),
     Open((1, 2)),
     Record(Open([1])),
     {"a": Pair(Record([1]), np.zeros(3))},

@@ -2,7 +2,8 @@
 
 import os
 import typing
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, TypeVar, TypeVarTuple
 
@@ -26,6 +27,30 @@ class Shape:
 
 class Round(Shape):
     """A kind of shape."""
+
+
+@dataclass(frozen=True)
+class Report(Mapping[str, Any]):
+    """A record that reads like a dictionary."""
+
+    count: int
+
+    def __getitem__(self, key: str) -> Any:  # noqa: ANN401
+        return getattr(self, key)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(("count",))
+
+    def __len__(self) -> int:
+        return 1
+
+
+class CutReport(Report):
+    """Of a cut."""
+
+
+class AngleReport(Report):
+    """Of angles."""
 
 
 class Fit(NamedTuple):
@@ -254,6 +279,10 @@ FIT = [
     (float | None, float),
     (Annotated[int, Port(min=1)], float),
     (Callable[[int], int], Callable[[int], int]),
+    (CutReport, CutReport | None),
+    (CutReport, Report),
+    (CutReport, CutReport | AngleReport),
+    (CutReport, Mapping[str, Any]),
     (Texts, NDArray[Any]),
     (Weights, Weights | None),
     (Weights, Floats),
@@ -285,6 +314,11 @@ MISFIT = [
     (Sequence[int], Mapping[str, int]),
     (Mapping[str, Any], Shape),
     (Literal["c"], Literal["a", "b"]),
+    (CutReport, AngleReport | None),
+    (Report, CutReport),
+    (Mapping[str, Any], CutReport),
+    (CutReport, Floats),
+    (list[CutReport], list[AngleReport]),
     (float, Floats),
     (Texts, Floats),
     (Floats, Texts),
