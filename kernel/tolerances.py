@@ -41,7 +41,7 @@ AXIS_SLACK: Final = 0.004363323129985824
 # Meshes
 
 SAME_LENGTH: Final = 1e-6
-"""Diagonals whose lengths differ by a smaller share are equally short."""
+"""Lengths that differ by a smaller share are equal, and an index decides."""
 CREASE: Final = 0.6981317007977318
 """Triangles that meet at a larger angle (40 degrees) make a crease, not a curved surface."""
 
@@ -84,6 +84,8 @@ AT_BOUND: Final = 1e-9
 """Vertices this close to the bound of their displacement, relative to it, lie on it."""
 ENERGY_CHANGE: Final = 1e-6
 """A descent has converged when a step lowers the energy by less than this share."""
+RESTING_CHANGE: Final = 1e-9
+"""A descent in a flat valley is at rest when a step lowers the energy by less than this."""
 STAGE_CHANGE: Final = 1e-4
 """A descent that others follow may end at this relative change of the energy."""
 LEAST_ENERGY: Final = 1e-16

@@ -196,7 +196,9 @@ def test_law_e7_the_branches_are_reflections_of_each_other(
     if geometry == "elliptic":
         turn.append(similarity(1.0, -np.eye(3), 2 * CENTER))
     mapped = map_sphere_mesh(inner, compose(turn))
-    np.testing.assert_allclose(mapped.mesh.vertices, outer.mesh.vertices, rtol=1e-12)
+    # A coordinate near 0 is rounded as its vertex is: the turn of a map mixes all three.
+    differences = norm(mapped.mesh.vertices - outer.mesh.vertices)
+    assert (differences / norm(outer.mesh.vertices)).max() < 1e-13
     np.testing.assert_array_equal(mapped.mesh.corners, outer.mesh.corners)
     np.testing.assert_allclose(mapped.spheres, outer.spheres, atol=1e-12)
 
