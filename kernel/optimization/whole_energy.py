@@ -144,7 +144,6 @@ def optimize_spheres(
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        Mesh and spheres to start from.
     weights : EnergyWeights, optional
         Weights of the terms.
     conditions : Conditions, optional
@@ -201,9 +200,7 @@ def move_vertices(
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        Mesh and spheres to start from.
     weights : EnergyWeights
-        Weights of the terms.
     conditions : Conditions
         What has to be respected; its tolerance bounds every displacement.
 

@@ -27,7 +27,7 @@ from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.optimization.whole_energy import Conditions, optimize_spheres
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.panels import Panels
-from spheremesh.kernel.remesh.planar.held_nets import planarize_near
+from spheremesh.kernel.remesh.planar.landing import planarize_near
 from spheremesh.kernel.sphere_meshes.central import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import fit_spheres
 from spheremesh.kernel.spheres.rows import rescale

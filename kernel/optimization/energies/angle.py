@@ -15,7 +15,6 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
 
     Returns
     -------
@@ -35,7 +34,6 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
     setting : Setting
         What stays fixed; edge weights w and target angle α.
     unknowns : Unknowns
-        Spheres.
 
     Returns
     -------
@@ -59,9 +57,7 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     unknowns : Unknowns
-        Spheres.
 
     Returns
     -------

@@ -139,7 +139,6 @@ def check_triangles(mesh: Mesh) -> None:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Raises
     ------

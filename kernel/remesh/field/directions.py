@@ -142,9 +142,7 @@ def umbilic_share(surface: CongruenceMesh, jets: CongruenceJets) -> float:
     Parameters
     ----------
     surface : CongruenceMesh
-        The congruence.
     jets : CongruenceJets
-        Its derivatives.
 
     Returns
     -------
@@ -162,9 +160,7 @@ def axis_angles(surface: CongruenceMesh, jets: CongruenceJets) -> FloatArray:
     Parameters
     ----------
     surface : CongruenceMesh
-        The congruence.
     jets : CongruenceJets
-        Its derivatives.
 
     Returns
     -------

@@ -68,7 +68,6 @@ def previous_corners(topology: Topology) -> IntArray:
     Parameters
     ----------
     topology : Topology
-        The connectivity.
 
     Returns
     -------
@@ -87,7 +86,6 @@ def vertex_fans(surface: CongruenceMesh) -> Fans:
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
 
     Returns
     -------
@@ -121,7 +119,6 @@ def fan_signs(fans: Fans, signs: FloatArray) -> FloatArray:
     Parameters
     ----------
     fans : Fans
-        The order of the corners.
     signs : (H,) float array
         1 or -1 for every corner.
 
@@ -146,9 +143,7 @@ def comb_frames(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     fans : Fans
-        Corners around its vertices.
     trace : (V,) float array
         Means of the forms.
     deviator : (V,) complex array

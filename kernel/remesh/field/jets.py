@@ -74,7 +74,6 @@ def fit_jets(surface: CongruenceMesh, degree: int | None = None, rings: int = 4)
     Parameters
     ----------
     surface : CongruenceMesh
-        The congruence.
     degree : int, optional
         Degree of the polynomials, from 2 to 7; by default that of `DEGREES` with the least
         expected error.
@@ -274,7 +273,6 @@ def node_axes(jets: CongruenceJets) -> FloatArray:
     Parameters
     ----------
     jets : CongruenceJets
-        The congruence.
 
     Returns
     -------

@@ -85,9 +85,7 @@ def eliminate(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     seams : Seams
-        How its faces are tied.
     alignment : Alignment
         Boundary vertices at which the coordinate is given by integers.
     along, across : (F, 3) float array
@@ -139,7 +137,6 @@ def solve_coordinate(
     Parameters
     ----------
     coordinate : Coordinate
-        The problem.
     solutions : IntegerSolutions
         The integers that are allowed.
     n_first : int

@@ -61,13 +61,9 @@ def parametrize(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     fans : Fans
-        Corners around its vertices.
     frames : CombedFrames
-        The directions.
     seams : Seams
-        How the faces are tied.
     edge_length : float
         Length of a unit step, in mean edges.
 
@@ -134,9 +130,7 @@ def chart_gradients(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     frames : CombedFrames
-        The directions.
     edge_length : float
         Length of a unit step, in mean edges.
 

@@ -54,9 +54,7 @@ def find_seams(surface: CongruenceMesh, fans: Fans, frames: CombedFrames) -> Sea
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     fans : Fans
-        Corners around its vertices.
     frames : CombedFrames
         Signs across edges, seams and singular vertices.
 

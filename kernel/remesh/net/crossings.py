@@ -93,9 +93,7 @@ def corner_coordinates(fans: Fans, charts: ChartGradients, values: FloatArray) -
     Parameters
     ----------
     fans : Fans
-        Corners around the vertices.
     charts : ChartGradients
-        The map.
     values : (V, 2) float array
         Coordinates of the vertices.
 
@@ -120,7 +118,6 @@ def edge_crossings(surface: CongruenceMesh, corners: FloatArray) -> EdgeCrossing
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     corners : (H, 2) float array
         Coordinates of the corners, none on a line.
 
@@ -161,13 +158,11 @@ def face_segments(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     corners : (H, 2) float array
         Coordinates of the corners, none on a line.
     signs : (H,) float array
         Sign between the charts on both sides of each half-edge.
     crossings : EdgeCrossings
-        The crossings.
 
     Returns
     -------

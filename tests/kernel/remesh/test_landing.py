@@ -9,7 +9,7 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
 from spheremesh.kernel.meshes.mesh import local_corners
 from spheremesh.kernel.optimization.pencil import minimize_angles
-from spheremesh.kernel.remesh.planar.turned_neighbors import turn_apart
+from spheremesh.kernel.remesh.planar.landing import turn_apart
 from spheremesh.kernel.sphere_meshes.central import central_spheres
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles
 from spheremesh.kernel.spheres.rows import evaluate, minkowski, recenter, rescale
