@@ -14,7 +14,7 @@ from .sphere_meshes.fit import face_planes, fit_spheres
 from .sphere_meshes.sphere_mesh import SphereMesh, intersection_angles
 from .spheres.arcs import arc_points
 from .spheres.circles import face_circles
-from .spheres.rows import project
+from .spheres.incidence import project
 
 
 def angle_summary(sphere_mesh: SphereMesh) -> dict[str, float]:

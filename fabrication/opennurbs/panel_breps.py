@@ -41,7 +41,7 @@ import numpy as np
 from ...kernel.arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ...kernel.panels.panels import Panels, panel_arcs
 from ...kernel.spheres.arcs import ArcCircles, Arcs, arc_circles, arc_lengths, arc_points
-from ...kernel.spheres.rows import normals, project
+from ...kernel.spheres.incidence import normals, project
 from .chunks import (
     ANONYMOUS,
     Chunk,

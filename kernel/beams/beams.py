@@ -14,7 +14,8 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, dot, norm
 from ..spheres.arcs import Arcs, segment_areas, sphere_arcs
-from ..spheres.rows import meet_lines, recenter, rescale
+from ..spheres.incidence import meet_lines
+from ..spheres.rows import recenter, rescale
 from ..support.annuli import Annuli, select_annuli
 
 

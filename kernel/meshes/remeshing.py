@@ -1,5 +1,5 @@
 """
-Even triangles in place of whatever triangles came in.
+Isotropic remeshing of triangle meshes.
 
 Long edges are split, short ones merged, edges flipped towards six neighbours per vertex, and
 vertices moved along the surface to the middle of their neighbours, again and again.
@@ -14,7 +14,7 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from ..errors import InputError
 from ..tolerances import CREASE, LINE_CORNER
 from .mesh import Mesh, face_normals, face_vector_areas
-from .triangle_edges import THIN, Triangles, find_edges, thickness, triangle_normals
+from .triangle_edges import SLIVER, Triangles, find_edges, thickness, triangle_normals
 from .triangle_edits import collapse_short_edges, flip_edges, split_long_edges
 from .triangulation import triangulate
 
@@ -117,7 +117,7 @@ def _creases(surface: Mesh, crease_angle: float) -> IntArray:
     sides = face_normals(surface)[surface.topology.edge_faces]
     left, right = sides[:, 0], sides[:, 1]
     turns = np.arctan2(norm(np.cross(left, right)), dot(left, right))
-    is_thin = thickness(surface.vertices[surface.corners].reshape(-1, 3, 3)) < THIN
+    is_thin = thickness(surface.vertices[surface.corners].reshape(-1, 3, 3)) < SLIVER
     has_sliver = is_thin[surface.topology.edge_faces].any(axis=1)
     return surface.topology.edge_vertices[(turns > crease_angle) & ~has_sliver]
 

@@ -156,3 +156,20 @@ def _check_vertex_fans(
             f"vertex {vertex} is non-manifold: faces {name_ids(faces.tolist())} meet there "
             "without sharing an edge; duplicate the vertex"
         )
+
+
+def previous_corners(topology: Topology) -> IntArray:
+    """
+    The corner before each corner in its face: inverse of `Topology.next_corners`.
+
+    Parameters
+    ----------
+    topology : Topology
+
+    Returns
+    -------
+    (H,) int array
+    """
+    result = np.empty_like(topology.next_corners)
+    result[topology.next_corners] = np.arange(len(result))
+    return result

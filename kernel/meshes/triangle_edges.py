@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm
 
-THIN = 0.15
+SLIVER = 0.15
 
 
 @dataclass(frozen=True)
@@ -165,7 +165,7 @@ def thickness(corners: FloatArray) -> FloatArray:
     Returns
     -------
     (...) float array
-        From 0 to 0.87, for an equilateral triangle; below `THIN` a sliver, whose normal says
+        From 0 to 0.87, for an equilateral triangle; below `SLIVER` a sliver, whose normal says
         nothing about the surface.
     """
     sides = np.roll(corners, -1, axis=-2) - corners

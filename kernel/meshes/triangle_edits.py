@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from .triangle_edges import (
-    THIN,
+    SLIVER,
     Edges,
     Triangles,
     edge_lengths,
@@ -172,9 +172,9 @@ def _keeps_shape(triangles: Triangles, ends: IntArray, places: FloatArray) -> Bo
     after = unit(triangle_normals(moved))
     sides = norm(np.roll(moved, -1, axis=1) - moved)
     grown = (sides > LONG) & (norm(np.roll(corners, -1, axis=1) - corners) < sides)
-    is_thin = thickness(moved) < np.minimum(thickness_before, THIN)
+    is_thin = thickness(moved) < np.minimum(thickness_before, SLIVER)
     # The normal of a sliver turns easily.
-    least = np.where(thickness_before < THIN, 0.0, LEAST_COSINE)
+    least = np.where(thickness_before < SLIVER, 0.0, LEAST_COSINE)
     folds = dot(before, after) <= least
     good = np.ones(len(ends), bool)
     good[merges[grown.any(axis=1) | folds | is_thin]] = False
@@ -245,7 +245,7 @@ def _flip_gains(triangles: Triangles, edges: Edges, quads: IntArray) -> IntArray
     gains = 2 * (a + b - c - d) - 4
     points = triangles.vertices[quads]
     least = np.minimum(*(thickness(points[:, corners]) for corners in BEFORE_FLIP))
-    return np.where(least < THIN, SLIVER_GAIN, gains)
+    return np.where(least < SLIVER, SLIVER_GAIN, gains)
 
 
 def _may_flip(triangles: Triangles, edges: Edges, quads: IntArray) -> BoolArray:
@@ -257,7 +257,7 @@ def _may_flip(triangles: Triangles, edges: Edges, quads: IntArray) -> BoolArray:
     new_keys = pair_keys(quads[:, 2:], len(triangles.vertices))
     is_good = ~np.isin(new_keys, edges.keys)
     for corners in AFTER_FLIP:
-        is_good &= thickness(points[:, corners]) > np.minimum(least, THIN)
+        is_good &= thickness(points[:, corners]) > np.minimum(least, SLIVER)
         after = unit(triangle_normals(points[:, corners]))
         is_good &= dot(before, after) > LEAST_COSINE
     return is_good

@@ -23,7 +23,7 @@ from ..meshes.mesh import Mesh, face_centroids, mean_edge_length
 from ..solvers.symmetric import solve_symmetric, symmetric_pattern
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.circles import Circles, circle_pencils, face_circles, pencil_spheres
-from ..spheres.rows import minkowski
+from ..spheres.minkowski import minkowski
 from ..tolerances import ANGLE_STEP, DAMPING, ENERGY_ROUNDING
 
 MAX_NEWTON_STEPS = 1000

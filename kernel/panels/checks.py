@@ -10,7 +10,7 @@ from ..errors import InputError, name_ids
 from ..parts.names import check_part_names
 from ..spheres.arc_crossings import crossing_boundaries
 from ..spheres.arcs import Arcs, arc_points
-from ..spheres.rows import normals
+from ..spheres.incidence import normals
 from ..tolerances import CAP_ANGLE, THIN
 from .panels import Panels, inner_panel_arcs, panel_arcs, panel_areas, select_panels
 

@@ -8,7 +8,7 @@ from ..arrays import FloatArray, IntArray, dot, sum_by
 from ..errors import InputError
 from ..meshes.mesh import Mesh, face_centroids, mean_edge_length
 from ..spheres.circles import circle_pencils, face_circles, pencil_spheres
-from ..spheres.rows import evaluate
+from ..spheres.incidence import evaluate
 from ..tolerances import CIRCULAR
 from .sphere_mesh import SphereMesh
 

@@ -8,7 +8,9 @@ from numpy.typing import ArrayLike
 from ..arrays import FloatArray, dot, read_only, sum_by
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_centroids, local_corners
-from ..spheres.rows import angle, evaluate, minkowski, recenter, signed_distance
+from ..spheres.incidence import evaluate, signed_distance
+from ..spheres.minkowski import angle, minkowski
+from ..spheres.rows import recenter
 from ..tolerances import EPSILON
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, dot, norm, sum_by, unit
-from .rows import normals, project
+from .incidence import normals, project
 
 
 @dataclass(frozen=True)

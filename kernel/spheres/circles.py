@@ -15,7 +15,9 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_vector_areas, local_corners
 from ..tolerances import DEGENERATE, EPSILON
-from .rows import evaluate, lift_points, minkowski
+from .incidence import evaluate
+from .minkowski import minkowski
+from .rows import lift_points
 
 
 class PencilKind(IntEnum):

@@ -28,7 +28,7 @@ from spheremesh.kernel.optimization.clustering import cluster_radii
 from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.panels import Panels, select_panels
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.kernel.support.annulus_support import annulus_support

@@ -22,7 +22,9 @@ import numpy as np
 from ...arrays import BoolArray, FloatArray, dot, norm, sum_by, unit
 from ...meshes.mesh import Mesh, local_corners, mean_edge_length
 from ...sphere_meshes.sphere_mesh import SphereMesh
-from ...spheres.rows import evaluate, minkowski, normals, rescale
+from ...spheres.incidence import evaluate, normals
+from ...spheres.minkowski import minkowski
+from ...spheres.rows import rescale
 from ...tolerances import FLATTEST, LINE_CORNER, NODE_EXACT
 from ..field.smooth_surface import SmoothSurface, surface_heights
 

@@ -26,7 +26,8 @@ from ...meshes.mesh import mean_edge_length
 from ...solvers.blocks import block_diagonal
 from ...solvers.factorization import SparseArray, factorize_symmetric
 from ...solvers.levenberg_marquardt import DampedStep
-from ...spheres.rows import minkowski, recenter
+from ...spheres.minkowski import minkowski
+from ...spheres.rows import recenter
 from ...tolerances import ALIKE, PLANAR_DAMPING
 from .conditions import (
     FACE,

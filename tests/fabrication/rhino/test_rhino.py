@@ -35,7 +35,7 @@ from spheremesh.kernel.panels.panels import Panels, panel_areas, select_panels
 from spheremesh.kernel.parts.colors import mould_color
 from spheremesh.kernel.sphere_meshes.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
-from spheremesh.kernel.spheres.rows import normals, signed_distance
+from spheremesh.kernel.spheres.incidence import normals, signed_distance
 from spheremesh.kernel.surfaces.circular_nets import roof_net
 from spheremesh.nodes import NodeWarning
 

@@ -16,7 +16,7 @@ from spheremesh.kernel.optimization.whole_energy import (
     Optimization,
     optimize_spheres,
 )
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles, vertex_error
 from spheremesh.nodes import (

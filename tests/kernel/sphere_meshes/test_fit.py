@@ -15,7 +15,9 @@ from spheremesh.kernel.meshes.mesh import face_normals, local_corners, mean_edge
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
 from spheremesh.kernel.spheres.circles import face_circles
-from spheremesh.kernel.spheres.rows import center_radius, evaluate, minkowski, normals
+from spheremesh.kernel.spheres.incidence import evaluate, normals
+from spheremesh.kernel.spheres.minkowski import minkowski
+from spheremesh.kernel.spheres.rows import center_radius
 
 POINTS = arrays(float, 3, elements=st.floats(-4, 4))
 NETS = ["torus", "ellipsoid", "egg", "catenoid", "vase", "enneper", "roof"]

@@ -14,7 +14,7 @@ from spheremesh.kernel.meshes.mesh import face_normals, local_corners, mean_edge
 from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
-from spheremesh.kernel.sphere_meshes.mobius_maps import map_sphere_mesh, map_spheres
+from spheremesh.kernel.sphere_meshes.mobius import map_sphere_mesh
 from spheremesh.kernel.sphere_meshes.model_change import (
     SIGNS,
     Branch,
@@ -26,14 +26,19 @@ from spheremesh.kernel.sphere_meshes.model_change import (
 )
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles, vertex_error
 from spheremesh.kernel.sphere_meshes.support_type import support_type
-from spheremesh.kernel.spheres.mobius import compose, inversion, rotation_about, similarity
+from spheremesh.kernel.spheres.incidence import evaluate, normals
+from spheremesh.kernel.spheres.minkowski import minkowski
+from spheremesh.kernel.spheres.mobius_group import (
+    compose,
+    inversion,
+    rotation_about,
+    similarity,
+)
+from spheremesh.kernel.spheres.mobius_images import map_spheres
 from spheremesh.kernel.spheres.rows import (
     center_radius,
-    evaluate,
     from_center_radius,
-    minkowski,
     normalize,
-    normals,
     recenter,
 )
 from spheremesh.kernel.support.beam_tilt import beam_tilt
