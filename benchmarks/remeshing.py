@@ -20,8 +20,8 @@ from spheremesh.kernel.congruences.curvature_spheres import touching_spheres
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.tessellation import tessellate
-from spheremesh.kernel.remesh.field.conjugate import form_roots, split_form
-from spheremesh.kernel.remesh.field.directions import conjugate_directions
+from spheremesh.kernel.remesh.field.conjugate_directions import conjugate_directions
+from spheremesh.kernel.remesh.field.conjugate_form import form_roots, split_form
 from spheremesh.kernel.remesh.pipeline import Remeshing, remesh
 from spheremesh.kernel.remesh.planar.nodes import measure_nodes, node_axis_angles
 from spheremesh.kernel.remesh.planar.planarize import planarize_held

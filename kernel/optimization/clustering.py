@@ -16,8 +16,8 @@ from ..meshes.mesh import Mesh
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.circles import circle_pencils, face_circles, pencil_spheres
 from ..tolerances import SAME_CURVATURE
+from .angle_minimization import pencil_angles
 from .energies.table import EnergyWeights
-from .pencil import pencil_angles
 from .whole_energy import Conditions, Optimization, move_vertices
 
 RELAXED_CLOSENESS = 0.05

@@ -10,7 +10,8 @@ from ...kernel.arrays import BoolArray, FloatArray, IntArray
 from ...kernel.errors import ConvergenceError, name_ids
 from ...kernel.meshes.mesh import Mesh, mean_edge_length
 from ...kernel.remesh import pipeline, reports
-from ...kernel.remesh.field import directions, relax
+from ...kernel.remesh.field import conjugate_directions as directions
+from ...kernel.remesh.field import relax
 from ...kernel.remesh.field.relax import CongruenceQuality
 from ...kernel.remesh.field.smooth_surface import SmoothSurface
 from ...kernel.remesh.planar.conditions import node_distances

@@ -8,7 +8,7 @@ from ...arrays import BoolArray, ComplexArray, FloatArray, IntArray, dot, norm, 
 from ...meshes.topology import Topology, previous_corners
 from ...meshes.vertex_fans import VertexFans
 from .congruence_mesh import CongruenceMesh
-from .conjugate import form_roots
+from .conjugate_form import form_roots
 from .smoothing import transport
 
 

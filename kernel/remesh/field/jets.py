@@ -266,7 +266,7 @@ def _noise(samples: _Samples) -> FloatArray:
     return (left**2).sum(axis=(1, 2)) / freedom
 
 
-def node_axes(jets: CongruenceJets) -> FloatArray:
+def expected_node_axes(jets: CongruenceJets) -> FloatArray:
     """
     Directions of the node axes that the congruence predicts: normals of the centre surface.
 

@@ -12,7 +12,7 @@ from ...arrays import BoolArray, FloatArray, IntArray
 from ...solvers.factorization import SparseArray, factorize_symmetric
 from ..field.congruence_mesh import CongruenceMesh
 from .boundary_alignment import Alignment
-from .integers import IntegerSolutions, Quadratic, relaxed_minimum, round_minimum
+from .integer_rounding import IntegerSolutions, Quadratic, relaxed_minimum, round_minimum
 from .seams import Seams
 
 ACROSS = 100.0

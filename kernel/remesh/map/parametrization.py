@@ -19,7 +19,7 @@ from ..field.frames import CombedFrames
 from .boundary_alignment import Alignment, align_boundary, no_alignment
 from .coordinate import Coordinate, eliminate, solve_coordinate
 from .injectivity import ChartGradients, untangle
-from .integers import ContradictionError, IntegerSolutions, integer_solutions
+from .integer_rounding import ContradictionError, IntegerSolutions, integer_solutions
 from .seams import Seams
 from .separation import singular_differences
 
