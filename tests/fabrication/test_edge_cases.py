@@ -24,8 +24,8 @@ from spheremesh.fabrication.step.writer import StepOptions, write_step
 from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.errors import InputError
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.optimization.clustering import cluster_radii
-from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.panels import Panels
 from spheremesh.kernel.parts.records import select_parts

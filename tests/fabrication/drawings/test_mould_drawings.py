@@ -13,8 +13,8 @@ from spheremesh.fabrication.drawings.moulds import layout_moulds, write_mould_dr
 from spheremesh.fabrication.model import Model
 from spheremesh.kernel.arrays import norm
 from spheremesh.kernel.errors import InputError
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.optimization.clustering import cluster_radii
-from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.mould_blanks import panel_caps
 from spheremesh.kernel.panels.panels import Panels

@@ -12,8 +12,8 @@ import pytest
 from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.schedules.schedule import mould_rows, schedule_rows, write_schedule
 from spheremesh.kernel.errors import InputError, MissingLibraryError
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.optimization.clustering import cluster_radii
-from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.mould_blanks import panel_caps
 from spheremesh.kernel.panels.panels import (
