@@ -11,7 +11,7 @@ from ...fabrication.schedules import schedule
 from ...fabrication.step import writer as step
 from ...kernel.arrays import IntArray
 from ...kernel.beams.beams import Beams
-from ...kernel.errors import name_ids
+from ...kernel.errors import InputError, name_ids
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.panels import cutting
 from ...kernel.panels.panels import Panels
@@ -133,6 +133,42 @@ def write_step(
     return str(
         step.write_step(panels, path, units, step_units, schema, beams=beams, copies=copies)
     )
+
+
+@node
+def cadquery_solids(
+    panels: Panels | None = None, beams: Beams | None = None, units: Units = "m"
+) -> object:
+    """
+    Panels and beams as a CadQuery assembly, for further modelling.
+
+    Parameters
+    ----------
+    panels : Panels, optional
+        The panels; these or beams are needed.
+    beams : Beams, optional
+        The beams; of beams and panels the former are an assembly within the latter.
+    units : str
+        Model units; the assembly is in millimetres.
+
+    Returns
+    -------
+    cadquery.Assembly
+        A solid (without thickness a face) for every part, named by its id.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import fit_spheres, torus_mesh
+    >>> torus = panels(fit_spheres(torus_mesh(8, 6)), thickness=0.02).panels
+    >>> len(cadquery_solids(torus).children)
+    48
+    """
+    if panels is None:
+        if beams is None:
+            raise InputError("cadquery_solids needs panels or beams")
+        return step.beams_to_cadquery(beams, units)
+    assembly = step.to_cadquery(panels, units)
+    return assembly if beams is None else assembly.add(step.beams_to_cadquery(beams, units))
 
 
 @node

@@ -2,11 +2,13 @@
 
 from typing import Annotated, NamedTuple
 
-from ...kernel.meshes.mesh import Mesh
+from ...kernel.arrays import FloatArray
+from ...kernel.meshes.mesh import Mesh, edge_middles
 from ...kernel.sphere_meshes import central_spheres as central
 from ...kernel.sphere_meshes import fit
 from ...kernel.sphere_meshes import smoothed_spheres as smoothing
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
+from ...kernel.spheres.rows import recenter
 from ..graphs.node import node
 from ..graphs.ports import Port
 
@@ -111,3 +113,29 @@ def principal_spheres(mesh: Mesh) -> PrincipalSpheres:
         Those across the other two sides.
     """
     return PrincipalSpheres(*central.principal_spheres(mesh))
+
+
+@node
+def edge_spheres(mesh: Mesh) -> FloatArray:
+    """
+    Spheres of the edges of a circular mesh: through the circles of both faces.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Every face needs a circumcircle.
+
+    Returns
+    -------
+    (E, 5) float array
+        Rows over the interior edges, whose normals agree with the first face of each. Opposite
+        ones of a quad are bisected by its principal spheres.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import sphere_facts, torus_mesh
+    >>> spheres = edge_spheres(torus_mesh(12, 6, major_radius=3.0))
+    >>> len(spheres), set(sphere_facts(spheres).kinds.tolist())
+    (144, {'sphere'})
+    """
+    return recenter(central.edge_spheres(mesh), -edge_middles(mesh))
