@@ -33,11 +33,11 @@ from ..opennurbs.brep_writer import brep_streams, edge_streams
 from ..opennurbs.render_meshes import MESH_TOLERANCE, panel_meshes
 from ..opennurbs.shell_writer import join_panels
 from ..schedules.panel_text import panel_text
-from .beams import add_beams
-from .blocks import add_definition, add_instance, add_mould_blocks
-from .meshes import to_rhino_mesh
+from .beam_writer import add_beams
+from .block_writer import add_definition, add_instance, add_mould_blocks
+from .mesh_writer import to_rhino_mesh
 from .model import (
-    Place,
+    ModelLayer,
     RhinoModel,
     Untyped,
     add_group,
@@ -265,7 +265,7 @@ def _set_strings(model: RhinoModel, graph_json: str, title: str) -> None:
 class _Mould(NamedTuple):
     """Where the panels of a mould go: their layer, and their group if they have one."""
 
-    place: Place
+    place: ModelLayer
     group: int | None
 
 
@@ -362,7 +362,9 @@ def _add_blocks(
             add_instance(model, block, found.rotations[i], places[i], each)
 
 
-def _add_shell(model: RhinoModel, sound: _Sound, place: Place, largest_gap: float) -> list[str]:
+def _add_shell(
+    model: RhinoModel, sound: _Sound, place: ModelLayer, largest_gap: float
+) -> list[str]:
     """All panels as one Brep; what it leaves open."""
     panels = sound.panels
     meshes = panel_meshes(panels, MESH_TOLERANCE) if sound.render_meshes else None

@@ -17,7 +17,7 @@ from spheremesh.fabrication.drawings.beams import write_dxf
 from spheremesh.fabrication.drawings.moulds import write_mould_drawings
 from spheremesh.fabrication.rhino.writer import RhinoContents, write_3dm
 from spheremesh.fabrication.schedules.schedule import schedule_rows, write_schedule
-from spheremesh.fabrication.solids.panel_shapes import panel_shapes
+from spheremesh.fabrication.solids.opencascade_panels import panel_shapes
 from spheremesh.fabrication.step.check import check_part21
 from spheremesh.fabrication.step.writer import write_step
 from spheremesh.kernel.arrays import FloatArray, norm

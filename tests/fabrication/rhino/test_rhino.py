@@ -15,7 +15,7 @@ import pytest
 import rhino3dm
 
 from spheremesh import nodes
-from spheremesh.fabrication.mesh_files.formats import read_mesh
+from spheremesh.fabrication.mesh_files.reader import read_mesh
 from spheremesh.fabrication.opennurbs.brep_audit import BrepErrors, verify_breps
 from spheremesh.fabrication.opennurbs.brep_reader import read_brep_streams
 from spheremesh.fabrication.opennurbs.render_meshes import (
@@ -24,7 +24,7 @@ from spheremesh.fabrication.opennurbs.render_meshes import (
     mesh_streams,
     panel_meshes,
 )
-from spheremesh.fabrication.rhino import blocks as rhino_blocks
+from spheremesh.fabrication.rhino import block_writer as rhino_blocks
 from spheremesh.fabrication.rhino import writer as rhino
 from spheremesh.fabrication.rhino.writer import RhinoContents, write_3dm
 from spheremesh.fabrication.schedules.panel_text import TEXT_KEYS, panel_text

@@ -8,8 +8,8 @@ import pytest
 import rhino3dm
 
 from spheremesh import nodes
-from spheremesh.fabrication.mesh_files.formats import read_mesh
-from spheremesh.fabrication.rhino.surfaces import _off_seams, nurbs_surface
+from spheremesh.fabrication.mesh_files.reader import read_mesh
+from spheremesh.fabrication.rhino.surface_reader import _off_seams, nurbs_surface
 from spheremesh.fabrication.rhino.writer import RhinoContents, write_3dm
 from spheremesh.kernel.arrays import FloatArray
 from spheremesh.kernel.errors import InputError

@@ -1,4 +1,4 @@
-"""Objects of a Rhino model where they stand, those inside blocks included."""
+"""Reads the objects of a Rhino file where they stand, those inside blocks included."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple

@@ -1,5 +1,5 @@
 """
-Surfaces and polysurfaces of a Rhino file as grids of quads with exact positions.
+Reads surfaces and polysurfaces of a Rhino file as grids of quads with exact positions.
 
 A face that is a whole surface is sampled over its domain. A face trimmed by four edges is
 sampled over the rectangle that they span in (u, v), by Coons; one trimmed by more or fewer is
@@ -16,7 +16,7 @@ from ...kernel.errors import InputError
 from ...kernel.surfaces.nurbs import NurbsSurface, evaluate_nurbs, nearest_parameters
 from ...kernel.tolerances import CLOSED, EDGE_MISS
 from ..polygons import Polygons, join_polygons
-from .objects import RhinoObject
+from .object_reader import RhinoObject
 
 SURFACES: Final = ("Surface", "NurbsSurface", "PlaneSurface", "RevSurface", "Brep", "Extrusion")
 """Classes of rhino3dm that can be sampled."""
