@@ -7,7 +7,6 @@ streams: the setters for them crash rhino3dm at exit.
 """
 
 import os
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from importlib.metadata import version as installed_version
 from pathlib import Path
@@ -18,15 +17,16 @@ import numpy as np
 
 from ...kernel.arrays import FloatArray
 from ...kernel.beams.beams import Beams
-from ...kernel.beams.checks import check_writable_beams
 from ...kernel.errors import InputError
 from ...kernel.meshes.mesh import Mesh
-from ...kernel.panels.checks import RejectedPanel, check_writable
+from ...kernel.panels.checks import NO_PANEL
 from ...kernel.panels.congruent import congruent_panels
 from ...kernel.panels.facts import panel_radii
-from ...kernel.panels.panels import Panels, select_panels
+from ...kernel.panels.panels import Panels
 from ...kernel.parts.colors import UNLABELLED, mould_color, mould_name
+from ...kernel.parts.records import RejectedPart, reject_parts, select_parts
 from ..files import check_suffix, replacing
+from ..model import Model, Written, check_model
 from ..opennurbs.brep_audit import verify_breps
 from ..opennurbs.brep_reader import read_brep_streams
 from ..opennurbs.brep_writer import brep_streams, edge_streams
@@ -67,9 +67,9 @@ _NOTE = (
 
 
 @dataclass(frozen=True)
-class RhinoContents:
+class RhinoOptions:
     """
-    What a Rhino file holds.
+    What a Rhino file holds, and how.
 
     Attributes
     ----------
@@ -83,79 +83,50 @@ class RhinoContents:
         The design, for the layer ``Reference``.
     render_meshes : bool
         Whether Breps and extrusions carry triangles for viewers that cannot mesh them.
+    version : int
+        Version of Rhino: 6, 7 or 8.
+    title, graph_json : str
+        Title of the model, and the graph that made it: kept in the document strings
+        ``spheremesh::title`` and ``spheremesh::graph``.
     """
 
     shape: Shape = "panels"
     layers: tuple[Layer, ...] = ("Edges",)
     reference: Mesh | None = None
     render_meshes: bool = True
+    version: int = 8
+    title: str = ""
+    graph_json: str = ""
 
 
-class RhinoFile(NamedTuple):
-    """
-    What was written.
-
-    Attributes
-    ----------
-    path : Path
-        The file.
-    rejected : tuple of RejectedPanel
-        Panels that it lacks, with their reasons.
-    objects : mapping of str to int
-        Number of objects by openNURBS's names: ``Brep``, ``ArcCurve``, ...
-    notes : tuple of str
-        What else differs from what was asked for: edges that the shell leaves open, moulds
-        whose blocks are not exact, a reference mesh that Rhino refuses.
-    """
-
-    path: Path
-    rejected: tuple[RejectedPanel, ...]
-    objects: Mapping[str, int]
-    notes: tuple[str, ...]
-
-
-_PANELS_AND_EDGES: Final = RhinoContents()
+_PANELS_AND_EDGES: Final = RhinoOptions()
 
 
 def write_3dm(
-    panels: Panels | None,
-    path: str | os.PathLike[str],
-    units: str = "m",
-    graph_json: str = "",
-    version: int = 8,
-    title: str = "",
-    contents: RhinoContents = _PANELS_AND_EDGES,
-    beams: Beams | None = None,
-) -> RhinoFile:
+    model: Model, path: str | os.PathLike[str], options: RhinoOptions = _PANELS_AND_EDGES
+) -> Written:
     """
     Write panels and beams to a Rhino file.
 
     Parameters
     ----------
-    panels : Panels or None
-        The panels; their outer faces are written. None only if there are beams.
+    model : Model
+        At least one panel or beam. Of panels the outer faces are written. Beams are capped
+        extrusions of their flat contours on the layer ``Beams``, with the node axes as lines on
+        the layer ``Axes``, node cylinders on the layer ``Nodes`` and drilling marks on the
+        layer ``Drilling``.
     path : path
         The file; an older one is replaced when the new one is whole.
-    units : str
-        Model units: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
-    graph_json : str
-        The graph that made the panels, kept in the document string ``spheremesh::graph``.
-    version : int
-        Version of Rhino: 6, 7 or 8.
-    title : str
-        Title of the model, kept in the document string ``spheremesh::title``.
-    contents : RhinoContents
-        What the file holds of the panels.
-    beams : Beams, optional
-        Beams, written as capped extrusions of their flat contours on the layer ``Beams``, with
-        the node axes as lines on the layer ``Axes``, node cylinders on the layer ``Nodes`` and
-        drilling marks on the layer ``Drilling``.
+    options : RhinoOptions
+        What the file holds, and how.
 
     Returns
     -------
-    RhinoFile
+    Written
         The path; panels whose Breps are not exact, which are not in the file, with their
-        reasons; the numbers of objects.
+        reasons; the numbers of objects by openNURBS's names (``Brep``, ``ArcCurve``, ...);
+        notes on edges that the shell leaves open, moulds whose blocks are not exact, a
+        reference mesh that Rhino refuses.
 
     Raises
     ------
@@ -175,44 +146,33 @@ def write_3dm(
     differ in the time of day alone.
     """
     check_suffix(path, ".3dm")
-    if version not in VERSIONS:
-        raise InputError(f"unknown Rhino version {version}: use one of {VERSIONS}")
-    if contents.shape not in get_args(Shape) or not set(contents.layers) <= {*get_args(Layer)}:
+    if options.version not in VERSIONS:
+        raise InputError(f"unknown Rhino version {options.version}: use one of {VERSIONS}")
+    if options.shape not in get_args(Shape) or not set(options.layers) <= {*get_args(Layer)}:
         raise InputError(
-            f"unknown shape {contents.shape!r} or one of the layers {contents.layers}: use "
+            f"unknown shape {options.shape!r} or one of the layers {options.layers}: use "
             f"{', '.join(get_args(Shape))}, and {', '.join(get_args(Layer))}"
         )
-    _check_writable(panels, beams, path)
-    model = new_model(units)
-    _set_strings(model, graph_json, title)
-    rejected: tuple[RejectedPanel, ...] = ()
+    check_model(model, path)
+    panels, beams, units = model.panels, model.beams, model.units
+    document = new_model(units)
+    _set_strings(document, options.graph_json, options.title)
+    rejected: tuple[RejectedPart, ...] = ()
     notes: list[str] = []
     if panels is not None:
-        rejected, notes = _add_panels(model, panels, contents, units)
+        rejected, notes = _add_panels(document, panels, options, units)
     if beams is not None:
-        add_beams(model, beams, units, render_meshes=contents.render_meshes)
-    add_views(model, _points(panels, beams))
-    if contents.reference is not None:
-        notes += _add_reference(model, contents.reference)
-    data, objects = encode_model(model, version), count_objects(model)
+        add_beams(document, beams, units, render_meshes=options.render_meshes)
+    add_views(document, _points(panels, beams))
+    if options.reference is not None:
+        notes += _add_reference(document, options.reference)
+    data, objects = encode_model(document, options.version), count_objects(document)
     if len(read_brep_streams(data)) != objects.get("Brep", 0):
         raise InputError(f"cannot write {path}: rhino3dm did not encode the model")
     target = Path(path)
     with replacing(target) as temporary:
         temporary.write_bytes(data)
-    return RhinoFile(target, rejected, objects, tuple(notes))
-
-
-def _check_writable(
-    panels: Panels | None, beams: Beams | None, path: str | os.PathLike[str]
-) -> None:
-    n_beams = beams.n_beams if beams else 0
-    if panels is not None and (panels.n_panels or not n_beams):
-        check_writable(panels, path)
-    elif not n_beams:
-        raise InputError(f"there are no panels or beams to write to {path}")
-    if beams is not None and n_beams:
-        check_writable_beams(beams, path)
+    return Written(target, rejected, tuple(notes), objects)
 
 
 class _Sound(NamedTuple):
@@ -230,7 +190,7 @@ def _streams(panels: Panels, *, render_meshes: bool) -> list[bytes]:
 
 def _judge(
     model: RhinoModel, panels: Panels, *, render_meshes: bool
-) -> tuple[_Sound, tuple[RejectedPanel, ...]]:
+) -> tuple[_Sound, tuple[RejectedPart, ...]]:
     """Panels whose Breps are exact and valid, and the others with their reasons."""
     streams = _streams(panels, render_meshes=render_meshes)
     reasons = [e.reason() for e in verify_breps(streams, panels.spheres, panels.origins)]
@@ -241,16 +201,12 @@ def _judge(
             breps.append(brep)
         elif not reasons[i]:
             reasons[i] = "openNURBS cannot read the Brep or finds it invalid"
-    rejected = tuple(
-        RejectedPanel(panels.ids[i], int(panels.face_ids[i]), reason)
-        for i, reason in enumerate(reasons)
-        if reason
-    )
+    broken = {i: reason for i, reason in enumerate(reasons) if reason}
+    exact, rejected = reject_parts(panels, broken, NO_PANEL)
     if rejected and len(rejected) == panels.n_panels:
         shown = "; ".join(f"{panel.id}: {panel.reason}" for panel in rejected[:8])
         raise InputError(f"none of the {len(rejected)} panels has an exact Brep: {shown}")
-    keep = np.array([not reason for reason in reasons], bool)
-    return _Sound(select_panels(panels, keep), breps, render_meshes), rejected
+    return _Sound(exact, breps, render_meshes), rejected
 
 
 def _set_strings(model: RhinoModel, graph_json: str, title: str) -> None:
@@ -299,26 +255,26 @@ def _panel_attributes(
 
 
 def _add_panels(
-    model: RhinoModel, panels: Panels, contents: RhinoContents, units: str
-) -> tuple[tuple[RejectedPanel, ...], list[str]]:
+    model: RhinoModel, panels: Panels, options: RhinoOptions, units: str
+) -> tuple[tuple[RejectedPart, ...], list[str]]:
     """All that is known of panels; those rejected, and what else is not as asked for."""
-    sound, rejected = _judge(model, panels, render_meshes=contents.render_meshes)
+    sound, rejected = _judge(model, panels, render_meshes=options.render_meshes)
     exact = sound.panels
     moulds = _add_moulds(model, exact)
     attributes = _panel_attributes(model, exact, moulds, units)
     notes: list[str] = []
-    if contents.shape == "panels":
+    if options.shape == "panels":
         for brep, each in zip(sound.breps, attributes, strict=True):
             model.file.Objects.AddBrep(brep, each)
-    elif contents.shape == "blocks":
+    elif options.shape == "blocks":
         _add_blocks(model, sound, moulds, attributes)
     elif exact.n_panels:
         notes += _add_shell(model, sound, moulds[-1].place, model_tolerance(units))
-    if "Edges" in contents.layers:
+    if "Edges" in options.layers:
         _add_edges(model, exact)
-    if "Centres" in contents.layers:
+    if "Centres" in options.layers:
         _add_centers(model, exact)
-    if "Moulds" in contents.layers:
+    if "Moulds" in options.layers:
         notes += add_mould_blocks(model, exact, render_meshes=sound.render_meshes)
     return rejected, notes
 
@@ -344,7 +300,7 @@ def _add_blocks(
     first = found.representatives[found.labels]
     places = panels.origins + found.translations
     members = np.flatnonzero(~is_single & (first == np.arange(panels.n_panels)))
-    chosen = select_panels(panels, np.isin(np.arange(panels.n_panels), members))
+    chosen = select_parts(panels, np.isin(np.arange(panels.n_panels), members))
     local = replace(chosen, origins=np.zeros_like(chosen.origins))
     # What is not exact about its own origin has no block.
     judged, _ = _judge(model, local, render_meshes=sound.render_meshes)

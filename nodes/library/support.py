@@ -12,12 +12,12 @@ from ...kernel.beams.drilling import drill_beams
 from ...kernel.errors import InputError, name_ids
 from ...kernel.meshes.mesh import mean_edge_length
 from ...kernel.parts.findings import findings_report, rejected_report
+from ...kernel.parts.records import RejectedPart
 from ...kernel.remesh.planar.held_nets import planarize_near
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.support import annulus_support as annulus
 from ...kernel.support import node_axes as support
 from ...kernel.support.annuli import Annuli, corner_mismatch, mean_end_depth
-from ...kernel.support.annulus_checks import RejectedBeam
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
 
@@ -282,10 +282,10 @@ def drilling_marks(
     return BeamSet(marked, report)
 
 
-def _warn_of_rejected(rejected: tuple[RejectedBeam, ...], what: str) -> None:
+def _warn_of_rejected(rejected: tuple[RejectedPart, ...], what: str) -> None:
     if rejected:
         warn(
             f"{len(rejected)} {what} cannot be made: edges "
-            f"{name_ids([beam.edge_id for beam in rejected])} "
+            f"{name_ids([beam.element_id for beam in rejected])} "
             f"({rejected[0].id}: {rejected[0].reason})"
         )

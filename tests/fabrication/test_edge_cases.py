@@ -15,39 +15,36 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication.audit.panels import audit_panels
 from spheremesh.fabrication.drawings.beams import write_dxf
 from spheremesh.fabrication.drawings.moulds import write_mould_drawings
-from spheremesh.fabrication.rhino.writer import RhinoContents, write_3dm
+from spheremesh.fabrication.model import Model, Written
+from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
 from spheremesh.fabrication.schedules.schedule import schedule_rows, write_schedule
 from spheremesh.fabrication.solids.opencascade_panels import panel_shapes
 from spheremesh.fabrication.step.check import check_part21
-from spheremesh.fabrication.step.writer import write_step
+from spheremesh.fabrication.step.writer import StepOptions, write_step
 from spheremesh.kernel.arrays import FloatArray, norm
-from spheremesh.kernel.beams.beams import select_beams
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.optimization.clustering import cluster_radii
 from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
-from spheremesh.kernel.panels.panels import Panels, select_panels
+from spheremesh.kernel.panels.panels import Panels
+from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.central import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.kernel.support.annulus_support import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
 
-Writer = Callable[[Panels, Path], Path]
+Writer = Callable[[Model, Path], Written]
 
 
-def write_rhino(panels: Panels, path: Path) -> Path:
-    file = write_3dm(
-        panels, path, contents=RhinoContents(layers=("Edges", "Centres", "Moulds"))
-    )
-    assert file.rejected == file.notes == ()
-    return file.path
+def write_rhino(model: Model, path: Path) -> Written:
+    return write_3dm(model, path, RhinoOptions(layers=("Edges", "Centres", "Moulds")))
 
 
 WRITERS: dict[str, Writer] = {
     "p.step": write_step,
-    "q.step": lambda panels, path: write_step(panels, path, copies="instances"),
+    "q.step": lambda model, path: write_step(model, path, StepOptions(copies="instances")),
     "p.3dm": write_rhino,
     "p.csv": write_schedule,
     "p.json": write_schedule,
@@ -59,7 +56,9 @@ WRITERS: dict[str, Writer] = {
 def write_all(panels: Panels, folder: Path) -> None:
     """Every file; STEP text is sound and every solid valid."""
     for name, write in WRITERS.items():
-        path = write(panels, folder / name)
+        file = write(Model(panels), folder / name)
+        path = file.path
+        assert file.rejected == file.notes == ()
         assert path.stat().st_size > 0
         if path.suffix == ".step":
             assert check_part21(path) == ()
@@ -182,26 +181,26 @@ def test_names_that_files_would_change_are_refused(tmp_path: Path, name: str) ->
         with pytest.raises(
             InputError, match=r"panel 1 is called .*: a name is one line of text"
         ):
-            write(named, tmp_path / file)
+            write(Model(named), tmp_path / file)
     spheres = central_spheres(torus_net(7, 5, 3.0, 1.0))
     beams = cut_beams(annulus_support(spheres, 0.3).annuli, 0.04)[0]
-    beams = select_beams(beams, np.arange(beams.n_beams) < 2)
+    beams = select_parts(beams, np.arange(beams.n_beams) < 2)
     beams = replace(beams, annuli=replace(beams.annuli, ids=(name, "B")))
     with pytest.raises(InputError, match=r"beam 0 is called .*: a name is one line of text"):
-        write_dxf(beams, tmp_path / "b.dxf")
+        write_dxf(Model(beams=beams), tmp_path / "b.dxf")
     assert not list(tmp_path.iterdir())
 
 
 def test_names_of_beams_in_any_script(tmp_path: Path) -> None:
     spheres = central_spheres(torus_net(7, 5, 3.0, 1.0))
     beams = cut_beams(annulus_support(spheres, 0.3).annuli, 0.04)[0]
-    beams = select_beams(beams, np.arange(beams.n_beams) < 2)
+    beams = select_parts(beams, np.arange(beams.n_beams) < 2)
     names = ("Träger 1", "梁-2")
     beams = replace(beams, annuli=replace(beams.annuli, ids=names))
-    path = write_step(None, tmp_path / "b.step", beams=beams)
+    path = write_step(Model(beams=beams), tmp_path / "b.step").path
     assert set(names) < step_names(path)
-    assert "梁-2" in write_dxf(beams, tmp_path / "b.dxf").path.read_text("utf-8")
-    path = write_3dm(None, tmp_path / "b.3dm", beams=beams).path
+    assert "梁-2" in write_dxf(Model(beams=beams), tmp_path / "b.dxf").path.read_text("utf-8")
+    path = write_3dm(Model(beams=beams), tmp_path / "b.3dm").path
     model: Any = rhino3dm.File3dm.Read(str(path))
     found = [
         each.Attributes for each in model.Objects if type(each.Geometry).__name__ == "Extrusion"
@@ -215,13 +214,13 @@ def test_what_no_file_can_hold_is_refused_by_name(tmp_path: Path, name: str) -> 
     panels, _ = cut_panels(squares(0.1, 0.2, 0.3), thickness=0.05)
     write, target = WRITERS[name], tmp_path / name
     with pytest.raises(InputError, match="there are no panels to write to"):
-        write(select_panels(panels, np.zeros(3, bool)), target)
+        write(Model(select_parts(panels, np.zeros(3, bool))), target)
     with pytest.raises(InputError, match=r"2 panels are called 'A' \(faces \[0, 2\]\)"):
-        write(replace(panels, ids=("A", "B", "A")), target)
+        write(Model(replace(panels, ids=("A", "B", "A"))), target)
     inner = panels.inner_corners.copy()
     inner[6] = np.inf
     with pytest.raises(InputError, match=r"panel P0001 \(1 in all\) is not finite"):
-        write(replace(panels, inner_corners=inner), target)
+        write(Model(replace(panels, inner_corners=inner)), target)
     assert not list(tmp_path.iterdir())
 
 
@@ -255,7 +254,9 @@ def test_law_millimetres_are_the_same_in_every_unit(tmp_path: Path) -> None:
     for units, scale in (("m", 1.0), ("mm", 1000.0), ("ft", 1 / 0.3048)):
         panels = roof(scale)
         rows.append(schedule_rows(panels, units))
-        text = write_step(panels, tmp_path / "p.step", units).read_text("ascii")
+        text = write_step(Model(panels, units=units), tmp_path / "p.step").path.read_text(
+            "ascii"
+        )
         found = re.findall(r"CARTESIAN_POINT\('',\(([^)]*)\)\)", text.replace("\n", ""))
         numbers.append(np.array([[float(x) for x in point.split(",")] for point in found]))
     for other in (1, 2):

@@ -9,8 +9,9 @@ import pytest
 from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication.audit.panels import AuditLimits, audit_panels, findings_by_id
 from spheremesh.kernel.panels.cutting import cut_panels
-from spheremesh.kernel.panels.panels import Panels, scale_panels, select_panels
+from spheremesh.kernel.panels.panels import Panels, scale_panels
 from spheremesh.kernel.parts.findings import Finding, findings_report
+from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
 
@@ -149,7 +150,7 @@ def test_no_panels_are_audited_too() -> None:
     panels, rejected = cut_panels(squares(1.5))
     assert panels.n_panels == 0
     assert codes(audit_panels(panels, "m", rejected)) == {("P100", "P0000")}
-    assert audit_panels(select_panels(sound(), np.zeros(3, bool))) == ()
+    assert audit_panels(select_parts(sound(), np.zeros(3, bool))) == ()
 
 
 def test_reports_are_plain_and_sorted() -> None:

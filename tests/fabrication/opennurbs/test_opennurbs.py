@@ -21,7 +21,8 @@ from spheremesh.fabrication.opennurbs.stream_reader import UnreadableError
 from spheremesh.kernel.arrays import FloatArray, IntArray
 from spheremesh.kernel.meshes.mesh import Mesh
 from spheremesh.kernel.panels.cutting import EdgeMode, cut_panels
-from spheremesh.kernel.panels.panels import Panels, panel_arcs, panel_areas, select_panels
+from spheremesh.kernel.panels.panels import Panels, panel_arcs, panel_areas
+from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres.arcs import arc_points
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
@@ -208,7 +209,7 @@ def specimen(request: pytest.FixtureRequest) -> Specimen:
     degree, has_doubles = request.param
     is_chosen = (panels.degrees == degree) & (np.abs(panels.spheres[:, 0]) > 0.05)
     ids = np.flatnonzero(is_chosen)[:1]
-    panels = select_panels(panels, np.isin(np.arange(panels.n_panels), ids))
+    panels = select_parts(panels, np.isin(np.arange(panels.n_panels), ids))
     meshes = replace(panel_meshes(panels, 0.002), has_doubles=has_doubles)
     return panels, brep_streams(panels, meshes)[0]
 
@@ -418,8 +419,8 @@ def test_moved_vertex_of_the_mesh(specimen: Specimen) -> None:
 def test_moved_vertex_of_a_flat_mesh(has_doubles: bool) -> None:  # noqa: FBT001
     """Where normals tell nothing."""
     panels = FAMILIES["roof"]()
-    panels = select_panels(panels, panels.spheres[:, 0] == 0)
-    panels = select_panels(panels, np.arange(panels.n_panels) == 1)
+    panels = select_parts(panels, panels.spheres[:, 0] == 0)
+    panels = select_parts(panels, np.arange(panels.n_panels) == 1)
     meshes = replace(panel_meshes(panels, 0.002), has_doubles=has_doubles)
     (stream,) = brep_streams(panels, meshes)
     assert reason(panels, stream) == ""
