@@ -185,7 +185,6 @@ class TextPolygons:
         ----------
         line : int
         words : list of str
-            Vertex numbers.
         """
         self.corner_words += words
         self.degrees.append(len(words))

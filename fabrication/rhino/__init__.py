@@ -6,6 +6,7 @@ block_writer    Writes blocks: one piece of geometry, set into the model many ti
 mesh_writer     Writes meshes; faces with more than four corners are ngons.
 model           A model under construction: layers, materials, groups, views, ids.
 object_reader   Reads objects where they stand, those inside blocks included.
+panel_writer    Writes panels: exact trimmed spheres, edges as arcs, user text.
 reader          Reads a file: meshes with ngons, or grids on surfaces.
 surface_reader  Reads surfaces and polysurfaces as grids of quads with exact positions.
 writer          Writes a file of panels and beams.

@@ -26,7 +26,6 @@ def placed_objects(model: RhinoObject, layer: str) -> list[PlacedObject]:
     Parameters
     ----------
     model : rhino3dm.File3dm
-        The model.
     layer : str
         Full path of a layer: only what is on it and on its sublayers; empty for all. Objects
         in a block count where they are themselves, and where the instance is.

@@ -40,7 +40,6 @@ class BeamGeometry:
     arcs : dict of int to (Arcs, Arcs)
         Outer and inner edges of the lower (0) and the upper (2) side.
     circles : dict of int to (ArcCircles, ArcCircles)
-        Their circles.
     cuts : dict of (int, int) to CutEdges
         Edges across the thickness, by their levels.
     tolerances : (B,) float array

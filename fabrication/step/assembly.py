@@ -114,7 +114,6 @@ class StepHeader:
     Attributes
     ----------
     schema : {"AP214IS", "AP242DIS"}
-        Application protocol.
     unit : str
         Unit of length, ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
     millimeters : float

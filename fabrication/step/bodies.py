@@ -104,7 +104,6 @@ class Body:
     Attributes
     ----------
     layout : BodyLayout
-        Its topology.
     numbers : (n,) float array
         Its numbers, finite, in the unit of the file.
     """

@@ -45,7 +45,6 @@ class StepOptions:
     units : str
         Unit that the file declares: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
     schema : {"AP214IS", "AP242DIS"}
-        Application protocol.
     title : str
         Title in the header of the file.
     copies : {"shapes", "instances"}
@@ -75,7 +74,6 @@ def write_step(
     path : path
         File to write. It is replaced when the new one is complete.
     options : StepOptions
-        How.
 
     Returns
     -------
