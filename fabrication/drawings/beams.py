@@ -79,7 +79,6 @@ def write_dxf(
     path : path
         File to write. It is replaced when the new one is complete.
     options : SheetOptions
-        The sheets.
 
     Returns
     -------
@@ -181,7 +180,6 @@ def text_width(text: str) -> float:
     Parameters
     ----------
     text : str
-        The text.
 
     Returns
     -------

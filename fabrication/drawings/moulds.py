@@ -46,7 +46,6 @@ class Label:
     Attributes
     ----------
     text : str
-        The text.
     at : tuple of float
         Where its baseline begins (or its middle is), in mm.
     height : float
@@ -73,7 +72,6 @@ class Drawing:
     rims : list of tuple of float
         Centre x, y and radius of each blank.
     labels : list of Label
-        The texts.
     width, height : float
         Size: x from 0 to the width, y from minus the height to 0.
     """

@@ -41,7 +41,6 @@ class StreamReader:
     Parameters
     ----------
     data : bytes
-        The stream.
 
     Attributes
     ----------
@@ -252,7 +251,6 @@ def inflated(data: bytes, buffer: BufferPlace) -> bytes:
     Parameters
     ----------
     data : bytes
-        The stream.
     buffer : BufferPlace
 
     Returns

@@ -34,8 +34,8 @@ from ...kernel.arrays import FloatArray, dot, norm
 from ...kernel.beams.beams import Beams, scale_beams
 from ...kernel.beams.end_edges import CutEdges
 from ...kernel.spheres.arcs import circle_axes
-from .beam_numbers import LEVELS, BeamNumbers, beam_numbers
-from .shape_parts import (
+from .beam_geometry import LEVELS, BeamGeometry, beam_geometry
+from .opencascade_parts import (
     BUILDER,
     arc_curves,
     make_edge,
@@ -68,7 +68,7 @@ class _Sides:
 class _Solids:
     """What the solids of a batch of beams are made of, about their rounded origins."""
 
-    numbers: BeamNumbers
+    numbers: BeamGeometry
     sides: dict[int, _Sides]
     parameters: dict[tuple[int, int], tuple[FloatArray, FloatArray]]
     tolerances: list[float]
@@ -92,7 +92,6 @@ def beam_shapes(beams: Beams, scale: float = 1.0) -> list[TopoDS_Shape]:
     Parameters
     ----------
     beams : Beams
-        B beams.
     scale : float
         Units of the shapes per model unit; OpenCASCADE's tolerances suit millimetres.
 
@@ -109,7 +108,7 @@ def beam_shapes(beams: Beams, scale: float = 1.0) -> list[TopoDS_Shape]:
     """
     if beams.n_beams == 0:
         return []
-    solids = _solids(beam_numbers(scale_beams(beams, scale)))
+    solids = _solids(beam_geometry(scale_beams(beams, scale)))
     shapes: list[TopoDS_Shape] = []
     for beam, place in enumerate(solids.numbers.places.tolist()):
         block = _block(solids, beam)
@@ -119,7 +118,7 @@ def beam_shapes(beams: Beams, scale: float = 1.0) -> list[TopoDS_Shape]:
     return shapes
 
 
-def _solids(numbers: BeamNumbers) -> _Solids:
+def _solids(numbers: BeamGeometry) -> _Solids:
     with np.errstate(invalid="ignore"):
         parameters = {
             levels: _cut_parameters(
@@ -131,7 +130,7 @@ def _solids(numbers: BeamNumbers) -> _Solids:
     return _Solids(numbers, sides, parameters, numbers.tolerances.tolist())
 
 
-def _sides(numbers: BeamNumbers, level: int) -> _Sides:
+def _sides(numbers: BeamGeometry, level: int) -> _Sides:
     curves: list[list[Geom_Curve]] = []
     lengths: list[list[float]] = []
     starts: list[FloatArray] = []

@@ -35,8 +35,7 @@ from ...kernel.arrays import FloatArray, IntArray, norm
 from ...kernel.panels.panels import Panels, inner_panel_arcs, panel_arcs
 from ...kernel.spheres.arcs import ArcCircles, Arcs, arc_circles, circle_axes
 from ...kernel.spheres.rows import center_radius
-from .panel_numbers import CONFUSION, panel_tolerances, panels_in_place, surface_frames
-from .shape_parts import (
+from .opencascade_parts import (
     BUILDER,
     arc_curves,
     make_edge,
@@ -47,6 +46,7 @@ from .shape_parts import (
     placement,
     quintic_poles,
 )
+from .panel_geometry import CONFUSION, panel_tolerances, panels_in_place, surface_frames
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,6 @@ def panel_shapes(panels: Panels, scale: float = 1.0) -> list[TopoDS_Shape]:
     Parameters
     ----------
     panels : Panels
-        P panels.
     scale : float
         Units of the shapes per model unit; OpenCASCADE's tolerances suit millimetres.
 
