@@ -24,11 +24,11 @@ from ..sphere_meshes.sphere_mesh import SphereMesh, intersection_angles, vertex_
 from ..spheres.circles import circle_pencils, face_circles, pencil_spheres
 from ..spheres.rows import recenter, rescale
 from ..tolerances import COMMON_VERTEX, ENERGY_CHANGE, RESTING_CHANGE, STAGE_CHANGE
+from .angle_minimization import check_angle_options, minimize_angles, pencil_angles
 from .energies.freedom import Boundary, Freedom, Interior, vertex_freedom
 from .energies.minimize import energy_problem, minimize_energy
 from .energies.setting import Setting, Unknowns, energy_setting, first_unknowns
 from .energies.table import EnergyWeights
-from .pencil import check_angle_options, minimize_angles, pencil_angles
 
 Corners = Literal["soft", "common", "own"]
 
@@ -144,7 +144,6 @@ def optimize_spheres(
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        Mesh and spheres to start from.
     weights : EnergyWeights, optional
         Weights of the terms.
     conditions : Conditions, optional
@@ -201,9 +200,7 @@ def move_vertices(
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        Mesh and spheres to start from.
     weights : EnergyWeights
-        Weights of the terms.
     conditions : Conditions
         What has to be respected; its tolerance bounds every displacement.
 

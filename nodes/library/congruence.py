@@ -17,45 +17,63 @@ from ...kernel.meshes.mesh import Mesh, mean_edge_length
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.tolerances import VERTEX_MISS
 from ..graphs.node import node, warn
+from .arrays import (
+    FaceDistances,
+    FaceMarks,
+    FacePoints,
+    Points,
+    VertexDistances,
+    VertexMarks,
+    VertexPoints,
+    VertexSpheres,
+)
 
 
 class Envelope(NamedTuple):
     """The two surfaces that a sphere congruence envelops, a point of each per face."""
 
-    points_plus: FloatArray
-    points_minus: FloatArray
-    is_real: BoolArray
+    points_plus: FacePoints
+    points_minus: FacePoints
+    is_real: FaceMarks
 
 
 class MirrorPoints(NamedTuple):
     """The second envelope of a sphere mesh."""
 
-    points: FloatArray
-    residuals: FloatArray
-    is_valid: BoolArray
+    points: VertexPoints
+    residuals: VertexDistances
+    is_valid: VertexMarks
 
 
 class ContactPoints(NamedTuple):
     """The points nearest to the spheres around each vertex."""
 
-    points: FloatArray
-    residuals: FloatArray
+    points: VertexPoints
+    residuals: VertexDistances
 
 
 class CircularEnvelopes(NamedTuple):
     """How far the two envelopes of a sphere mesh are from circular nets."""
 
-    plus: FloatArray
-    minus: FloatArray
+    plus: FaceDistances
+    minus: FaceDistances
+
+
+class SmoothEnvelope(NamedTuple):
+    """The two surfaces that a smooth congruence envelops."""
+
+    points_plus: Points
+    points_minus: Points
+    is_real: BoolArray
 
 
 @node
 def sphere_congruence(
     mesh: Mesh,
     kind: Literal["central", "tangent", "principal"] = "central",
-    offset: float | FloatArray | None = None,
+    offset: float | VertexDistances | None = None,
     which: Literal["first", "second"] = "first",
-) -> FloatArray:
+) -> VertexSpheres:
     """
     A sphere at every vertex of a surface mesh, touching the surface there.
 
@@ -89,7 +107,7 @@ def sphere_congruence(
 
 @node
 def envelope(
-    mesh: Mesh, spheres: FloatArray, order: Literal["nearest", "oriented"] = "nearest"
+    mesh: Mesh, spheres: VertexSpheres, order: Literal["nearest", "oriented"] = "nearest"
 ) -> Envelope:
     """
     Points in which the spheres at the corners of each face meet: the two enveloped surfaces.
@@ -131,13 +149,13 @@ def envelope(
 
 @node
 def smooth_envelope(
-    centers: FloatArray,
+    centers: Points,
     radii: FloatArray,
-    centers_u: FloatArray,
-    centers_v: FloatArray,
+    centers_u: Points,
+    centers_v: Points,
     radii_u: FloatArray,
     radii_v: FloatArray,
-) -> Envelope:
+) -> SmoothEnvelope:
     """
     Points in which the spheres of a smooth congruence touch the two surfaces they envelop.
 
@@ -164,7 +182,7 @@ def smooth_envelope(
     [[0.0, 0.0, 1.0]]
     """
     jet = SphereJet(centers, radii, centers_u, centers_v, radii_u, radii_v)
-    return Envelope(*envelope_points(jet), has_real_envelopes(jet))
+    return SmoothEnvelope(*envelope_points(jet), has_real_envelopes(jet))
 
 
 @node

@@ -6,10 +6,11 @@ from typing import Annotated, Any, Literal, NamedTuple
 from ...fabrication.drawings import beams as dxf
 from ...fabrication.drawings import moulds as mould_drawings
 from ...fabrication.files import check_suffix, replacing
+from ...fabrication.model import Model, Written
 from ...fabrication.rhino import writer as rhino
 from ...fabrication.schedules import schedule
+from ...fabrication.solids.cadquery_assembly import beams_to_cadquery, to_cadquery
 from ...fabrication.step import writer as step
-from ...kernel.arrays import IntArray
 from ...kernel.beams.beams import Beams
 from ...kernel.errors import InputError, name_ids
 from ...kernel.meshes.mesh import Mesh
@@ -20,6 +21,7 @@ from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...viewer.render import render_image
 from ..graphs.node import node, running_graph, warn
 from ..graphs.ports import Port, Units, WritePath
+from .arrays import FaceLabels
 
 Length = Annotated[float, Port(min=0)]
 
@@ -37,7 +39,7 @@ def panels(
     edges: Literal["bisector", "intersection"] = "bisector",
     thickness: Length = 0.0,
     joint_gap: Length = 0.0,
-    labels: IntArray | None = None,
+    labels: FaceLabels | None = None,
     side: Literal["inward", "outward", "centred"] = "inward",
     layer: Literal["offset", "power"] = "offset",
 ) -> PanelSet:
@@ -82,7 +84,7 @@ def panels(
     if rejected:
         warn(
             f"{len(rejected)} panels cannot be made: faces "
-            f"{name_ids([panel.face_id for panel in rejected])} "
+            f"{name_ids([panel.element_id for panel in rejected])} "
             f"({rejected[0].id}: {rejected[0].reason})"
         )
     report = {
@@ -130,9 +132,8 @@ def write_step(
     str
         The path.
     """
-    return str(
-        step.write_step(panels, path, units, step_units, schema, beams=beams, copies=copies)
-    )
+    options = step.StepOptions(step_units, schema, copies=copies)
+    return _tell(step.write_step(Model(panels, beams, units), path, options))
 
 
 @node
@@ -166,9 +167,9 @@ def cadquery_solids(
     if panels is None:
         if beams is None:
             raise InputError("cadquery_solids needs panels or beams")
-        return step.beams_to_cadquery(beams, units)
-    assembly = step.to_cadquery(panels, units)
-    return assembly if beams is None else assembly.add(step.beams_to_cadquery(beams, units))
+        return beams_to_cadquery(beams, units)
+    assembly = to_cadquery(panels, units)
+    return assembly if beams is None else assembly.add(beams_to_cadquery(beams, units))
 
 
 @node
@@ -213,17 +214,9 @@ def write_3dm(
         The path. The document carries the graph that is running.
     """
     mesh = reference.mesh if isinstance(reference, SphereMesh) else reference
-    contents = rhino.RhinoContents(shape, layers, mesh)
-    file = rhino.write_3dm(
-        panels, path, units, running_graph(), version, contents=contents, beams=beams
-    )
-    if file.rejected:
-        shown = "; ".join(f"{panel.id}: {panel.reason}" for panel in file.rejected[:8])
-        more = f"; {len(file.rejected) - 8} more" if len(file.rejected) > 8 else ""
-        warn(f"{len(file.rejected)} panels are not in {file.path.name}: {shown}{more}")
-    for note in file.notes:
-        warn(f"{file.path.name}: {note}")
-    return str(file.path)
+    graph = running_graph()
+    options = rhino.RhinoOptions(shape, layers, mesh, version=version, graph_json=graph)
+    return _tell(rhino.write_3dm(Model(panels, beams, units), path, options))
 
 
 @node
@@ -256,11 +249,8 @@ def write_dxf(
         The path. Layers: CUT, ENGRAVE (ids, nodes, bevels of the ends in degrees), DRILL
         (drilling marks) and SHEET.
     """
-    file = dxf.write_dxf(beams, path, units, sheet, spacing)
-    if file.oversize:
-        shown = ", ".join(file.oversize[:8])
-        warn(f"{len(file.oversize)} beams are larger than the sheet: {shown}")
-    return str(file.path)
+    options = dxf.SheetOptions(sheet, spacing)
+    return _tell(dxf.write_dxf(Model(beams=beams, units=units), path, options))
 
 
 @node
@@ -290,7 +280,7 @@ def write_schedule(
     str
         The path.
     """
-    return str(schedule.write_schedule(panels, path, units, beams))
+    return _tell(schedule.write_schedule(Model(panels, beams, units), path))
 
 
 @node
@@ -312,7 +302,19 @@ def write_mould_drawings(panels: Panels, path: WritePath, units: Units = "m") ->
     str
         The path.
     """
-    return str(mould_drawings.write_mould_drawings(panels, path, units))
+    return _tell(mould_drawings.write_mould_drawings(Model(panels, units=units), path))
+
+
+def _tell(written: Written) -> str:
+    """Warn of what differs from what was asked for; the path."""
+    name, rejected = written.path.name, written.rejected
+    if rejected:
+        shown = "; ".join(f"{part.id}: {part.reason}" for part in rejected[:8])
+        more = f"; {len(rejected) - 8} more" if len(rejected) > 8 else ""
+        warn(f"{len(rejected)} panels are not in {name}: {shown}{more}")
+    for note in written.notes:
+        warn(f"{name}: {note}")
+    return str(written.path)
 
 
 @node

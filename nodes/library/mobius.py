@@ -1,6 +1,6 @@
-"""Möbius transforms: they keep spheres, circles and the angles between them."""
+"""Möbius transforms, and the coordinates on which they act."""
 
-from typing import Annotated, TypeVar
+from typing import Annotated, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -9,17 +9,18 @@ from ...kernel.errors import InputError, name_ids
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.sphere_meshes.mobius import map_mesh, map_sphere_mesh
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
-from ...kernel.spheres import mobius_group, mobius_images
+from ...kernel.spheres import minkowski, mobius_group, mobius_images, pentaspherical
 from ...kernel.spheres.arcs import Arcs
 from ...kernel.spheres.circles import Circles
 from ..graphs.node import node
 from ..graphs.ports import Port
+from .arrays import Matrix, Points, Sphere, Spheres, Transform, Vector
 
-Geometry = TypeVar("Geometry", SphereMesh, Mesh, Circles, Arcs, FloatArray)
+Geometry = TypeVar("Geometry", SphereMesh, Mesh, Circles, Arcs, Points | Spheres)
 
 
 @node
-def inversion(center: FloatArray, radius: Annotated[float, Port(min=0)] = 1.0) -> FloatArray:
+def inversion(center: Vector, radius: Annotated[float, Port(min=0)] = 1.0) -> Transform:
     """
     Inversion in a sphere: turns the model inside out about a point.
 
@@ -41,9 +42,9 @@ def inversion(center: FloatArray, radius: Annotated[float, Port(min=0)] = 1.0) -
 @node
 def similarity(
     scale: Annotated[float, Port(min=0)] = 1.0,
-    rotation: FloatArray | None = None,
-    translation: FloatArray | None = None,
-) -> FloatArray:
+    rotation: Vector | Matrix | None = None,
+    translation: Vector | None = None,
+) -> Transform:
     """
     Scaling, then rotation, both about the origin, then translation.
 
@@ -68,7 +69,7 @@ def similarity(
 
 
 @node
-def reflection(mirror: FloatArray) -> FloatArray:
+def reflection(mirror: Sphere) -> Transform:
     """
     Reflection in a plane, or inversion in a sphere, given as a row.
 
@@ -92,7 +93,7 @@ def reflection(mirror: FloatArray) -> FloatArray:
 
 
 @node
-def inverse(transform: FloatArray) -> FloatArray:
+def inverse(transform: Transform) -> Transform:
     """
     The transform that undoes another.
 
@@ -115,7 +116,7 @@ def inverse(transform: FloatArray) -> FloatArray:
 
 
 @node
-def sent_to_infinity(points: FloatArray, transform: FloatArray) -> BoolArray:
+def sent_to_infinity(points: Points, transform: Transform) -> BoolArray:
     """
     Which points a transform sends to infinity: `apply_mobius` refuses them.
 
@@ -138,7 +139,7 @@ def sent_to_infinity(points: FloatArray, transform: FloatArray) -> BoolArray:
 
 
 @node
-def compose(transforms: list[FloatArray]) -> FloatArray:
+def compose(transforms: list[Transform]) -> Transform:
     """
     One transform that does what several do one after another.
 
@@ -156,7 +157,7 @@ def compose(transforms: list[FloatArray]) -> FloatArray:
 
 
 @node
-def apply_mobius(geometry: Geometry, transform: FloatArray) -> Geometry:
+def apply_mobius(geometry: Geometry, transform: Transform) -> Geometry:
     """
     Carry geometry through a transform; the angles between spheres stay as they are.
 
@@ -193,3 +194,129 @@ def apply_mobius(geometry: Geometry, transform: FloatArray) -> Geometry:
     if rows.shape[1] == 3:
         return mobius_images.map_points(rows, transform)
     return mobius_images.map_spheres(rows, transform)
+
+
+class Poles(NamedTuple):
+    """Poles of spheres with respect to the unit 3-sphere."""
+
+    poles: FloatArray
+    is_infinite: BoolArray
+
+
+@node
+def stereographic(points: Points) -> FloatArray:
+    """
+    Stereographic image of points on the unit 3-sphere, from its north pole.
+
+    Parameters
+    ----------
+    points : (N, 3) float array
+
+    Returns
+    -------
+    (N, 4) float array
+        Points of norm 1.
+
+    Examples
+    --------
+    >>> stereographic(np.array([[1.0, 0, 0], [0, 0, 0]])).tolist()
+    [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0]]
+    """
+    return pentaspherical.stereographic(points)
+
+
+@node
+def inverse_stereographic(points: FloatArray) -> Points:
+    """
+    Central projection from the north pole of the unit 3-sphere back to space.
+
+    Parameters
+    ----------
+    points : (N, 4) float array
+        Points of the 3-sphere, or poles of spheres, whose centres come out.
+
+    Returns
+    -------
+    (N, 3) float array
+        Points; infinite for the north pole.
+
+    Examples
+    --------
+    >>> inverse_stereographic(stereographic(np.array([[1.0, 2, 2]]))).round(9).tolist()
+    [[1.0, 2.0, 2.0]]
+    """
+    return pentaspherical.inverse_stereographic(points)
+
+
+@node
+def poles(spheres: Spheres) -> Poles:
+    """
+    Poles of the stereographic images of spheres: the points of projective four-space.
+
+    Parameters
+    ----------
+    spheres : (N, 5) float array
+        Rows of any scale.
+
+    Returns
+    -------
+    poles : (N, 4) float array
+        Points; directions of those at infinity.
+    is_infinite : (N,) bool array
+        Where the image is a great sphere.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import sphere_rows
+    >>> found = poles(sphere_rows(np.array([[1.0, 2, 3]]), 2.0)).poles
+    >>> inverse_stereographic(found).round(9).tolist()
+    [[1.0, 2.0, 3.0]]
+    """
+    return Poles(*pentaspherical.pole(spheres))
+
+
+@node
+def pentaspherical_coordinates(spheres: Spheres) -> FloatArray:
+    """
+    Coordinates (B, C - A, C + A) of spheres, on which Möbius transforms act as matrices.
+
+    Parameters
+    ----------
+    spheres : (N, 5) float array
+        Rows (A, B, C).
+
+    Returns
+    -------
+    (N, 5) float array
+        Of the same Minkowski product.
+
+    Examples
+    --------
+    >>> pentaspherical_coordinates(np.array([[0.0, 0, 0, 1, 3]])).tolist()
+    [[0.0, 0.0, 1.0, 3.0, 3.0]]
+    """
+    return pentaspherical.pentaspherical(spheres)
+
+
+@node
+def polar_hyperplanes(spheres: Spheres) -> FloatArray:
+    """
+    Coefficients of the rows that are orthogonal to spheres.
+
+    Parameters
+    ----------
+    spheres : (N, 5) float array
+        Rows of spheres, planes or points.
+
+    Returns
+    -------
+    (N, 5) float array
+        Numbers h with h·s = 0 for the rows s of all spheres orthogonal to the given one; for a
+        point those through it.
+
+    Examples
+    --------
+    >>> polar_hyperplanes(np.array([[0.0, 0, 0, 1, 3]])).tolist()
+    [[-6.0, 0.0, 0.0, 1.0, -0.0]]
+    """
+    return minkowski.minkowski_gradient(spheres)
