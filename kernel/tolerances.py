@@ -72,6 +72,9 @@ AT_INFINITY: Final = 1e-6
 STEP_MODEL: Final = 0.01
 """A Gauss-Newton step is solved until its model would gain no more than this share."""
 
+RESTING_MODEL: Final = 1e-3
+"""The same in a flat valley, where what is left of a step would decide where a descent ends."""
+
 ROUNDED_DIRECTION: Final = 1e-28
 """A squared gradient below this share of the first is rounding."""
 
@@ -80,9 +83,6 @@ AT_BOUND: Final = 1e-9
 
 ENERGY_CHANGE: Final = 1e-6
 """A descent has converged when a step lowers the energy by less than this share."""
-
-RESTING_CHANGE: Final = 1e-9
-"""A descent in a flat valley is at rest when a step lowers the energy by less than this."""
 
 STAGE_CHANGE: Final = 1e-4
 """A descent that others follow may end at this relative change of the energy."""

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray, dot
+from ..tolerances import STEP_MODEL
 from .blocks import JacobianPattern, Layout, diagonal_blocks, jacobian_matrix
 from .conjugate_gradients import truncated_step
 from .factorization import solve_definite
@@ -80,7 +81,9 @@ def linearization(
     )
 
 
-def damped_step(problem: Linearization, damping: float) -> DampedStep:
+def damped_step(
+    problem: Linearization, damping: float, share: float = STEP_MODEL
+) -> DampedStep:
     """
     Step that minimises ``|r + J x|² + μ σ |x|²``.
 
@@ -90,6 +93,8 @@ def damped_step(problem: Linearization, damping: float) -> DampedStep:
         The problem.
     damping : float
         μ; the scale σ is the mean of the diagonal of ``JᵀJ``.
+    share : float
+        Gain of the model that a step may leave out, as in `truncated_step`.
 
     Returns
     -------
@@ -111,7 +116,7 @@ def damped_step(problem: Linearization, damping: float) -> DampedStep:
 
     budget = MAX_OPERATIONS // max(2 * jacobian.nnz, 1)
     step, is_settled = truncated_step(
-        _product, _precondition, right, int(min(MAX_ITERATIONS, budget))
+        _product, _precondition, right, int(min(MAX_ITERATIONS, budget)), share
     )
     if not is_settled and len(right) <= MAX_FACTORIZED:
         step = solve_definite(jacobian.T @ jacobian, shift, right)
