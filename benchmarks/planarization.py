@@ -16,7 +16,7 @@ from scipy.interpolate import CubicSpline
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
-from spheremesh.kernel.congruences.smooth import sphere_congruence, touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import sphere_congruence, touching_spheres
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.remesh.field.relax import CongruenceQuality, relax_congruence
 from spheremesh.kernel.remesh.planar.planarize import axis_angles, measure_nodes, planarize

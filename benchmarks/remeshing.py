@@ -16,7 +16,7 @@ from scipy.spatial import KDTree
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, IntArray, norm, unit
-from spheremesh.kernel.congruences.smooth import touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import touching_spheres
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.tessellation import tessellate

@@ -46,7 +46,7 @@ from spheremesh.kernel.panels.panels import (
     panel_areas,
     panel_volumes,
 )
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.spheres.arcs import (
     Arcs,
     arc_lengths,

@@ -138,7 +138,7 @@ def _pixels(
     counts = np.clip(np.ceil(y.max(axis=1)), 0, height).astype(np.int64) - first
     counts[(x.max(axis=1) < 0) | (x.min(axis=1) > width)] = 0
     sides = _Sides.of(x, y)
-    load = np.cumsum(counts * (np.minimum(np.ptp(x, axis=1), width) / 2 + 4))
+    load = np.cumsum(counts * (np.minimum(x.max(axis=1) - x.min(axis=1), width) / 2 + 4))
     starts = np.searchsorted(load, np.arange(0, float(load[-1]) if len(load) else 0, _BATCH))
     for begin, end in pairwise([*starts.tolist(), len(triangles)]):
         chosen: IntArray = np.arange(int(begin), int(end))

@@ -8,7 +8,7 @@ from ..kernel.arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..kernel.errors import InputError
 from ..kernel.panels.panels import Panels
 from ..kernel.panels.tessellation import PanelTriangles, surface_rows, tessellate
-from ..kernel.spheres.rows import evaluate, normals
+from ..kernel.spheres.incidence import evaluate, normals
 from .camera import Camera, pixel_rays
 
 JOINT_WIDTH = 0.01

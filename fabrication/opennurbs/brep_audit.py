@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...kernel.arrays import BoolArray, FloatArray, IntArray, dot, norm
-from ...kernel.spheres.rows import minkowski, normals, signed_distance
+from ...kernel.spheres.incidence import normals, signed_distance
+from ...kernel.spheres.minkowski import minkowski
 from ...kernel.tolerances import EPSILON, EXACT_BREP
 from .brep_evaluation import (
     distances_to_edge,

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...kernel.arrays import BoolArray, FloatArray, dot, norm
-from ...kernel.spheres.rows import normals, signed_distance
+from ...kernel.spheres.incidence import normals, signed_distance
 from ...kernel.tolerances import SINGLE_EPSILON
 from .brep_layout import FaceMesh
 from .stream_reader import BufferPlace, inflated

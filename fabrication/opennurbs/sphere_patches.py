@@ -17,7 +17,7 @@ import numpy as np
 from ...kernel.arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ...kernel.panels.panels import Panels
 from ...kernel.spheres.arcs import Arcs, arc_points
-from ...kernel.spheres.rows import normals, project
+from ...kernel.spheres.incidence import normals, project
 
 _MARGIN = 0.02
 """How far the patch reaches beyond its trims, relative to its size."""

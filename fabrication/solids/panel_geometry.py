@@ -9,7 +9,7 @@ from ...kernel.errors import InputError
 from ...kernel.panels.congruent import CongruentPanels
 from ...kernel.panels.panels import Panels, move_origins, scale_panels
 from ...kernel.spheres.arcs import Arcs
-from ...kernel.spheres.rows import signed_distance
+from ...kernel.spheres.incidence import signed_distance
 from ...kernel.tolerances import EPSILON
 
 CONFUSION = 1e-7

@@ -23,10 +23,10 @@ from ..meshes.mesh import Mesh, face_centroids, mean_edge_length
 from ..solvers.symmetric import solve_symmetric, symmetric_pattern
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.circles import Circles, circle_pencils, face_circles, pencil_spheres
-from ..spheres.rows import minkowski
+from ..spheres.minkowski import minkowski
 from ..tolerances import ANGLE_STEP, DAMPING, ENERGY_ROUNDING
 
-MAX_ITERATIONS = 1000
+_MAX_ITERATIONS = 1000
 
 
 @dataclass(frozen=True)
@@ -351,7 +351,7 @@ def _minimize(coupling: PencilCoupling, density: EdgeEnergy, start: FloatArray) 
     pattern = symmetric_pattern(coupling.faces, len(start))
     energies = [_energy(coupling, density, start)]
     angles, damping, largest, converged = start, DAMPING, np.inf, False
-    while not converged and len(energies) <= MAX_ITERATIONS and damping < 1 / DAMPING:
+    while not converged and len(energies) <= _MAX_ITERATIONS and damping < 1 / DAMPING:
         gradient, diagonal, mixed = _derivatives(coupling, density, angles)
         accepted = False
         while not accepted and damping < 1 / DAMPING:

@@ -19,7 +19,7 @@ from .factorization import solve_definite
 from .levenberg_marquardt import DampedStep
 from .products import normal_product
 
-MAX_ITERATIONS = 300
+_MAX_ITERATIONS = 300
 MAX_OPERATIONS = 2 * 10**9
 """Entries of J visited by the conjugate gradients of one step: a large problem gets rougher
 steps, and more of them."""
@@ -111,7 +111,7 @@ def damped_step(problem: Linearization, damping: float) -> DampedStep:
 
     budget = MAX_OPERATIONS // max(2 * jacobian.nnz, 1)
     step, is_settled = truncated_step(
-        _product, _precondition, right, int(min(MAX_ITERATIONS, budget))
+        _product, _precondition, right, int(min(_MAX_ITERATIONS, budget))
     )
     if not is_settled and len(right) <= MAX_FACTORIZED:
         step = solve_definite(jacobian.T @ jacobian, shift, right)

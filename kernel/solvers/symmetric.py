@@ -8,7 +8,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..tolerances import LINEAR_SOLVE
 
-MAX_ITERATIONS = 400
+_MAX_ITERATIONS = 400
 
 
 @dataclass(frozen=True)
@@ -90,5 +90,5 @@ def solve_symmetric(
         return inverse * residual
 
     jacobi: Any = LinearOperator(shape, matvec=_precondition, dtype=np.float64)
-    solution, _ = cg(matrix, right, rtol=LINEAR_SOLVE, maxiter=MAX_ITERATIONS, M=jacobi)
+    solution, _ = cg(matrix, right, rtol=LINEAR_SOLVE, maxiter=_MAX_ITERATIONS, M=jacobi)
     return np.asarray(solution, np.float64)

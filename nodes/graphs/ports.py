@@ -159,7 +159,8 @@ def convert(port: Port, value: Value) -> Value:
     if isinstance(value, list) and tuple in kinds:
         return tuple(cast("Sequence[Value]", value))
     if isinstance(value, list | tuple) and np.ndarray in kinds:
-        return np.asarray(cast("Sequence[Value]", value), _array_dtype(port.type))
+        numbers = cast("Sequence[Value]", value)
+        return cast("Value", np.asarray(numbers, _array_dtype(port.type)))
     if isinstance(value, str) and Path in kinds:
         return Path(value)
     if isinstance(value, os.PathLike) and str in kinds:
@@ -318,11 +319,26 @@ def _members(kind: Hint) -> tuple[Any, ...]:
         return tuple(member for option in options for member in _members(option))
     if hasattr(kind, "__supertype__"):
         return _members(kind.__supertype__)
+    if hasattr(get_origin(kind) or kind, "__value__"):
+        return _members(_alias_value(kind))
     if get_origin(kind) is Annotated:
         return _members(get_args(kind)[0])
     if get_origin(kind) in (Union, UnionType):
         return tuple(member for option in get_args(kind) for member in _members(option))
     return (NoneType if kind is None else kind,)
+
+
+def _alias_value(alias: Hint) -> Hint:
+    """What a `type` statement stands for, such as the ``NDArray[...]`` of numpy 2.5."""
+    name = get_origin(alias) or alias
+    if not all(isinstance(parameter, TypeVar) for parameter in name.__type_params__):
+        return Any  # *Ts, **P
+    given = dict(zip(name.__type_params__, get_args(alias), strict=False))
+    value = name.__value__
+    if isinstance(value, TypeVar):
+        return given.get(value, value)
+    free = tuple(given.get(x, x) for x in getattr(value, "__parameters__", ()))
+    return value[free] if free else value
 
 
 def _anything(_kind: Hint, _value: Value) -> bool:

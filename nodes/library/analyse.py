@@ -9,7 +9,7 @@ from ...kernel import analysis
 from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.panels import cutting
-from ...kernel.sphere_meshes import planarity as flatness
+from ...kernel.sphere_meshes import planarity_circularity as flatness
 from ...kernel.sphere_meshes import sphere_mesh as measures
 from ...kernel.sphere_meshes.fit import face_planes
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh

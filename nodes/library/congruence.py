@@ -5,8 +5,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from ...kernel.arrays import BoolArray, FloatArray
-from ...kernel.congruences import envelopes
-from ...kernel.congruences import smooth as congruence
+from ...kernel.congruences import curvature_spheres as congruence
+from ...kernel.congruences import discrete_envelopes
 from ...kernel.meshes.mesh import Mesh, mean_edge_length
 from ...kernel.tolerances import VERTEX_MISS
 from ..graphs.node import node, warn
@@ -83,7 +83,7 @@ def envelope(
     is_real : (F,) bool array
         Whether the spheres of the face meet in two real points.
     """
-    result = envelopes.envelope(mesh, spheres, order)
+    result = discrete_envelopes.envelope(mesh, spheres, order)
     if not result.is_real.all():
         warn(
             f"{_share(~result.is_real)} of the faces have no real envelope: their spheres meet "

@@ -13,7 +13,7 @@ from ...kernel.optimization import pencil, strips
 from ...kernel.optimization import whole_energy as optimization
 from ...kernel.optimization.energies.table import EnergyWeights
 from ...kernel.sphere_meshes.fit import face_planes
-from ...kernel.sphere_meshes.planarity import circularity
+from ...kernel.sphere_meshes.planarity_circularity import circularity
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ...kernel.tolerances import CIRCULAR, LITTLE_GAIN, VERTEX_MISS
 from ..graphs.node import node, warn

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...kernel.arrays import FloatArray
-from ...kernel.congruences import smooth as congruence
+from ...kernel.congruences import curvature_spheres as congruence
 from ...kernel.errors import name_ids
-from ...kernel.hexagons import dual_meshes as shex
+from ...kernel.hexagons import dual_sphere_mesh as shex
 from ...kernel.hexagons import evolution, face_shapes
 from ...kernel.hexagons import shifted_rows as grids
 from ...kernel.meshes.mesh import Mesh, mean_edge_length

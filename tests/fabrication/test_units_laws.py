@@ -29,7 +29,7 @@ from spheremesh.kernel.optimization.whole_energy import Conditions, optimize_sph
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.panels import Panels
 from spheremesh.kernel.remesh.planar.held_nets import planarize_near
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import fit_spheres
 from spheremesh.kernel.spheres.rows import rescale
 from spheremesh.kernel.support.annulus_support import annulus_support

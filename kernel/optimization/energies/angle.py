@@ -4,7 +4,8 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...solvers.blocks import Block
-from ...spheres.rows import minkowski, minkowski_gradient, recenter
+from ...spheres.minkowski import minkowski, minkowski_gradient
+from ...spheres.rows import recenter
 from .setting import Group, Setting, Unknowns
 
 

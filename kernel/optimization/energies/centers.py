@@ -8,7 +8,7 @@ the origin and vanishes for two planes.
 import numpy as np
 
 from ...arrays import FloatArray, IntArray, dot
-from ...spheres.rows import normals
+from ...spheres.incidence import normals
 from .setting import Setting, Unknowns
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from ...meshes.mesh import Mesh, face_normals
-from ...spheres.rows import minkowski, minkowski_gradient
+from ...spheres.minkowski import minkowski, minkowski_gradient
 from ...tolerances import AT_BOUND
 from .setting import Unknowns
 

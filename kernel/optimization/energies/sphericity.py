@@ -4,7 +4,7 @@ import numpy as np
 
 from ...arrays import FloatArray, dot
 from ...solvers.blocks import Block
-from ...spheres.rows import evaluate, normals
+from ...spheres.incidence import evaluate, normals
 from .setting import Group, Setting, Unknowns
 
 

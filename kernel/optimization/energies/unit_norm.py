@@ -4,7 +4,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...solvers.blocks import Block
-from ...spheres.rows import minkowski, minkowski_gradient
+from ...spheres.minkowski import minkowski, minkowski_gradient
 from .setting import Group, Setting, Unknowns
 
 

@@ -7,10 +7,11 @@ from numpy.typing import ArrayLike
 
 from ...arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ...meshes.mesh import Mesh
+from ...meshes.vertex_fans import vertex_fans
 from ...tolerances import UMBILIC
 from .congruence_mesh import CongruenceMesh, congruence_mesh
 from .conjugate import UndeterminedError, anisotropy, conjugate_field, form_roots
-from .frames import comb_frames, vertex_fans
+from .frames import comb_frames
 from .jets import CongruenceJets, fit_jets, node_axes
 from .smoothing import orient_forms
 
@@ -99,7 +100,10 @@ def conjugate_directions(
         np.cos(angles) * tangents[:, None, 0] + np.sin(angles) * tangents[:, None, 1]
     )
     areas = surface.vertex_areas
-    indices = comb_frames(surface, vertex_fans(surface), trace, deviator, 0.0).indices
+    fans = vertex_fans(
+        surface.topology, surface.triangles.ravel(), np.arange(len(surface.points))
+    )
+    indices = comb_frames(surface, fans, trace, deviator, 0.0).indices
     singular = np.flatnonzero(indices)
     return ConjugateDirections(
         directions, is_real, float(areas[~is_real].sum() / areas.sum()),

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import BoolArray, FloatArray, IntArray, dot, norm
+from ...meshes.vertex_fans import VertexFans
 from ..field.congruence_mesh import CongruenceMesh
-from ..field.frames import CombedFrames, Fans
+from ..field.frames import CombedFrames
 from .seams import Seams
 
 CORNER = np.radians(40)
@@ -48,7 +49,7 @@ class Alignment:
     n_sides: int
 
 
-def next_on_boundary(surface: CongruenceMesh, fans: Fans) -> IntArray:
+def next_on_boundary(surface: CongruenceMesh, fans: VertexFans) -> IntArray:
     """
     The following half-edge along the boundary.
 
@@ -97,7 +98,7 @@ def boundary_corners(surface: CongruenceMesh, following: IntArray) -> BoolArray:
 
 def align_boundary(
     surface: CongruenceMesh,
-    fans: Fans,
+    fans: VertexFans,
     frames: CombedFrames,
     seams: Seams,
     edge_length: float,

@@ -21,7 +21,7 @@ SOFTNESS = 0.2
 """Width of the barrier against folds, relative to the worst of them."""
 
 MAX_ROUNDS = 20
-MAX_STEPS = 12
+_MAX_STEPS = 12
 
 
 @dataclass(frozen=True)
@@ -243,7 +243,7 @@ def _newton(
         moved[free] += step
         return moved
 
-    found = levenberg_marquardt(start, _energies, _linearize, _move, FOLD_STEP, MAX_STEPS)
+    found = levenberg_marquardt(start, _energies, _linearize, _move, FOLD_STEP, _MAX_STEPS)
     return found.state, float(found.history[-1, 0])
 
 

@@ -13,8 +13,9 @@ import numpy as np
 
 from ...arrays import BoolArray, FloatArray
 from ...errors import InputError
+from ...meshes.vertex_fans import VertexFans
 from ..field.congruence_mesh import CongruenceMesh
-from ..field.frames import CombedFrames, Fans
+from ..field.frames import CombedFrames
 from .boundary_alignment import Alignment, align_boundary, no_alignment
 from .coordinate import Coordinate, eliminate, solve_coordinate
 from .injectivity import ChartGradients, untangle
@@ -53,7 +54,11 @@ class Parametrization:
 
 
 def parametrize(
-    surface: CongruenceMesh, fans: Fans, frames: CombedFrames, seams: Seams, edge_length: float
+    surface: CongruenceMesh,
+    fans: VertexFans,
+    frames: CombedFrames,
+    seams: Seams,
+    edge_length: float,
 ) -> Parametrization:
     """
     Map the cut mesh so that unit steps follow the directions with a given length.

@@ -12,9 +12,9 @@ import numpy as np
 
 from ...arrays import BoolArray, FloatArray, IntArray
 from ...errors import ConvergenceError
+from ...meshes.vertex_fans import VertexFans
 from ...tolerances import LATTICE_TIE
 from ..field.congruence_mesh import CongruenceMesh
-from ..field.frames import Fans
 from ..map.injectivity import ChartGradients
 
 
@@ -86,7 +86,9 @@ class Meetings(NamedTuple):
     weights: FloatArray
 
 
-def corner_coordinates(fans: Fans, charts: ChartGradients, values: FloatArray) -> FloatArray:
+def corner_coordinates(
+    fans: VertexFans, charts: ChartGradients, values: FloatArray
+) -> FloatArray:
     """
     Coordinates of the corners with no vertex on a line.
 

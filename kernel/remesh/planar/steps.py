@@ -12,7 +12,7 @@ import numpy as np
 
 from ...arrays import FloatArray, dot, sum_by
 from ...solvers.levenberg_marquardt import DampedStep
-from ...spheres.rows import minkowski
+from ...spheres.minkowski import minkowski
 from ...tolerances import PLANAR_DAMPING
 from .node_elimination import face_products, factor_nodes, node_inverses
 from .step_norm import Sparse, StepNorm, node_metric, sphere_metric

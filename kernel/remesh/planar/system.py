@@ -21,7 +21,9 @@ import numpy as np
 from ...arrays import BoolArray, FloatArray, IntArray, dot, sum_by
 from ...meshes.mesh import Mesh, local_corners, mean_edge_length
 from ...sphere_meshes.sphere_mesh import SphereMesh
-from ...spheres.rows import evaluate, minkowski, normals, rescale
+from ...spheres.incidence import evaluate, normals
+from ...spheres.minkowski import minkowski
+from ...spheres.rows import rescale
 from ...tolerances import FLATTEST, NODE_EXACT
 from .node_sites import Site, anywhere
 

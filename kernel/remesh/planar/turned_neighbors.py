@@ -12,7 +12,8 @@ import numpy as np
 from ...arrays import BoolArray, FloatArray, IntArray, dot, sum_by, unit
 from ...meshes.mesh import Mesh, local_corners
 from ...sphere_meshes.sphere_mesh import SphereMesh, intersection_angles
-from ...spheres.rows import minkowski, recenter
+from ...spheres.minkowski import minkowski
+from ...spheres.rows import recenter
 from ...support.node_axes import arc_planes
 from ...tolerances import ALIKE_NEIGHBORS, PARALLEL_PLANES
 

@@ -36,7 +36,7 @@ from spheremesh.kernel.parts.colors import mould_color
 from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
-from spheremesh.kernel.spheres.rows import normals, signed_distance
+from spheremesh.kernel.spheres.incidence import normals, signed_distance
 from spheremesh.kernel.surfaces.circular_nets import roof_net
 from spheremesh.nodes import NodeWarning
 

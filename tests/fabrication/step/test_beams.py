@@ -42,7 +42,7 @@ from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.parts.records import select_parts
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.support.annuli import Annuli
 from spheremesh.kernel.support.annulus_support import annulus_support

@@ -37,7 +37,7 @@ from spheremesh.kernel.optimization.energies.table import TERMS, EnergyWeights, 
 from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.solvers.blocks import jacobian_matrix
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
-from spheremesh.kernel.spheres.rows import minkowski
+from spheremesh.kernel.spheres.minkowski import minkowski
 from spheremesh.nodes import ellipsoid_mesh, torus_mesh, vase_mesh
 
 STEP = 1e-6

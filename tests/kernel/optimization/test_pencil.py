@@ -23,7 +23,8 @@ from spheremesh.kernel.optimization.pencil import (
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles, vertex_error
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
-from spheremesh.kernel.spheres.rows import minkowski, recenter
+from spheremesh.kernel.spheres.minkowski import minkowski
+from spheremesh.kernel.spheres.rows import recenter
 from spheremesh.kernel.surfaces.circular_nets import ellipsoid_net, roof_net, torus_net
 
 NETS = ["torus", "ellipsoid", "egg", "catenoid", "vase", "enneper", "roof"]

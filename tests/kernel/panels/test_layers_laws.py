@@ -20,7 +20,8 @@ from spheremesh.kernel.panels.panels import (
 )
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.arcs import arc_points
-from spheremesh.kernel.spheres.rows import center_radius, evaluate, from_center_radius
+from spheremesh.kernel.spheres.incidence import evaluate
+from spheremesh.kernel.spheres.rows import center_radius, from_center_radius
 
 SIDES: list[Side] = ["inward", "outward", "centred"]
 SHARES = {"inward": 0.0, "outward": 1.0, "centred": 0.5}

@@ -17,7 +17,7 @@ from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.arcs import arc_points
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
-from spheremesh.kernel.spheres.rows import evaluate, project
+from spheremesh.kernel.spheres.incidence import evaluate, project
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
 
 

@@ -42,7 +42,8 @@ from spheremesh.kernel.spheres.circles import (
     intersection_circles,
     pencil_spheres,
 )
-from spheremesh.kernel.spheres.rows import center_radius, evaluate, normals, recenter
+from spheremesh.kernel.spheres.incidence import evaluate, normals
+from spheremesh.kernel.spheres.rows import center_radius, recenter
 from spheremesh.kernel.surfaces.circular_nets import enneper_net
 
 NETS = ["torus", "ellipsoid", "egg", "vase", "roof"]

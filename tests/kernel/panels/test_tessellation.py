@@ -15,7 +15,8 @@ from spheremesh.kernel.panels.tessellation import (
 )
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.sphere_meshes.sphere_mesh import SphereMesh
-from spheremesh.kernel.spheres.rows import from_center_radius, normalize, signed_distance
+from spheremesh.kernel.spheres.incidence import signed_distance
+from spheremesh.kernel.spheres.rows import from_center_radius, normalize
 from spheremesh.kernel.surfaces.circular_nets import ellipsoid_net, roof_net, torus_net
 
 RTOL = 1e-12

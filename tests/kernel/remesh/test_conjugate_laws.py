@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 
 from spheremesh import Mesh
 from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
-from spheremesh.kernel.congruences.smooth import touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import touching_spheres
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.curvature import vertex_normals
 from spheremesh.kernel.remesh.field.conjugate import conjugate_form, form_roots, split_form
 from spheremesh.kernel.remesh.field.directions import conjugate_directions
 from spheremesh.kernel.remesh.field.jets import CongruenceJets, node_axes
-from spheremesh.kernel.sphere_meshes.mobius_maps import map_points, map_spheres
-from spheremesh.kernel.spheres.mobius import inversion, rotation_about, similarity
+from spheremesh.kernel.spheres.mobius_group import inversion, rotation_about, similarity
+from spheremesh.kernel.spheres.mobius_images import map_points, map_spheres
 from spheremesh.kernel.surfaces.triangulated import SampleShape, triangulated_surface
 
 ORDER = 4

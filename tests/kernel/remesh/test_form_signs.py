@@ -6,7 +6,7 @@ from scipy.sparse import coo_array
 
 from spheremesh import Mesh
 from spheremesh.kernel.arrays import FloatArray
-from spheremesh.kernel.congruences.smooth import touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import touching_spheres
 from spheremesh.kernel.meshes.curvature import vertex_normals
 from spheremesh.kernel.remesh.field.congruence_mesh import congruence_mesh
 from spheremesh.kernel.remesh.field.conjugate import conjugate_field

@@ -5,7 +5,7 @@ import pytest
 
 from spheremesh import Mesh
 from spheremesh.kernel.arrays import FloatArray, norm
-from spheremesh.kernel.congruences.smooth import touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import touching_spheres
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.remesh.field.congruence_mesh import congruence_mesh
 from spheremesh.kernel.remesh.field.jets import fit_jets

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, IntArray, dot, norm, unit
-from spheremesh.kernel.congruences.envelopes import envelope, mirror_points
-from spheremesh.kernel.congruences.smooth import touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import touching_spheres
+from spheremesh.kernel.congruences.discrete_envelopes import envelope, mirror_points
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.remesh.planar.planarize import axis_angles, measure_nodes, planarize
@@ -25,11 +25,11 @@ from spheremesh.kernel.remesh.planar.system import (
     residuals,
 )
 from spheremesh.kernel.remesh.reports import planarization_report
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
-from spheremesh.kernel.sphere_meshes.mobius_maps import map_sphere_mesh
+from spheremesh.kernel.sphere_meshes.mobius import map_sphere_mesh
 from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
-from spheremesh.kernel.spheres.mobius import inversion
+from spheremesh.kernel.spheres.mobius_group import inversion
 from spheremesh.kernel.spheres.rows import (
     center_radius,
     from_center_radius,

@@ -7,12 +7,13 @@ import pytest
 
 from spheremesh import Mesh
 from spheremesh.kernel.arrays import FloatArray, IntArray, dot, norm
-from spheremesh.kernel.congruences.smooth import sphere_congruence, touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import sphere_congruence, touching_spheres
 from spheremesh.kernel.errors import ConvergenceError, InputError
 from spheremesh.kernel.meshes.curvature import vertex_normals
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.remesh.field.relax import CongruenceQuality, axis_angle, relax_congruence
-from spheremesh.kernel.spheres.rows import evaluate, normals, recenter, rescale
+from spheremesh.kernel.spheres.incidence import evaluate, normals
+from spheremesh.kernel.spheres.rows import recenter, rescale
 from spheremesh.kernel.surfaces.circular_nets import torus_net
 
 TARGET = CongruenceQuality(0.02, np.radians(20.0))

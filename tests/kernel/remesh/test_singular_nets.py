@@ -8,7 +8,7 @@ import pytest
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, norm
-from spheremesh.kernel.congruences.smooth import touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import touching_spheres
 from spheremesh.kernel.hexagons.evolution import evolve_spheres
 from spheremesh.kernel.meshes.mesh import face_centroids
 from spheremesh.kernel.remesh.net.extraction import Net

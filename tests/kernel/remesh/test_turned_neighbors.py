@@ -10,9 +10,11 @@ from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
 from spheremesh.kernel.meshes.mesh import local_corners
 from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.remesh.planar.turned_neighbors import turn_apart
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles
-from spheremesh.kernel.spheres.rows import evaluate, minkowski, recenter, rescale
+from spheremesh.kernel.spheres.incidence import evaluate
+from spheremesh.kernel.spheres.minkowski import minkowski
+from spheremesh.kernel.spheres.rows import recenter, rescale
 from spheremesh.kernel.support.node_axes import arc_planes
 from spheremesh.kernel.surfaces.circular_nets import roof_net
 from spheremesh.kernel.tolerances import ALIKE_NEIGHBORS

@@ -1,9 +1,10 @@
 """Errors when wired: both ends are named, and the nearest valid name."""
 
 import os
+import typing
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple, TypeVar, TypeVarTuple
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 import spheremesh as sm
 from spheremesh.nodes import GraphError, Port, node
-from spheremesh.nodes.graphs.ports import accepts, fits
+from spheremesh.nodes.graphs.ports import accepts, convert, fits, type_name
 
 
 class Shape:
@@ -297,3 +298,32 @@ def test_types_that_do_not_fit(source: Any, target: Any) -> None:  # noqa: ANN40
 def test_values(kind: Any, good: list[Any], bad: list[Any]) -> None:  # noqa: ANN401
     assert [value for value in good if not accepts(kind, value)] == []
     assert [value for value in bad if accepts(kind, value)] == []
+
+
+def test_type_statements_are_what_they_stand_for() -> None:
+    """``NDArray`` is one with numpy 2.5; before Python 3.12 only typing_extensions has them."""
+    place = "typing" if hasattr(typing, "TypeAliasType") else "typing_extensions"
+    alias = pytest.importorskip(place).TypeAliasType
+    first, second, several = TypeVar("first"), TypeVar("second"), TypeVarTuple("several")
+    array = alias("array", np.ndarray[Any, np.dtype[first]], type_params=(first,))
+    pair = alias("pair", tuple[second, first], type_params=(first, second))
+    same = alias("same", first, type_params=(first,))
+    row = alias("row", tuple[*several], type_params=(several,))
+    length = alias("length", Annotated[float, Port(min=0)])
+    floats, numbers = array[np.float64], list[array[np.int64]] | None
+    assert list(map(type_name, (floats, numbers, array, length))) == [
+        "float64 array",
+        "list of int64 array or None",
+        "array",
+        "float",
+    ]
+    good = [(floats, [1, 2]), (pair[int, str], ("a", 1)), (same[int], 1), (length, 1.5)]
+    bad = [(floats, "ab"), (pair[int, str], (1, "a")), (same[int], "a"), (numbers, [1])]
+    assert [case for case in good if not accepts(*case)] == []
+    assert [case for case in bad if accepts(*case)] == []
+    assert accepts(row[int, str], (1, "a"))  # not told apart
+    assert fits(Floats, floats)
+    assert fits(floats, floats | None)
+    assert not fits(Shape, floats)
+    assert not fits(floats, length)
+    assert convert(Port(type=floats | None), [1, 2]).dtype == np.float64

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from spheremesh import Mesh, SphereMesh
-from spheremesh.kernel.congruences.smooth import sphere_congruence
+from spheremesh.kernel.congruences.curvature_spheres import sphere_congruence
 from spheremesh.kernel.errors import ConvergenceError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.remesh.field.directions import conjugate_directions

@@ -19,17 +19,10 @@ from ..arrays import BoolArray, FloatArray, batches_by_count, dot, norm, sum_by
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_centroids, local_corners, mean_edge_length
 from ..sphere_meshes.sphere_mesh import SphereMesh
-from ..spheres.rows import (
-    Kind,
-    from_pentaspherical,
-    kind,
-    lift_points,
-    minkowski,
-    normals,
-    pentaspherical,
-    recenter,
-    signed_distance,
-)
+from ..spheres.incidence import normals, signed_distance
+from ..spheres.minkowski import minkowski
+from ..spheres.pentaspherical import from_pentaspherical, pentaspherical
+from ..spheres.rows import Kind, kind, lift_points, recenter
 from ..tolerances import DEGENERATE, EPSILON
 
 EnvelopeOrder: TypeAlias = Literal["nearest", "oriented"]

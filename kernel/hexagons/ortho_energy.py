@@ -14,34 +14,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray, dot, norm, unit
 
 
-def node_axes(
-    points: FloatArray, normals: FloatArray, triangles: IntArray, offsets: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """
-    Node axes and the surface normals that they are compared with.
-
-    Parameters
-    ----------
-    points, normals : (V, 3) float array
-        Points of the surface, and unit normals to the side of the centres.
-    triangles : (T, 3) int array
-        Triangles, counter-clockwise about the normals.
-    offsets : (V,) float array
-        Distances λ of the centres along the normals.
-
-    Returns
-    -------
-    axes : (T, 3) float array
-        Normals of the triangles of the centres, as long as twice their areas.
-    upright : (T, 3) float array
-        Unit mean normals of the corners.
-    """
-    a, b, c = (points + offsets[:, None] * normals)[triangles].transpose(1, 0, 2)
-    axes = np.asarray(np.cross(b - a, c - a), np.float64)
-    return axes, unit(normals[triangles].sum(axis=1))
-
-
-def axis_angles(
+def axis_deviations(
     points: FloatArray, normals: FloatArray, triangles: IntArray, offsets: FloatArray
 ) -> FloatArray:
     """
@@ -61,12 +34,12 @@ def axis_angles(
     (T,) float array
         Radians in [0, π]; beyond π/2 the triangle of the centres is turned over.
     """
-    axes, upright = node_axes(points, normals, triangles, offsets)
+    axes, upright = _axes_and_normals(points, normals, triangles, offsets)
     axes = unit(axes)
     return 2 * np.arctan2(norm(axes - upright), norm(axes + upright))
 
 
-def axis_tilt(
+def ortho_residuals(
     points: FloatArray,
     normals: FloatArray,
     triangles: IntArray,
@@ -78,12 +51,8 @@ def axis_tilt(
 
     Parameters
     ----------
-    points, normals : (V, 3) float array
-        Points of the surface, and unit normals to the side of the centres.
-    triangles : (T, 3) int array
-        Triangles, counter-clockwise about the normals.
-    offsets : (V,) float array
-        Distances λ of the centres along the normals.
+    points, normals, triangles, offsets
+        As for `axis_deviations`.
     bound : float
         Angle allowed between axis and normal, in radians.
 
@@ -94,7 +63,7 @@ def axis_tilt(
     slopes : (T, 3) float array
         Derivatives with respect to the offsets at the three corners.
     """
-    axes, upright = node_axes(points, normals, triangles, offsets)
+    axes, upright = _axes_and_normals(points, normals, triangles, offsets)
     height, square = dot(axes, upright), dot(axes, axes)
     square = np.where(square > 0, square, 1.0)
     excess = np.cos(bound) ** 2 - height * np.abs(height) / square
@@ -107,3 +76,12 @@ def axis_tilt(
     slopes = -2 * (np.abs(height) / square)[:, None] * steeper
     is_active = excess > 0
     return np.where(is_active, excess, 0.0), np.where(is_active[:, None], slopes, 0.0)
+
+
+def _axes_and_normals(
+    points: FloatArray, normals: FloatArray, triangles: IntArray, offsets: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Normals of the triangles of centres, as long as twice their areas; unit mean normals."""
+    a, b, c = (points + offsets[:, None] * normals)[triangles].transpose(1, 0, 2)
+    axes = np.asarray(np.cross(b - a, c - a), np.float64)
+    return axes, unit(normals[triangles].sum(axis=1))

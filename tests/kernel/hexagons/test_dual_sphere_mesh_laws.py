@@ -8,13 +8,14 @@ import pytest
 
 from spheremesh import Mesh
 from spheremesh.kernel.arrays import FloatArray, IntArray, norm
-from spheremesh.kernel.congruences.smooth import sphere_congruence, touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import sphere_congruence, touching_spheres
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.hexagons.dual_meshes import DualSpheres, dual_sphere_mesh, vertex_fans
+from spheremesh.kernel.hexagons.dual_sphere_mesh import DualSpheres, dual_sphere_mesh
 from spheremesh.kernel.hexagons.face_shapes import face_shapes
 from spheremesh.kernel.meshes.mesh import face_centroids, face_vector_areas, mean_edge_length
+from spheremesh.kernel.meshes.vertex_fans import vertex_fans
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles, vertex_error
-from spheremesh.kernel.spheres.rows import evaluate, normals
+from spheremesh.kernel.spheres.incidence import evaluate, normals
 
 Grids = dict[str, Any]
 
@@ -138,7 +139,7 @@ def test_a_flat_sheet_is_clipped_to_its_outline() -> None:
 
 def test_law_fans_run_counter_clockwise_around_every_vertex(curved_grids: Grids) -> None:
     mesh = curved_grids["catenoid"].mesh
-    fans = vertex_fans(mesh, np.arange(mesh.n_vertices))
+    fans = vertex_fans(mesh.topology, mesh.corners, np.arange(mesh.n_vertices), "last")
     owners = np.repeat(fans.vertices, np.diff(fans.offsets))
     np.testing.assert_array_equal(mesh.corners[fans.corners], owners)
     np.testing.assert_array_equal(np.sort(fans.corners), np.arange(len(mesh.corners)))

@@ -17,7 +17,7 @@ from ..meshes.curvature import principal_curvatures, vertex_normals
 from ..meshes.mesh import Mesh, face_centroids, mean_edge_length
 from ..tolerances import OFFSET_STEP
 
-Side: TypeAlias = Literal["auto", "plus", "minus"]
+CenterSide: TypeAlias = Literal["auto", "plus", "minus"]
 
 CLOSEST = 0.95
 """Offsets aim at this share of the radius: at 1 neighbouring spheres would be the same."""
@@ -52,7 +52,7 @@ class TangentSurface:
     side: int
 
 
-def tangent_surface(mesh: Mesh, side: Side = "auto") -> tuple[TangentSurface, BoolArray]:
+def tangent_surface(mesh: Mesh, side: CenterSide = "auto") -> tuple[TangentSurface, BoolArray]:
     """
     Normals and curvature radii of a triangulation on the side of the centres.
 
@@ -99,7 +99,6 @@ def grow_offsets(surface: TangentSurface, aims: FloatArray, bound: float) -> Flo
     Parameters
     ----------
     surface : TangentSurface
-        The surface.
     aims : (V,) float array
         Upper bounds of the offsets.
     bound : float
@@ -186,7 +185,6 @@ def mesh_edges(mesh: Mesh) -> tuple[IntArray, IntArray]:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------

@@ -9,17 +9,17 @@ from hypothesis import strategies as st
 
 from spheremesh import Mesh
 from spheremesh.kernel.arrays import FloatArray, norm
-from spheremesh.kernel.congruences.envelopes import envelope
-from spheremesh.kernel.congruences.smooth import touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import touching_spheres
+from spheremesh.kernel.congruences.discrete_envelopes import envelope
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.hexagons.triples import meet_three, triangle_points, vertex_rows
+from spheremesh.kernel.hexagons.vertex_rule import meet_three, triangle_points, vertex_rows
 from spheremesh.kernel.meshes.mesh import face_centroids
+from spheremesh.kernel.spheres.incidence import signed_distance
 from spheremesh.kernel.spheres.rows import (
     center_radius,
     from_center_radius,
     from_plane,
     normalize,
-    signed_distance,
 )
 
 SEEDS = st.integers(0, 10**6)

@@ -12,11 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
-from ..meshes.mesh import Mesh, face_centroids, mean_edge_length
-from ..spheres.rows import signed_distance
+from ..meshes.mesh import Mesh, face_centroids
 from ..tolerances import DUAL_EDGE
-from .dual_meshes import vertex_fans
-from .triples import triangle_points
+from .vertex_rule import triangle_points
 
 MAX_SWEEPS = 60
 UPRIGHT_TILT = 0.5
@@ -52,7 +50,7 @@ def dual_edge_lengths(mesh: Mesh, rows: FloatArray) -> FloatArray:
     mesh : Mesh
         A triangulation.
     rows : (V, 5) float array
-        Unit rows at the vertices, seen from them (`triples.vertex_rows`).
+        Unit rows at the vertices, seen from them (`vertex_rows`).
 
     Returns
     -------
@@ -78,45 +76,6 @@ def _across(
     return dot(run, np.cross(upright, sides)) / dot(sides, sides)
 
 
-def has_empty_star(mesh: Mesh, rows: FloatArray) -> BoolArray:
-    """
-    Sufficient test of convexity: no corner of the face lies inside a ball of its star.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        A triangulation.
-    rows : (V, 5) float array
-        Unit rows at the vertices, seen from them (`triples.vertex_rows`).
-
-    Returns
-    -------
-    (V,) bool array
-        True where the face of an inner vertex has real corners, all of them outside or on the
-        spheres of the neighbours; then the face is convex. False tells nothing, and is all that
-        planes get, which bound no ball.
-    """
-    vertices = np.flatnonzero(~mesh.topology.is_boundary_vertex)
-    fans = vertex_fans(mesh, vertices)
-    points, is_real = triangle_points(mesh, rows)
-    points = points + face_centroids(mesh)
-    heads = mesh.corners[mesh.topology.next_corners]
-    margin = DUAL_EDGE * mean_edge_length(mesh)
-    result = np.zeros(mesh.n_vertices, bool)
-    valences = np.diff(fans.offsets)
-    for valence in np.unique(valences):
-        chosen = np.flatnonzero(valences == valence)
-        corners = fans.corners[fans.offsets[chosen][:, None] + np.arange(valence)]
-        faces, neighbors = mesh.topology.corner_faces[corners], heads[corners]
-        balls = rows[neighbors][:, None]
-        relative = points[faces][:, :, None] - mesh.vertices[neighbors][:, None]
-        # Towards the centre the distance is positive.
-        depth = np.sign(balls[..., 0]) * signed_distance(balls, relative)
-        is_outside = (depth <= margin) & (balls[..., 0] != 0)
-        result[vertices[chosen]] = is_outside.all(axis=(1, 2)) & is_real[faces].all(axis=1)
-    return result
-
-
 def flip_to_convex(mesh: Mesh, rows: FloatArray, max_sweeps: int = MAX_SWEEPS) -> Flips:
     """
     Flip edges until no edge of the dual mesh runs backwards, or no flip helps.
@@ -126,7 +85,7 @@ def flip_to_convex(mesh: Mesh, rows: FloatArray, max_sweeps: int = MAX_SWEEPS) -
     mesh : Mesh
         A triangulation.
     rows : (V, 5) float array
-        Unit rows at the vertices, seen from them (`triples.vertex_rows`).
+        Unit rows at the vertices, seen from them (`vertex_rows`).
     max_sweeps : int
         Largest number of rounds.
 

@@ -5,25 +5,25 @@ import pytest
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
-from spheremesh.kernel.congruences.envelopes import (
+from spheremesh.kernel.congruences.curvature_spheres import sphere_congruence
+from spheremesh.kernel.congruences.discrete_envelopes import (
     contact_points,
     envelope,
     mirror_points,
     ribaucour_residuals,
 )
-from spheremesh.kernel.congruences.smooth import sphere_congruence
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import face_centroids, mean_edge_length
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
+from spheremesh.kernel.spheres.incidence import evaluate
+from spheremesh.kernel.spheres.minkowski import minkowski
 from spheremesh.kernel.spheres.rows import (
     center_radius,
-    evaluate,
     from_center_radius,
     from_plane,
     lift_points,
-    minkowski,
     normalize,
     recenter,
 )

@@ -13,25 +13,19 @@ from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import face_centroids, face_normals, mean_edge_length
 from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.panels.cutting import edge_gaps
-from spheremesh.kernel.sphere_meshes.central import (
+from spheremesh.kernel.sphere_meshes.central_spheres import (
     bisectors,
     central_spheres,
     edge_spheres,
     principal_spheres,
-    smoothed_spheres,
 )
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
+from spheremesh.kernel.sphere_meshes.smoothed_spheres import smoothed_spheres
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles, vertex_error
 from spheremesh.kernel.spheres.circles import face_circles
-from spheremesh.kernel.spheres.rows import (
-    angle,
-    evaluate,
-    from_center_radius,
-    minkowski,
-    normalize,
-    recenter,
-    signed_distance,
-)
+from spheremesh.kernel.spheres.incidence import evaluate, signed_distance
+from spheremesh.kernel.spheres.minkowski import angle, minkowski
+from spheremesh.kernel.spheres.rows import from_center_radius, normalize, recenter
 from spheremesh.kernel.surfaces.circular_nets import (
     ellipsoid_net,
     enneper_net,

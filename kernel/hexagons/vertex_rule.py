@@ -1,6 +1,7 @@
 """
-Where three spheres meet: two points, mirror images in the plane of the centres.
+The vertices of hexagons: where three spheres meet, the point nearest the triangle (Sec. 7).
 
+Three spheres meet in two points, mirror images in the plane of their centres.
 Rows are seen from points near the place where they meet, so that neither the position of the
 model nor the size of nearly flat spheres costs digits.
 """
@@ -11,29 +12,9 @@ from numpy.typing import ArrayLike
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, mean_edge_length
-from ..spheres.rows import Kind, kind, minkowski, recenter
+from ..spheres.minkowski import minkowski
+from ..spheres.rows import Kind, kind, recenter
 from ..tolerances import DEGENERATE, EPSILON
-
-
-def check_triangles(mesh: Mesh) -> None:
-    """
-    Refuse a mesh that is no triangulation.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        The mesh.
-
-    Raises
-    ------
-    InputError
-        If faces are no triangles; the message names them.
-    """
-    bad = np.flatnonzero(mesh.degrees != 3)
-    if len(bad):
-        raise InputError(
-            f"faces {name_ids(bad.tolist())} are no triangles: triangulate the mesh first"
-        )
 
 
 def meet_three(rows: FloatArray) -> tuple[FloatArray, BoolArray]:
@@ -104,7 +85,6 @@ def vertex_rows(mesh: Mesh, spheres: ArrayLike) -> FloatArray:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     spheres : (V, 5) array_like of float
         Real rows of any scale, in model coordinates; the orientation is kept.
 

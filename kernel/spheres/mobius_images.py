@@ -1,38 +1,22 @@
 """
-Möbius maps at work: on points, spheres, circles, arcs, meshes and sphere meshes.
+Images of points, spheres, circles and arcs under Möbius maps.
 
-Everything is mapped in closed form about its own place (`kernel.lorentz`); the matrix is never
+Everything is mapped in closed form about its own place (`mobius_local`); the matrix is never
 multiplied onto geometry, which would lose digits with the fourth power of the distance. What
-happens to orientation is said in `kernel.mobius`.
+happens to orientation is said in `mobius_group`.
 """
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import BoolArray, FloatArray, dot, norm, sum_by, unit
+from ..arrays import BoolArray, FloatArray, dot, norm, unit
 from ..errors import InputError, name_ids
-from ..meshes.mesh import (
-    Mesh,
-    face_centroids,
-    face_normals,
-    local_corners,
-    mean_edge_length,
-    reversed_corners,
-)
-from ..spheres.arcs import Arcs
-from ..spheres.circles import Circles
-from ..spheres.lorentz import (
-    LocalMap,
-    bend_vectors,
-    offset_images,
-    point_images,
-    row_images,
-    turn_vectors,
-)
-from ..spheres.mobius import read_transform
-from ..spheres.rows import recenter
-from ..tolerances import AT_INFINITY, EPSILON
-from .sphere_mesh import SphereMesh
+from ..tolerances import EPSILON
+from .arcs import Arcs
+from .circles import Circles
+from .mobius_group import read_transform
+from .mobius_local import bend_vectors, offset_images, point_images, row_images, turn_vectors
+from .rows import recenter
 
 
 def map_spheres(rows: FloatArray, transform: ArrayLike) -> FloatArray:
@@ -44,7 +28,6 @@ def map_spheres(rows: FloatArray, transform: ArrayLike) -> FloatArray:
     rows : (..., 5) float array
         Rows of any scale, in model coordinates.
     transform : (5, 5) array_like of float
-        The transform.
 
     Returns
     -------
@@ -74,9 +57,7 @@ def sent_to_infinity(points: FloatArray, transform: ArrayLike) -> BoolArray:
     Parameters
     ----------
     points : (..., 3) float array
-        Points.
     transform : (5, 5) array_like of float
-        The transform.
 
     Returns
     -------
@@ -99,9 +80,7 @@ def map_points(points: FloatArray, transform: ArrayLike) -> FloatArray:
     Parameters
     ----------
     points : (..., 3) float array
-        Points.
     transform : (5, 5) array_like of float
-        The transform.
 
     Returns
     -------
@@ -117,7 +96,7 @@ def map_points(points: FloatArray, transform: ArrayLike) -> FloatArray:
     points = np.asarray(points, float)
     local = read_transform(transform)
     vectors, rounding = bend_vectors(local, points)
-    _refuse(norm(vectors) <= rounding, "points {} are sent to infinity; leave them out")
+    refuse_rows(norm(vectors) <= rounding, "points {} are sent to infinity; leave them out")
     return point_images(local, points)
 
 
@@ -130,7 +109,6 @@ def map_circles(circles: Circles, transform: ArrayLike) -> Circles:
     circles : Circles
         Real circles, in model coordinates.
     transform : (5, 5) array_like of float
-        The transform.
 
     Returns
     -------
@@ -149,7 +127,7 @@ def map_circles(circles: Circles, transform: ArrayLike) -> Circles:
     """
     local = read_transform(transform)
     centers, axes = np.asarray(circles.centers, float), circles.normals
-    _refuse(~(circles.radii_squared > 0), "circles {} are imaginary or points")
+    refuse_rows(~(circles.radii_squared > 0), "circles {} are imaginary or points")
     radii = np.sqrt(circles.radii_squared)[..., None]
     away, _ = bend_vectors(local, centers)
     flat = away - dot(away, axes)[..., None] * axes
@@ -167,7 +145,7 @@ def map_circles(circles: Circles, transform: ArrayLike) -> Circles:
     size = 1 / radii[..., 0] + 2 * norm(bends)
     place = 1 + (norm(bases) + norm(local.origin)) * size
     is_line = norm(bent) <= 8 * EPSILON * size * place
-    _refuse(is_line, "circles {} become straight lines; move the centre off them")
+    refuse_rows(is_line, "circles {} become straight lines; move the centre off them")
     curvature = turn_vectors(local, bases, bent) * square / local.scale
     tangents = turn_vectors(local, bases, tangents)
     length = dot(curvature, curvature)
@@ -184,7 +162,6 @@ def map_arcs(arcs: Arcs, transform: ArrayLike) -> Arcs:
     arcs : Arcs
         H arcs, in model coordinates.
     transform : (5, 5) array_like of float
-        The transform.
 
     Returns
     -------
@@ -201,12 +178,14 @@ def map_arcs(arcs: Arcs, transform: ArrayLike) -> Arcs:
     middles = (arcs.starts + arcs.ends) / 2 + arcs.sagittas[:, None] * arcs.rises
     for points in (arcs.starts, middles, arcs.ends):
         vectors, rounding = bend_vectors(local, points)
-        _refuse(norm(vectors) <= rounding, "arcs {} pass through the point sent to infinity")
+        refuse_rows(
+            norm(vectors) <= rounding, "arcs {} pass through the point sent to infinity"
+        )
     first = offset_images(local, middles, arcs.starts - middles)
     last = offset_images(local, middles, arcs.ends - middles)
     # Start to middle to end turns by half of the sweep.
     turns = np.arctan2(norm(np.cross(-first, last)), dot(-first, last))
-    _refuse(
+    refuse_rows(
         turns > np.pi / 2,
         "the images of arcs {} are more than half circles; move the centre away",
     )
@@ -223,82 +202,20 @@ def map_arcs(arcs: Arcs, transform: ArrayLike) -> Arcs:
     return Arcs(*images, rises, sagittas)
 
 
-def map_mesh(mesh: Mesh, transform: ArrayLike) -> Mesh:
+def refuse_rows(is_bad: BoolArray, message: str) -> None:
     """
-    Image of a mesh: of its vertices, with straight sides between them.
+    Raise an error that names rows.
 
     Parameters
     ----------
-    mesh : Mesh
-        The mesh.
-    transform : (5, 5) array_like of float
-        The transform.
-
-    Returns
-    -------
-    Mesh
-        Vertices and faces keep their ids. Where right and left change places each face starts
-        at the same vertex and runs the other way, so its normal stays on the same side.
+    is_bad : (n,) bool array
+    message : str
+        With ``{}`` where the numbers of the bad rows go.
 
     Raises
     ------
     InputError
-        If a vertex is sent to infinity, or so close to it (`AT_INFINITY`) that its image is of
-        no use; the message names them. If the transform is no Möbius map.
+        If a row is bad.
     """
-    return _image_mesh(mesh, read_transform(transform))
-
-
-def map_sphere_mesh(sphere_mesh: SphereMesh, transform: ArrayLike) -> SphereMesh:
-    """
-    Image of a sphere mesh: spheres, vertices and the angles between the spheres.
-
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
-        The sphere mesh.
-    transform : (5, 5) array_like of float
-        The transform.
-
-    Returns
-    -------
-    SphereMesh
-        Vertices and faces keep their ids, N agrees with the normal of the face as before, and
-        neighbours meet at the same angles. Edges are numbered anew where faces run the other
-        way.
-
-    Raises
-    ------
-    InputError
-        As `map_mesh`; and if the image of a face passes through infinity or is more than half
-        a sphere, so that N would turn against the normal of the face. The message names them.
-
-    References
-    ----------
-    Meshes with Spherical Faces, Sec. 2.
-    """
-    local, mesh = read_transform(transform), sphere_mesh.mesh
-    image = _image_mesh(mesh, local)
-    centroids, faces = face_centroids(mesh), mesh.topology.corner_faces
-    too_near = "faces {} are too near the centre of the inversion; move it away"
-    vectors, rounding = bend_vectors(local, centroids)
-    _refuse(norm(vectors) <= rounding, too_near)
-    steps = offset_images(local, centroids[faces], local_corners(mesh))
-    shift = sum_by(faces, steps, mesh.n_faces) / mesh.degrees[:, None]
-    rows = recenter(row_images(local, sphere_mesh.local_spheres, centroids), shift)
-    before = dot(face_normals(mesh), sphere_mesh.local_spheres[:, 1:4])
-    _refuse(before * dot(face_normals(image), rows[:, 1:4]) < 0, too_near)
-    return SphereMesh.from_local(image, rows)
-
-
-def _image_mesh(mesh: Mesh, local: LocalMap) -> Mesh:
-    vectors, rounding = bend_vectors(local, mesh.vertices)
-    reach = np.maximum(rounding, AT_INFINITY * local.strength * mean_edge_length(mesh))
-    _refuse(norm(vectors) <= reach, "vertices {} are sent to infinity; move the centre away")
-    corners = reversed_corners(mesh) if local.reverses else mesh.corners
-    return Mesh(point_images(local, mesh.vertices), np.split(corners, mesh.offsets[1:-1]))
-
-
-def _refuse(is_bad: BoolArray, message: str) -> None:
     if np.any(is_bad):
         raise InputError(message.format(name_ids(np.flatnonzero(is_bad).tolist())))

@@ -14,7 +14,6 @@ def planarity(mesh: Mesh) -> FloatArray:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------
@@ -34,7 +33,6 @@ def circularity(mesh: Mesh) -> FloatArray:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------

@@ -18,19 +18,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import BoolArray, FloatArray, norm, unit
+from ..arrays import FloatArray, norm, unit
 from ..errors import InputError
-from ..tolerances import EPSILON, LORENTZ
-from .circles import PencilKind, pencil_kind
-from .lorentz import (
-    SIGNATURE,
-    LocalMap,
-    after,
-    make_local,
-    read_matrix,
-    to_matrix,
-)
-from .rows import Kind, kind, minkowski, normalize, pentaspherical
+from ..tolerances import LORENTZ
+from .mobius_local import LocalMap, after, make_local
+from .mobius_matrices import read_matrix, to_matrix
+from .pentaspherical import SIGNATURE, pentaspherical
+from .rows import Kind, kind, normalize
 
 
 def check_transform(transform: ArrayLike) -> FloatArray:
@@ -40,7 +34,6 @@ def check_transform(transform: ArrayLike) -> FloatArray:
     Parameters
     ----------
     transform : (5, 5) array_like of float
-        The matrix, on pentaspherical coordinates.
 
     Returns
     -------
@@ -99,7 +92,7 @@ def similarity(
 
     Examples
     --------
-    >>> from spheremesh.kernel.sphere_meshes.mobius_maps import map_points
+    >>> from spheremesh.kernel.spheres.mobius_images import map_points
     >>> lift = similarity(translation=[0, 0, 1])
     >>> map_points(np.zeros((1, 3)), lift).tolist()
     [[0.0, 0.0, 1.0]]
@@ -142,7 +135,7 @@ def inversion(center: ArrayLike, radius: float) -> FloatArray:
 
     Examples
     --------
-    >>> from spheremesh.kernel.sphere_meshes.mobius_maps import map_points
+    >>> from spheremesh.kernel.spheres.mobius_images import map_points
     >>> map_points(np.array([[0.5, 0, 0]]), inversion([0, 0, 0], 1)).tolist()
     [[2.0, 0.0, 0.0]]
     """
@@ -258,7 +251,6 @@ def inverse(transform: ArrayLike) -> FloatArray:
     Parameters
     ----------
     transform : (5, 5) array_like of float
-        The transform.
 
     Returns
     -------
@@ -273,71 +265,6 @@ def inverse(transform: ArrayLike) -> FloatArray:
     return SIGNATURE @ check_transform(transform).T @ SIGNATURE
 
 
-def is_orthogonal(s: FloatArray, t: FloatArray) -> BoolArray:
-    """
-    Whether spheres meet at a right angle: ``<<s, t>> = 0`` up to rounding.
-
-    Parameters
-    ----------
-    s, t : (..., 5) float array
-        Real rows of any scale.
-
-    Returns
-    -------
-    (...) bool array
-        True where they do.
-
-    References
-    ----------
-    Meshes with Spherical Faces, Sec. 2.1.
-    """
-    terms = norm(s[..., 1:4]) * norm(t[..., 1:4])
-    terms = terms + 2 * np.abs(s[..., 0] * t[..., 4]) + 2 * np.abs(s[..., 4] * t[..., 0])
-    return np.abs(minkowski(s, t)) <= 64 * EPSILON * terms
-
-
-def is_tangent(s: FloatArray, t: FloatArray) -> BoolArray:
-    """
-    Whether spheres touch: ``<<s, t>>² = <<s, s>> <<t, t>>`` up to rounding.
-
-    Parameters
-    ----------
-    s, t : (..., 5) float array
-        Real rows of any scale.
-
-    Returns
-    -------
-    (...) bool array
-        True where they touch, in either orientation, or are the same.
-
-    References
-    ----------
-    Meshes with Spherical Faces, Sec. 2.1.
-    """
-    return pencil_kind(s, t) == PencilKind.PARABOLIC
-
-
-def polar_hyperplane(omega: FloatArray) -> FloatArray:
-    """
-    Covector of the rows orthogonal to a row: s with ``<<s, ω>> = covector · s = 0``.
-
-    Parameters
-    ----------
-    omega : (..., 5) float array
-        Rows: spheres (real or imaginary), planes or points.
-
-    Returns
-    -------
-    (..., 5) float array
-        ``(-2 C, B, -2 A)``; for a point the spheres through it.
-
-    References
-    ----------
-    Meshes with Spherical Faces, Sec. 2.1, polarity.
-    """
-    return omega[..., ::-1][..., [0, 3, 2, 1, 4]] * np.array([-2.0, 1, 1, 1, -2.0])
-
-
 def read_transform(transform: ArrayLike) -> LocalMap:
     """
     A checked transform in the form in which it maps geometry without loss of digits.
@@ -345,7 +272,6 @@ def read_transform(transform: ArrayLike) -> LocalMap:
     Parameters
     ----------
     transform : (5, 5) array_like of float
-        Möbius map.
 
     Returns
     -------

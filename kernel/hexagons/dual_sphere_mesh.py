@@ -17,11 +17,14 @@ from numpy.typing import ArrayLike
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_centroids, face_vector_areas, mean_edge_length
+from ..meshes.topology import previous_corners
+from ..meshes.triangulation import check_triangles
+from ..meshes.vertex_fans import VertexFans, vertex_fans
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.rows import from_plane, recenter
 from ..tolerances import FAR_CORNER, SAME_PLANE
 from .face_shapes import CONVEX, face_shapes
-from .triples import check_triangles, corner_reach, meet_near, triangle_points, vertex_rows
+from .vertex_rule import corner_reach, meet_near, triangle_points, vertex_rows
 
 BoundaryRule: TypeAlias = Literal["drop", "clip"]
 
@@ -55,66 +58,6 @@ class DualSpheres:
     left_out: tuple[tuple[int, str], ...]
     has_far_corner: BoolArray
     n_imaginary: int
-
-
-@dataclass(frozen=True)
-class VertexFans:
-    """
-    Triangles around vertices, counter-clockwise.
-
-    Attributes
-    ----------
-    vertices : (n,) int array
-        The vertices.
-    corners : (m,) int array
-        Corners at each vertex, one vertex after the other; an open fan starts at the boundary
-        half-edge that leaves the vertex.
-    offsets : (n + 1,) int array
-        First corner of each vertex, and m.
-    """
-
-    vertices: IntArray
-    corners: IntArray
-    offsets: IntArray
-
-
-def vertex_fans(mesh: Mesh, vertices: IntArray) -> VertexFans:
-    """
-    Faces around vertices in counter-clockwise order.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        The mesh, of any face degrees.
-    vertices : (n,) int array
-        Vertices that belong to faces.
-
-    Returns
-    -------
-    VertexFans
-        The fans, closed ones of inner vertices and open ones on the boundary.
-    """
-    topology = mesh.topology
-    count = len(mesh.corners)
-    previous = np.empty(count, np.int64)
-    previous[topology.next_corners] = np.arange(count)
-    around = topology.twins[previous]
-    start = np.full(mesh.n_vertices, -1)
-    start[mesh.corners] = np.arange(count)
-    opening = np.flatnonzero(topology.twins < 0)
-    start[mesh.corners[opening]] = opening
-    owners, found = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
-    active, current = np.arange(len(vertices)), start[vertices]
-    while len(active):
-        owners.append(active)
-        found.append(current)
-        current = around[current]
-        going = (current >= 0) & (current != start[vertices[active]])
-        active, current = active[going], current[going]
-    order = np.argsort(np.concatenate(owners), kind="stable")
-    sizes = np.bincount(np.concatenate(owners), minlength=len(vertices))
-    offsets = np.concatenate([np.zeros(1, np.int64), np.cumsum(sizes)])
-    return VertexFans(vertices, np.concatenate(found)[order], offsets)
 
 
 def dual_sphere_mesh(
@@ -205,7 +148,7 @@ def _plan_faces(mesh: Mesh, rows: FloatArray, boundary: BoundaryRule) -> _Plan:
     is_used = np.zeros(mesh.n_vertices, bool)
     is_used[mesh.corners] = True
     is_wanted = is_used if boundary == "clip" else ~mesh.topology.is_boundary_vertex
-    fans = vertex_fans(mesh, np.flatnonzero(is_wanted))
+    fans = vertex_fans(mesh.topology, mesh.corners, np.flatnonzero(is_wanted), "last")
     points, is_real = triangle_points(mesh, rows)
     is_far = corner_reach(mesh, points) > FAR_CORNER
     points = points + face_centroids(mesh)
@@ -279,8 +222,7 @@ def _close_fans(
     leaving = np.flatnonzero(topology.twins < 0)
     rank = np.full(len(mesh.corners), -1)
     rank[leaving] = np.arange(len(leaving))
-    previous = np.empty(len(mesh.corners), np.int64)
-    previous[topology.next_corners] = np.arange(len(previous))
+    previous = previous_corners(topology)
     first = rank[fans.corners[fans.offsets[:-1]]]
     last = rank[previous[fans.corners[fans.offsets[1:] - 1]]]
     is_open = np.flatnonzero(first >= 0)
