@@ -8,7 +8,7 @@ import numpy as np
 from ...kernel.analysis import angle_summary
 from ...kernel.errors import ConvergenceError, InputError, name_ids
 from ...kernel.meshes.mesh import Mesh, mean_edge_length
-from ...kernel.optimization import pencil, strips
+from ...kernel.optimization import angle_minimization, strips
 from ...kernel.optimization import whole_energy as optimization
 from ...kernel.optimization.energies.table import EnergyWeights
 from ...kernel.sphere_meshes.fit import face_planes
@@ -60,7 +60,9 @@ def minimize_angles(
         max, of the planes and of the spheres), ``vertex_error`` (max, and relative to the mean
         edge) and ``circle_miss`` (relative to the mean edge).
     """
-    result, run = pencil.minimize_angles(sphere_mesh, np.radians(target_angle), edge_weights)
+    result, run = angle_minimization.minimize_angles(
+        sphere_mesh, np.radians(target_angle), edge_weights
+    )
     if not run.converged:
         raise ConvergenceError(
             f"the angles did not come to rest in {sum(run.iterations)} steps (last step "

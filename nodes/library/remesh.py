@@ -10,12 +10,18 @@ from ...kernel.arrays import IntArray
 from ...kernel.errors import ConvergenceError, name_ids
 from ...kernel.meshes.mesh import Mesh, mean_edge_length
 from ...kernel.remesh import pipeline, reports
-from ...kernel.remesh.field import directions, relax
+from ...kernel.remesh.field import conjugate_directions as directions
+from ...kernel.remesh.field import relax
 from ...kernel.remesh.field.relax import CongruenceQuality
 from ...kernel.remesh.field.smooth_surface import SmoothSurface
-from ...kernel.remesh.planar.held_nets import SHORT_EDGE, planarize_held
-from ...kernel.remesh.planar.node_sites import node_distances
-from ...kernel.remesh.planar.planarize import Planarization, measure_nodes, planarize
+from ...kernel.remesh.planar.conditions import node_distances
+from ...kernel.remesh.planar.nodes import measure_nodes
+from ...kernel.remesh.planar.planarize import (
+    SHORT_EDGE,
+    Planarization,
+    planarize,
+    planarize_held,
+)
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.tolerances import NODE_ON_SPHERES, TORSION_FREE
 from ..graphs.node import node, warn

@@ -12,7 +12,7 @@ from ...kernel.errors import InputError, name_ids
 from ...kernel.meshes.mesh import mean_edge_length
 from ...kernel.parts.findings import findings_report, rejected_report
 from ...kernel.parts.records import RejectedPart
-from ...kernel.remesh.planar.held_nets import planarize_near
+from ...kernel.remesh.planar.landing import planarize_near
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.support import annulus_support as annulus
 from ...kernel.support import node_axes as support
