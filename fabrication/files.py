@@ -38,7 +38,6 @@ def check_suffix(path: str | os.PathLike[str], *suffixes: str) -> None:
     Parameters
     ----------
     path : path
-        File to write.
     *suffixes : str
         What its name may end in, in lower case.
 
@@ -58,7 +57,6 @@ def check_target(path: str | os.PathLike[str]) -> None:
     Parameters
     ----------
     path : path
-        File to write.
 
     Raises
     ------
@@ -90,7 +88,6 @@ def replacing(path: str | os.PathLike[str]) -> Generator[Path]:
     Parameters
     ----------
     path : path
-        File to write.
 
     Yields
     ------

@@ -55,7 +55,6 @@ def make_scene(panels: Panels) -> Scene:
     Parameters
     ----------
     panels : Panels
-        The panels.
 
     Returns
     -------
@@ -126,15 +125,12 @@ def look(
     Parameters
     ----------
     scene : Scene
-        The scene.
     camera : Camera
-        The camera.
     samples : (n,) int array
         Samples of the picture, counted row by row.
     found : (n,) int array
         Triangles that are seen there.
     nearness : (n,) float array
-        Their nearness.
 
     Returns
     -------

@@ -59,15 +59,12 @@ class BrepLayout:
     Attributes
     ----------
     surface : Surface
-        Its surface.
     sides : tuple of Side
         The sides in the order of the loop.
     is_reversed : bool
         Whether the face looks against the normal of its surface.
     mesh : FaceMesh, optional
-        The render mesh.
     checksums : tuple of Checksum
-        Its checksums.
     numbers : tuple of (int, int)
         Places and counts of all float64 numbers.
     fixed : (n,) bool array

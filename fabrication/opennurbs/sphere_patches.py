@@ -57,7 +57,6 @@ def panel_charts(panels: Panels, arcs: Arcs, ids: IntArray) -> PanelCharts:
     arcs : Arcs
         Their outer edges.
     ids : (n,) int array
-        The panels.
 
     Returns
     -------

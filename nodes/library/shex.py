@@ -4,7 +4,9 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ...kernel.arrays import FloatArray
 from ...kernel.congruences import curvature_spheres as congruence
 from ...kernel.errors import name_ids
 from ...kernel.hexagons import dual_sphere_mesh as shex
@@ -254,3 +256,32 @@ def classify_hexagons(sphere_mesh: SphereMesh) -> FaceShapes:
         corners, or ``"crossing"``: two of its arcs meet, or it is folded over.
     """
     return face_shapes.face_shapes(sphere_mesh)
+
+
+@node
+def pencil_positions(
+    curvatures: FloatArray, first: FloatArray, second: FloatArray
+) -> NDArray[np.str_]:
+    """
+    Where touching spheres lie among the curvature spheres: faces are convex or bow-ties.
+
+    Parameters
+    ----------
+    curvatures : (N,) float array
+        Curvatures of the spheres, one over the signed distances of their centres.
+    first, second : (N,) float array
+        Principal curvatures of the surface, the larger ones first.
+
+    Returns
+    -------
+    (N,) str array
+        "empty" (the sphere does not meet the surface: neighbours cut out convex faces),
+        "principal", or "central" (between the curvature spheres: bow-ties).
+
+    Examples
+    --------
+    >>> pencil_positions(*np.array([[3.0, 2, 1], [2, 2, 2], [0, 0, 0]])).tolist()
+    ['empty', 'principal', 'central']
+    """
+    names = np.array([position.name.lower() for position in face_shapes.PencilPosition])
+    return names[face_shapes.pencil_positions(curvatures, first, second)]

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...fabrication.audit import beams as beam_audit
 from ...fabrication.audit import panels as panel_audit
+from ...fabrication.step.check import check_part21
 from ...kernel.analysis import angle_summary
 from ...kernel.beams.beams import Beams
 from ...kernel.meshes.mesh import mean_edge_length
@@ -17,7 +18,7 @@ from ...kernel.parts.findings import Finding, findings_report, refusals
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ...kernel.tolerances import SAME_PANEL
 from ..graphs.node import node, warn
-from ..graphs.ports import Port, Units
+from ..graphs.ports import Port, ReadPath, Units
 from .arrays import PanelLabels
 
 Length = Annotated[float, Port(min=0)]
@@ -184,6 +185,37 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     if beams is not None:
         findings += beam_audit.audit_beams(beams, units, limits=limits)
     return Audit(tuple(findings), findings_report(findings))
+
+
+@node
+def check_step(path: ReadPath) -> Audit:
+    """
+    Check the text of a STEP file: syntax, references, open loops, edges of solids.
+
+    Parameters
+    ----------
+    path : path
+        A file as `write_step` writes it.
+
+    Returns
+    -------
+    findings : tuple of Finding
+        What is wrong; empty if nothing is.
+    report : mapping
+        The findings, by severity.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import fit_spheres, panels, torus_mesh, write_step
+    >>> torus = panels(fit_spheres(torus_mesh(8, 6)), thickness=0.02).panels
+    >>> with TemporaryDirectory() as folder:
+    ...     check_step(write_step(torus, Path(folder) / "torus.step")).findings
+    ()
+    """
+    findings = check_part21(path)
+    return Audit(findings, findings_report(findings))
 
 
 @node

@@ -9,7 +9,7 @@ from threading import Barrier
 import pytest
 
 import spheremesh as sm
-from spheremesh.fabrication.mesh_files.formats import write_mesh
+from spheremesh.fabrication.mesh_files.writer import write_mesh
 from spheremesh.interfaces.panel import PanelOptions, panel_graph, run_job
 from spheremesh.nodes import NodeError
 from spheremesh.nodes.library.input import ellipsoid_mesh

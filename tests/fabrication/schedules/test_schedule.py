@@ -3,6 +3,7 @@
 import csv
 import json
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,8 +13,6 @@ import pytest
 from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.schedules.schedule import mould_rows, schedule_rows, write_schedule
 from spheremesh.kernel.errors import InputError, MissingLibraryError
-from spheremesh.kernel.optimization.angle_minimization import minimize_angles
-from spheremesh.kernel.optimization.clustering import cluster_radii
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.mould_blanks import panel_caps
 from spheremesh.kernel.panels.panels import (
@@ -28,10 +27,8 @@ from spheremesh.kernel.surfaces.circular_nets import torus_net
 
 
 @pytest.fixture(scope="module")
-def panels() -> Panels:
-    found = minimize_angles(face_planes(torus_net(16, 8, 10.0, 3.0)))[0]
-    found, clusters = cluster_radii(found, 3)
-    return cut_panels(found, "bisector", 0.05, 0.01, clusters.labels, "outward")[0]
+def panels(moulded: Callable[..., Panels]) -> Panels:
+    return moulded(face_planes(torus_net(16, 8, 10.0, 3.0)), 0.05, 0.01, side="outward")
 
 
 def test_rows_say_what_the_panels_are(panels: Panels) -> None:

@@ -15,13 +15,23 @@ from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
-from spheremesh.kernel.spheres.arcs import arc_points
+from spheremesh.kernel.spheres.arcs import Arcs, arc_points, sphere_arcs
 from spheremesh.kernel.spheres.incidence import evaluate, normals, signed_distance
 from spheremesh.kernel.spheres.rows import center_radius, from_center_radius, normalize, rescale
-from spheremesh.kernel.support.annuli import Annuli, annulus_arcs, corner_mismatch
+from spheremesh.kernel.support.annuli import Annuli, corner_mismatch
 from spheremesh.kernel.support.annulus_support import annulus_report, annulus_support
 from spheremesh.kernel.support.node_axes import support_structure
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
+
+
+def annulus_arcs(annuli: Annuli) -> tuple[Arcs, Arcs]:
+    """Outer and inner arcs in local coordinates, from the first to the second end."""
+    planes = -annuli.frames[:, 2]
+    outer, inner = (
+        sphere_arcs(rows, planes, annuli.corners[:, 0, k], annuli.corners[:, 1, k])
+        for k, rows in enumerate((annuli.outer, annuli.inner))
+    )
+    return outer, inner
 
 
 @pytest.fixture(scope="module")

@@ -44,7 +44,7 @@ def placement(origin: list[float]) -> TopLoc_Location:
     Returns
     -------
     TopLoc_Location
-        The location.
+        For `TopoDS_Shape.Located`.
     """
     translation = gp_Trsf()
     translation.SetTranslation(gp_Vec(*origin))
@@ -58,14 +58,12 @@ def make_vertex(point: list[float], tolerance: float) -> TopoDS_Vertex:
     Parameters
     ----------
     point : list of 3 float
-        Its point.
     tolerance : float
-        Its tolerance.
 
     Returns
     -------
     TopoDS_Vertex
-        The vertex.
+        To be shared by the edges that meet there.
     """
     vertex = TopoDS_Vertex()
     BUILDER.MakeVertex(vertex, gp_Pnt(*point), tolerance)
@@ -86,20 +84,17 @@ def make_edge(
     Parameters
     ----------
     curve : Geom_Curve
-        Its curve.
     start, end : TopoDS_Vertex
-        Its ends.
     length : float
-        Length of its parameters.
+        Length of the range of parameters.
     tolerance : float
-        Its tolerance.
     first : float
         Parameter of the start.
 
     Returns
     -------
     TopoDS_Edge
-        The edge.
+        To be shared by the faces on its sides.
     """
     edge = TopoDS_Edge()
     BUILDER.MakeEdge(edge, curve, tolerance)
@@ -118,16 +113,14 @@ def make_face(
     Parameters
     ----------
     surface : Geom_Surface
-        Its surface.
     ring : iterable of TopoDS_Shape
-        Its edges, oriented, counter-clockwise about the normal of the surface.
+        Oriented edges, counter-clockwise about the normal of the surface.
     tolerance : float
-        Its tolerance.
 
     Returns
     -------
     TopoDS_Face
-        The face.
+        With the normal of the surface.
     """
     wire = TopoDS_Wire()
     BUILDER.MakeWire(wire)
@@ -152,7 +145,7 @@ def make_solid(faces: Iterable[TopoDS_Shape]) -> TopoDS_Solid:
     Returns
     -------
     TopoDS_Solid
-        The solid.
+        What the faces enclose.
     """
     shell = TopoDS_Shell()
     BUILDER.MakeShell(shell)
@@ -174,7 +167,6 @@ def arc_curves(arcs: Arcs, circles: ArcCircles) -> tuple[list[Geom_Curve], list[
     arcs : Arcs
         H arcs.
     circles : ArcCircles
-        Their circles.
 
     Returns
     -------
@@ -216,7 +208,7 @@ def quintic_poles(nodes: FloatArray, steps: FloatArray) -> FloatArray:
     Returns
     -------
     (H, 3n + 3, 2) float array
-        Poles.
+        For `make_spline`.
     """
     value, rate, bend = nodes
     rate = rate * steps[:, None, None]
@@ -237,14 +229,12 @@ def make_spline(knots: list[float], poles: list[list[float]]) -> Geom2d_BSplineC
     Parameters
     ----------
     knots : list of n + 1 float
-        Knots.
     poles : list of 3n + 3 points
-        Poles.
 
     Returns
     -------
     Geom2d_BSplineCurve
-        The curve.
+        Triple at its inner knots.
     """
     points = TColgp_Array1OfPnt2d(1, len(poles))
     for i, pole in enumerate(poles, 1):

@@ -1,8 +1,10 @@
-"""What shapes of panels are made of in numbers, for OpenCASCADE and for STEP files alike."""
+"""Where panels stand, their tolerances and axes: for OpenCASCADE and for STEP files alike."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
-from ...kernel.arrays import FloatArray, IntArray, dot, norm, unit
+from ...kernel.arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ...kernel.errors import InputError
 from ...kernel.panels.congruent import CongruentPanels
 from ...kernel.panels.panels import Panels, move_origins, scale_panels
@@ -21,7 +23,6 @@ def rounded_origins(origins: FloatArray) -> FloatArray:
     Parameters
     ----------
     origins : (n, 3) float array
-        Origins.
 
     Returns
     -------
@@ -40,7 +41,6 @@ def panels_in_place(panels: Panels, scale: float) -> Panels:
     Parameters
     ----------
     panels : Panels
-        P panels.
     scale : float
         New units per model unit.
 
@@ -60,7 +60,6 @@ def copy_places(panels: Panels, same: CongruentPanels, scale: float) -> FloatArr
     Parameters
     ----------
     panels : Panels
-        P panels.
     same : CongruentPanels
         Which of them are identical, and the motions between them.
     scale : float
@@ -87,14 +86,13 @@ def panel_tolerances(panels: Panels, confusion: float = CONFUSION) -> FloatArray
     Parameters
     ----------
     panels : Panels
-        P panels.
     confusion : float
         Least tolerance, in the unit of the panels.
 
     Returns
     -------
     (P,) float array
-        Tolerances.
+        In the unit of the panels.
 
     Raises
     ------
@@ -117,10 +115,29 @@ def panel_tolerances(panels: Panels, confusion: float = CONFUSION) -> FloatArray
     rounding = 8 * EPSILON * np.maximum(radius, norm(panels.origins))
     missing = 2 * np.maximum.reduceat(misses, panels.offsets[:-1])
     tolerances = np.maximum(confusion, np.maximum(rounding, missing))
-    broken = [panels.ids[i] for i in np.flatnonzero(~np.isfinite(tolerances))]
-    if broken:
-        raise InputError(f"panel {broken[0]} ({len(broken)} in all) is not finite")
+    check_finite("panel", panels.ids, np.isfinite(tolerances))
     return tolerances
+
+
+def check_finite(kind: str, ids: Sequence[str], is_finite: BoolArray) -> None:
+    """
+    Refuse parts at which OpenCASCADE would crash.
+
+    Parameters
+    ----------
+    kind : str
+        What the parts are.
+    ids : (n,) sequence of str
+    is_finite : (n,) bool array
+
+    Raises
+    ------
+    InputError
+        If a part is not finite.
+    """
+    broken = [ids[i] for i in np.flatnonzero(~is_finite).tolist()]
+    if broken:
+        raise InputError(f"{kind} {broken[0]} ({len(broken)} in all) is not finite")
 
 
 def surface_frames(rows: FloatArray, arcs: Arcs, offsets: IntArray) -> FloatArray:

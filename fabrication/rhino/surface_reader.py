@@ -1,5 +1,5 @@
 """
-Surfaces and polysurfaces of a Rhino file as grids of quads with exact positions.
+Reads surfaces and polysurfaces of a Rhino file as grids of quads with exact positions.
 
 A face that is a whole surface is sampled over its domain. A face trimmed by four edges is
 sampled over the rectangle that they span in (u, v), by Coons; one trimmed by more or fewer is
@@ -16,7 +16,7 @@ from ...kernel.errors import InputError
 from ...kernel.surfaces.nurbs import NurbsSurface, evaluate_nurbs, nearest_parameters
 from ...kernel.tolerances import CLOSED, EDGE_MISS
 from ..polygons import Polygons, join_polygons
-from .objects import RhinoObject
+from .object_reader import RhinoObject
 
 SURFACES: Final = ("Surface", "NurbsSurface", "PlaneSurface", "RevSurface", "Brep", "Extrusion")
 """Classes of rhino3dm that can be sampled."""
@@ -74,7 +74,6 @@ def sample_object(geometry: RhinoObject, size: GridSize) -> list[Polygons]:
     geometry : rhino3dm.GeometryBase
         An object of one of the classes `SURFACES`.
     size : GridSize
-        How many quads.
 
     Returns
     -------
@@ -152,7 +151,7 @@ def _boundary(
     if not distances.max() <= EDGE_MISS * length:
         raise InputError(f"lies {distances.max():.3g} off its edges")
     bounds = np.cumsum([len(side) for side in sides])[:-1]
-    return _off_seams(surface, np.split(uv, bounds))
+    return off_seams(surface, np.split(uv, bounds))
 
 
 def _edge_points(curve: RhinoObject, steps: int) -> FloatArray:
@@ -161,8 +160,21 @@ def _edge_points(curve: RhinoObject, steps: int) -> FloatArray:
     return np.array([(p.X, p.Y, p.Z) for p in map(curve.PointAt, share)])
 
 
-def _off_seams(surface: NurbsSurface, sides: list[FloatArray]) -> list[FloatArray]:
-    """Sides along the seam of a closed surface, on that end of its domain where the face is."""
+def off_seams(surface: NurbsSurface, sides: list[FloatArray]) -> list[FloatArray]:
+    """
+    Sides along the seam of a closed surface, on that end of its domain where the face is.
+
+    Parameters
+    ----------
+    surface : NurbsSurface
+    sides : list of (m, 2) float array
+        Points in (u, v); those on the seam may be at either end of the domain.
+
+    Returns
+    -------
+    list of (m, 2) float array
+        The same sides, all of their points at one end.
+    """
     domain, size = surface.domain, np.ptp(surface.points[..., :3], axis=(0, 1)).max()
     joined = [side.copy() for side in sides]
     for axis, (low, high) in enumerate(domain):

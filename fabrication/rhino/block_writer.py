@@ -1,5 +1,5 @@
 """
-Block definitions of Rhino: one piece of geometry, set into the model many times.
+Writes blocks into a Rhino model: one piece of geometry, set into the model many times.
 
 rhino3dm gives definitions random ids; their streams are written here (`ON_InstanceDefinition`,
 `opennurbs_instance.cpp`), so that a file of the same panels has the same ids.
@@ -16,7 +16,7 @@ from ..opennurbs.brep_writer import brep_streams
 from ..opennurbs.render_meshes import MESH_TOLERANCE, panel_meshes
 from ..opennurbs.stream_codes import ANONYMOUS
 from ..opennurbs.stream_writer import Chunk, class_object, doubles, encode, ints
-from .model import RhinoModel, Untyped, add_surface_layer, object_attributes, object_id
+from .model import RhinoModel, Untyped, add_layer, object_attributes, object_id
 
 _INSTANCE_DEFINITION = UUID("26f8bff6-2618-417f-a158-153d64a94989").bytes_le
 
@@ -36,38 +36,21 @@ def add_definition(
     Parameters
     ----------
     model : RhinoModel
-        The model.
     name : str
-        Name of the block.
     definition : UUID
-        Its id.
     geometry : CommonObject
         The object, in the coordinates of the block.
     attributes : ObjectAttributes
-        Its attributes, with an id.
+        With an id.
     """
     attributes.Mode = model.library.ObjectMode.InstanceDefinitionObject
     model.file.Objects.Add(geometry, attributes)
-    stream = definition_stream(name, definition, attributes.Id)
+    stream = _definition_stream(name, definition, attributes.Id)
     model.file.InstanceDefinitions.AddInstanceDefinition(model.decode(stream))
 
 
-def definition_stream(name: str, definition: UUID, member: UUID) -> bytes:
-    """
-    A block of one object as an `ON_InstanceDefinition`.
-
-    Parameters
-    ----------
-    name : str
-        Name of the block.
-    definition, member : UUID
-        Ids of the block and of the object.
-
-    Returns
-    -------
-    bytes
-        The stream.
-    """
+def _definition_stream(name: str, definition: UUID, member: UUID) -> bytes:
+    """A block of one object as an `ON_InstanceDefinition`."""
     text = (name + "\0").encode("utf-16-le")
     component = Chunk(_COMPONENT, (
         ints(1, 0) + b"\0\1" + definition.bytes_le + b"\0\1" + ints(_UNSET_INDEX) + b"\1",
@@ -96,7 +79,6 @@ def add_instance(
     Parameters
     ----------
     model : RhinoModel
-        The model.
     definition : UUID
         Id of the block.
     rotation : (3, 3) float array
@@ -104,7 +86,6 @@ def add_instance(
     translation : (3,) float array
         Where its origin goes.
     attributes : ObjectAttributes
-        Attributes of the instance.
     """
     transform = model.library.Transform(1.0)
     for i in range(3):
@@ -122,9 +103,8 @@ def add_mould_blocks(model: RhinoModel, panels: Panels, *, render_meshes: bool) 
     Parameters
     ----------
     model : RhinoModel
-        The model.
     panels : Panels
-        Panels, with and without moulds.
+        With and without moulds.
     render_meshes : bool
         Whether the blocks carry triangles for viewers that cannot mesh them.
 
@@ -134,7 +114,7 @@ def add_mould_blocks(model: RhinoModel, panels: Panels, *, render_meshes: bool) 
         Moulds that are left out, with their reasons.
     """
     # They lie under the panels: they are there to be switched on.
-    place = add_surface_layer(model, "Moulds", UNLABELLED, visible=False)
+    place = add_layer(model, "Moulds", UNLABELLED, has_material=True, visible=False)
     found = mould_caps(panels)
     meshes = panel_meshes(found.caps, MESH_TOLERANCE) if render_meshes else None
     streams = brep_streams(found.caps, meshes)
@@ -142,14 +122,14 @@ def add_mould_blocks(model: RhinoModel, panels: Panels, *, render_meshes: bool) 
     notes: list[str] = []
     blocks: list[UUID | None] = []
     for name, stream, errors in zip(found.caps.ids, streams, judged, strict=True):
-        blocks.append(None if errors.reason() else object_id(name, "mould block"))
         if errors.reason():
             notes.append(f"the block of {name} is left out: {errors.reason()}")
+            blocks.append(None)
             continue
+        block = object_id(name, "mould block")
         member = object_attributes(model, name, "mould member", place)
-        add_definition(
-            model, name, object_id(name, "mould block"), model.decode(stream), member
-        )
+        add_definition(model, name, block, model.decode(stream), member)
+        blocks.append(block)
     panel_ids: list[int] = found.members.tolist()
     rows: list[int] = found.rows.tolist()
     for i, (panel, row) in enumerate(zip(panel_ids, rows, strict=True)):

@@ -1,5 +1,5 @@
 """
-Mesh files: polygons in and out, in the order of the file.
+Reads mesh files: polygons in the order of the file; the suffix names the format.
 
 The parsers are ours because a face is a panel: trimesh cuts polygons into triangles; meshio
 5.3.5 reads only triangles from OFF, mistakes negative OBJ numbers, fails on ``vertex_index``
@@ -13,27 +13,20 @@ from typing import Final
 
 from ...kernel.errors import InputError
 from ...kernel.meshes.mesh import Mesh
-from ..files import replacing
 from ..polygons import Polygons, to_mesh
-from ..rhino.meshes import read_3dm, write_3dm
-from ..rhino.surfaces import GridSize
-from .obj import format_obj, read_obj
-from .off import format_off, read_off
-from .ply import format_ply, read_ply
-from .stl import format_stl, read_stl
+from ..rhino.reader import read_3dm
+from ..rhino.surface_reader import GridSize
+from .obj import read_obj
+from .off import read_off
+from .ply import read_ply
+from .stl import read_stl
 
 _READERS: Final[dict[str, Callable[[bytes], Polygons]]] = {
     ".off": read_off,
     ".ply": read_ply,
     ".stl": read_stl,
 }
-_FORMATTERS: Final[dict[str, Callable[[Mesh], bytes]]] = {
-    ".obj": format_obj,
-    ".off": format_off,
-    ".ply": format_ply,
-    ".stl": format_stl,
-}
-SUFFIXES: Final = (*_FORMATTERS, ".3dm")
+SUFFIXES: Final = (".obj", *_READERS, ".3dm")
 """The formats of mesh files, by suffix; capitals do."""
 
 
@@ -72,7 +65,7 @@ def read_mesh(
         file, the line (of text files) or the faces, and what to do. Faces are never flipped.
     """
     source = Path(path)
-    suffix = _suffix(source, "read")
+    suffix = mesh_suffix(source, "read")
     if layer and suffix in _READERS:
         raise InputError(f"cannot read {source}: {suffix} files have no layers; drop {layer!r}")
     if min(n_u, n_v) < 1:
@@ -88,51 +81,26 @@ def read_mesh(
         raise InputError(f"cannot read {source}: {error}") from error
 
 
-def write_mesh(mesh: Mesh, path: str | os.PathLike[str]) -> Path:
+def mesh_suffix(path: Path, verb: str) -> str:
     """
-    Write a mesh to an OBJ, OFF, PLY, STL or Rhino .3dm file.
+    The format of a mesh file.
 
     Parameters
     ----------
-    mesh : Mesh
-        The mesh.
-    path : path
-        The file; its suffix names the format. An older file is replaced once the new one is
-        complete.
+    path : Path
+    verb : str
+        What is to be done with it, for the message.
 
     Returns
     -------
-    Path
-        The file.
+    str
+        Its suffix, one of `SUFFIXES`.
 
     Raises
     ------
     InputError
-        If the suffix is not known or the file cannot be written.
-
-    Notes
-    -----
-    Vertices keep all digits of float64 and faces their order and corners, except in STL: it
-    holds triangles with float32 corners, so other faces are cut into triangles.
+        If it is a folder, no file can have that name, or the format is not known.
     """
-    target = Path(path)
-    suffix = _suffix(target, "write")
-    with replacing(target) as temporary:
-        try:
-            _write(mesh, suffix, temporary)
-        except InputError as error:
-            raise InputError(f"cannot write {target}: {error}") from error
-    return target
-
-
-def _write(mesh: Mesh, suffix: str, path: Path) -> None:
-    if suffix == ".3dm":
-        write_3dm(mesh, path)
-    else:
-        path.write_bytes(_FORMATTERS[suffix](mesh))
-
-
-def _suffix(path: Path, verb: str) -> str:
     suffix = path.suffix.lower()
     try:
         is_folder = path.is_dir()

@@ -1,4 +1,4 @@
-"""Objects of a Rhino model where they stand, those inside blocks included."""
+"""Reads the objects of a Rhino file where they stand, those inside blocks included."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -26,7 +26,6 @@ def placed_objects(model: RhinoObject, layer: str) -> list[PlacedObject]:
     Parameters
     ----------
     model : rhino3dm.File3dm
-        The model.
     layer : str
         Full path of a layer: only what is on it and on its sublayers; empty for all. Objects
         in a block count where they are themselves, and where the instance is.

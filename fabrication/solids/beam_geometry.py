@@ -1,4 +1,4 @@
-"""What solids of beams are made of in numbers, for OpenCASCADE and for STEP files alike."""
+"""Corners, faces, circles and cuts of beams: for OpenCASCADE and for STEP files alike."""
 
 from dataclasses import dataclass, replace
 
@@ -7,17 +7,16 @@ import numpy as np
 from ...kernel.arrays import BoolArray, FloatArray, norm
 from ...kernel.beams.beams import Beams, side_arcs
 from ...kernel.beams.end_edges import CutEdges, cut_edges
-from ...kernel.errors import InputError
 from ...kernel.spheres.arcs import ArcCircles, Arcs, arc_circles
 from ...kernel.tolerances import EPSILON
-from .panel_numbers import CONFUSION, rounded_origins
+from .panel_geometry import CONFUSION, check_finite, rounded_origins
 
 LEVELS = ((0, 1), (1, 2), (0, 2))
 """Lower and upper level of the edges across the thickness; the last at flat ends."""
 
 
 @dataclass(frozen=True)
-class BeamNumbers:
+class BeamGeometry:
     """
     Solids of beams, about their rounded origins.
 
@@ -41,7 +40,6 @@ class BeamNumbers:
     arcs : dict of int to (Arcs, Arcs)
         Outer and inner edges of the lower (0) and the upper (2) side.
     circles : dict of int to (ArcCircles, ArcCircles)
-        Their circles.
     cuts : dict of (int, int) to CutEdges
         Edges across the thickness, by their levels.
     tolerances : (B,) float array
@@ -61,21 +59,20 @@ class BeamNumbers:
     tolerances: FloatArray
 
 
-def beam_numbers(beams: Beams, confusion: float = CONFUSION) -> BeamNumbers:
+def beam_geometry(beams: Beams, confusion: float = CONFUSION) -> BeamGeometry:
     """
-    Numbers of the solids of beams.
+    Geometry of the solids of beams.
 
     Parameters
     ----------
     beams : Beams
-        B beams.
     confusion : float
         Least tolerance, in the unit of the beams.
 
     Returns
     -------
-    BeamNumbers
-        The numbers.
+    BeamGeometry
+        About rounded origins.
 
     Raises
     ------
@@ -98,7 +95,7 @@ def beam_numbers(beams: Beams, confusion: float = CONFUSION) -> BeamNumbers:
     arcs = {level: _moved(side_arcs(beams, level), shifts) for level in (0, 2)}
     circles = {level: (arc_circles(a), arc_circles(b)) for level, (a, b) in arcs.items()}
     tolerances = _tolerances(beams, radii, cuts, confusion)
-    return BeamNumbers(
+    return BeamGeometry(
         beams, places, corners, centers, radii, frames, rows[..., 0] < 0, arcs, circles, cuts,
         tolerances,
     )  # fmt: skip
@@ -120,7 +117,5 @@ def _tolerances(
         misses = np.maximum(misses, 4 * cut.misses.max(axis=(1, 2)))
     tolerances = np.maximum(confusion, misses)
     is_finite = np.isfinite(beams.corners).all(axis=(1, 2, 3, 4)) & np.isfinite(tolerances)
-    broken = [beams.annuli.ids[i] for i in np.flatnonzero(~is_finite)]
-    if broken:
-        raise InputError(f"beam {broken[0]} ({len(broken)} in all) is not finite")
+    check_finite("beam", beams.annuli.ids, is_finite)
     return tolerances

@@ -1,5 +1,5 @@
 """
-Beams for a Rhino model: capped extrusions of their flat contours, drilling marks, and nodes.
+Writes beams into a Rhino model: capped extrusions of their contours, drilling marks, nodes.
 
 An extrusion is what a flat piece is before its ends are mitred: the contour in the middle of
 the thickness, whose ends lie on the node axes. The mitres are in the STEP file. Nodes are lines
@@ -31,7 +31,7 @@ from ..opennurbs.render_meshes import (
     extrusions_with_meshes,
     gather_meshes,
 )
-from .model import RhinoModel, Untyped, add_layer, add_surface_layer, object_attributes
+from .model import RhinoModel, Untyped, add_layer, object_attributes
 
 
 def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: bool) -> None:
@@ -44,16 +44,14 @@ def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: boo
     Parameters
     ----------
     model : RhinoModel
-        The model.
     beams : Beams
-        The beams.
     units : str
         Model units.
     render_meshes : bool
         Whether the extrusions carry triangles for viewers that cannot mesh them.
     """
-    place = add_surface_layer(model, "Beams", BEAM)
-    solids, texts = beam_extrusions(model.library, beams), beam_text(beams, units)
+    place = add_layer(model, "Beams", BEAM, has_material=True)
+    solids, texts = _beam_extrusions(model.library, beams), _beam_text(beams, units)
     if render_meshes and solids:
         error = MESH_TOLERANCE * float(beam_lengths(beams).min()) / 2
         groups = list(beam_triangles(beams, MESH_TOLERANCE))
@@ -64,12 +62,12 @@ def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: boo
             attributes.SetUserString(key, value)
         model.file.Objects.AddExtrusion(solid, attributes)
     place = add_layer(model, "Axes", AXIS)
-    for name, line in axis_lines(model.library, beams):
+    for name, line in _axis_lines(model.library, beams):
         model.file.Objects.AddCurve(line, object_attributes(model, name, "axis", place))
     cylinders = node_cylinders(beams)
     if cylinders.n_nodes:
-        place = add_surface_layer(model, "Nodes", NODE)
-        solids = cylinder_extrusions(model.library, cylinders)
+        place = add_layer(model, "Nodes", NODE, has_material=True)
+        solids = _cylinder_extrusions(model.library, cylinders)
         if render_meshes:
             error = MESH_TOLERANCE * cylinders.radius
             triangles = cylinder_triangles(
@@ -82,32 +80,13 @@ def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: boo
             model.file.Objects.AddExtrusion(solid, attributes)
     if beams.marks is not None:
         place = add_layer(model, "Drilling", AXIS)
-        for name, number, circle in mark_circles(model.library, beams, beams.marks):
+        for name, number, circle in _mark_circles(model.library, beams, beams.marks):
             attributes = object_attributes(model, name, f"mark {number}", place)
             model.file.Objects.AddCurve(circle, attributes)
 
 
-def beam_extrusions(library: Untyped, beams: Beams) -> list[Untyped]:
-    """
-    A capped extrusion per beam.
-
-    Parameters
-    ----------
-    library : module
-        The module rhino3dm.
-    beams : Beams
-        B beams.
-
-    Returns
-    -------
-    list of rhino3dm.Extrusion
-        B solids, in model coordinates, as thick as the beams.
-
-    Raises
-    ------
-    InputError
-        If openNURBS finds one invalid; the message names the beams.
-    """
+def _beam_extrusions(library: Untyped, beams: Beams) -> list[Untyped]:
+    """A capped extrusion per beam in model coordinates, as thick as the beams."""
     outer, inner = section_arcs(beams)
     circles = arc_circles(outer), arc_circles(inner)
     lifts = -beams.annuli.frames[:, 2] * beams.thickness / 2
@@ -153,9 +132,7 @@ def with_meshes(
     Parameters
     ----------
     model : RhinoModel
-        The model.
     solids : list of rhino3dm.Extrusion
-        The solids.
     meshes : RenderMeshes
         The triangles of each.
 
@@ -197,24 +174,8 @@ def _curve(
     return library.ArcCurve.CreateFromArc(library.Arc(circle, float(circles.sweeps[i])))
 
 
-def beam_text(beams: Beams, units: str) -> list[dict[str, str]]:
-    """
-    User text of beams.
-
-    Parameters
-    ----------
-    beams : Beams
-        B beams.
-    units : str
-        Model units.
-
-    Returns
-    -------
-    list of dict of str to str
-        B mappings: ``id``, ``edge``, ``nodes`` at its ends, ``faces`` beside it (``-`` beyond
-        the boundary), ``outer_radius`` and ``inner_radius`` (``straight`` for lines),
-        ``thickness``, ``length``, ``tilt`` in degrees, ``units``.
-    """
+def _beam_text(beams: Beams, units: str) -> list[dict[str, str]]:
+    """User text of each beam; ``-`` is beyond the boundary, `tilt` in degrees."""
     annuli, facts = beams.annuli, beam_facts(beams)
     rows = zip(
         annuli.ids, annuli.edge_ids.tolist(), annuli.edge_vertices.tolist(),
@@ -242,22 +203,8 @@ def _radius(value: float) -> str:
     return f"{value:.12g}" if np.isfinite(value) else "straight"
 
 
-def axis_lines(library: Untyped, beams: Beams) -> list[tuple[str, Untyped]]:
-    """
-    The node axes between the outer and the inner corners of the beams.
-
-    Parameters
-    ----------
-    library : module
-        The module rhino3dm.
-    beams : Beams
-        The beams.
-
-    Returns
-    -------
-    list of (str, rhino3dm.LineCurve)
-        Name and line of each node that carries beams.
-    """
+def _axis_lines(library: Untyped, beams: Beams) -> list[tuple[str, Untyped]]:
+    """Name and line of each node axis, between the outer and the inner corners of beams."""
     vertices, segments = node_axis_segments(beams)
     return [
         (node_name(vertex), library.LineCurve(library.Point3d(*a), library.Point3d(*b)))
@@ -265,27 +212,8 @@ def axis_lines(library: Untyped, beams: Beams) -> list[tuple[str, Untyped]]:
     ]
 
 
-def cylinder_extrusions(library: Untyped, cylinders: NodeCylinders) -> list[Untyped]:
-    """
-    A capped extrusion per node cylinder.
-
-    Parameters
-    ----------
-    library : module
-        The module rhino3dm.
-    cylinders : NodeCylinders
-        N cylinders.
-
-    Returns
-    -------
-    list of rhino3dm.Extrusion
-        N solids, in model coordinates.
-
-    Raises
-    ------
-    InputError
-        If openNURBS finds one invalid; the message names the nodes.
-    """
+def _cylinder_extrusions(library: Untyped, cylinders: NodeCylinders) -> list[Untyped]:
+    """A capped extrusion per node cylinder, in model coordinates."""
     solids: list[Untyped] = []
     for origin, direction, height in zip(
         cylinders.origins.tolist(), cylinders.directions.tolist(), cylinders.heights.tolist(),
@@ -306,26 +234,10 @@ def cylinder_extrusions(library: Untyped, cylinders: NodeCylinders) -> list[Unty
     return solids
 
 
-def mark_circles(
+def _mark_circles(
     library: Untyped, beams: Beams, marks: DrillMarks
 ) -> list[tuple[str, int, Untyped]]:
-    """
-    Drilling marks as circles on the sides of the beams to which their normals point.
-
-    Parameters
-    ----------
-    library : module
-        The module rhino3dm.
-    beams : Beams
-        The beams.
-    marks : DrillMarks
-        Their marks.
-
-    Returns
-    -------
-    list of (str, int, rhino3dm.ArcCurve)
-        Name of the beam, number of the hole in it, and circle.
-    """
+    """Name of the beam, number of the hole, and circle on the side of the normal."""
     annuli = beams.annuli
     lifts = annuli.origins + annuli.frames[:, 2] * beams.thickness / 2
     centers = marks.holes + lifts[:, None]
