@@ -20,7 +20,6 @@ def remeshing_report(done: Remeshing, mesh: Mesh, edge_length: float) -> dict[st
     Parameters
     ----------
     done : Remeshing
-        How the net was made.
     mesh : Mesh
         Its mesh in the end, with the same faces.
     edge_length : float
@@ -67,7 +66,6 @@ def planarization_report(start: SphereMesh, result: Planarization) -> dict[str, 
     Parameters
     ----------
     start : SphereMesh
-        The sphere mesh before.
     result : Planarization
         The sphere mesh after, on the same faces.
 
