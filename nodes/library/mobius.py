@@ -32,6 +32,14 @@ def inversion(center: FloatArray, radius: Annotated[float, Port(min=0)] = 1.0) -
     -------
     (5, 5) float array
         The transform, for `apply_mobius` and `compose`.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import apply_mobius, inversion
+    >>> apply_mobius([[2.0, 0.0, 0.0]], inversion([0.0, 0.0, 0.0], radius=2.0))
+    array([[2., 0., 0.]])
+    >>> apply_mobius([[4.0, 0.0, 0.0]], inversion([0.0, 0.0, 0.0], radius=2.0))
+    array([[1., 0., 0.]])
     """
     return mobius.inversion(center, radius)
 
@@ -59,6 +67,12 @@ def similarity(
     -------
     (5, 5) float array
         The transform, for `apply_mobius` and `compose`.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import apply_mobius, similarity
+    >>> apply_mobius([[1.0, 0.0, 0.0]], similarity(2.0, rotation=[0.0, 0.0, 90.0])).round(9)
+    array([[0., 2., 0.]])
     """
     if rotation is not None and np.shape(rotation) == (3,):
         rotation = mobius.rotation_about(np.radians(rotation))
@@ -79,6 +93,13 @@ def compose(transforms: list[FloatArray]) -> FloatArray:
     -------
     (5, 5) float array
         The transform.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import apply_mobius, compose, similarity
+    >>> twice = compose([similarity(scale=2.0), similarity(translation=[1.0, 0.0, 0.0])])
+    >>> apply_mobius([[1.0, 0.0, 0.0]], twice)
+    array([[3., 0., 0.]])
     """
     return mobius.compose(transforms)
 
@@ -93,13 +114,18 @@ def apply_mobius(geometry: Geometry, transform: FloatArray) -> Geometry:
     geometry : SphereMesh, Mesh, (N, 3) or (N, 5) float array
         A sphere mesh, a mesh (its vertices are carried along), points or rows of spheres.
     transform : (5, 5) float array
-        The transform.
 
     Returns
     -------
     SphereMesh, Mesh, (N, 3) or (N, 5) float array
         The same kind, elements in the same order. Where the transform turns right into left,
         as every inversion does, faces run the other way round: outside stays outside.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import apply_mobius, inversion
+    >>> apply_mobius([[2.0, 0.0, 0.0]], inversion([0.0, 0.0, 0.0]))
+    array([[0.5, 0. , 0. ]])
     """
     if isinstance(geometry, SphereMesh):
         return mobius_maps.map_sphere_mesh(geometry, transform)
