@@ -29,6 +29,7 @@ from OCP.TopExp import TopExp_Explorer
 
 from spheremesh import SphereMesh
 from spheremesh.fabrication.audit.beams import audit_beams
+from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.rhino.writer import write_3dm
 from spheremesh.fabrication.schedules.schedule import write_schedule
 from spheremesh.fabrication.step.writer import write_step
@@ -81,8 +82,8 @@ def report_files(made: Beams, folder: Path) -> None:
     plain = replace(made, node_radius=0.0, marks=None)
     for name, write in (("STEP", write_step), ("Rhino", write_3dm)):
         suffix = ".step" if name == "STEP" else ".3dm"
-        _, bare = timed(lambda: write(None, folder / f"p{suffix}", beams=plain))  # noqa: B023
-        _, full = timed(lambda: write(None, folder / f"f{suffix}", beams=made))  # noqa: B023
+        _, bare = timed(lambda: write(Model(beams=plain), folder / f"p{suffix}"))  # noqa: B023
+        _, full = timed(lambda: write(Model(beams=made), folder / f"f{suffix}"))  # noqa: B023
         sizes = [(folder / f"{kind}{suffix}").stat().st_size / 1e6 for kind in "pf"]
         print(
             f"  {name}: {bare / count:.2f} ms per beam and {sizes[0]:.1f} MB; with "
@@ -111,8 +112,8 @@ def report(name: str, sphere_mesh: SphereMesh) -> None:
     findings, auditing = timed(lambda: audit_beams(made))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder)
-        _, table = timed(lambda: write_schedule(None, path / "b.csv", beams=made))
-        _, rows = timed(lambda: write_schedule(None, path / "b.json", beams=made))
+        _, table = timed(lambda: write_schedule(Model(beams=made), path / "b.csv").path)
+        _, rows = timed(lambda: write_schedule(Model(beams=made), path / "b.json").path)
         print(
             f"  marks {marking / count:.3f} ms ({len(refused)} refused), measures "
             f"{measuring / count:.3f}, audit {auditing / count:.3f} ({len(findings)} "

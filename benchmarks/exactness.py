@@ -25,10 +25,11 @@ from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Shape
 
+from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.opennurbs.brep_audit import verify_breps
-from spheremesh.fabrication.opennurbs.brep_layout import read_brep_streams
+from spheremesh.fabrication.opennurbs.brep_reader import read_brep_streams
 from spheremesh.fabrication.rhino.writer import write_3dm
-from spheremesh.fabrication.solids.panel_shapes import panel_shapes
+from spheremesh.fabrication.solids.opencascade_panels import panel_shapes
 from spheremesh.fabrication.step.writer import write_step
 from spheremesh.fabrication.units import millimeters_per
 from spheremesh.kernel.arrays import FloatArray
@@ -76,7 +77,7 @@ def judge_step(made: Panels, path: Path, units: str) -> None:
     print("STEP, before writing")
     worst = np.abs(measure(panel_shapes(made, scale)) / closed - 1).max(0)
     print(f"  worst relative error: area {worst[0]:.1e}, volume {worst[1]:.1e}")
-    write_step(made, path, units)
+    write_step(Model(made, units=units), path)
     reader = STEPControl_Reader()
     reader.ReadFile(str(path))
     reader.TransferRoots()
@@ -102,7 +103,7 @@ def judge_step(made: Panels, path: Path, units: str) -> None:
 
 def judge_rhino(made: Panels, path: Path, units: str) -> None:
     """Check a Rhino file from its bytes and with rhino3dm."""
-    write_3dm(made, path, units)
+    write_3dm(Model(made, units=units), path)
     streams = read_brep_streams(path.read_bytes())
     errors = verify_breps(streams, made.spheres, made.origins)
     refused = [error.reason() for error in errors if error.reason()]

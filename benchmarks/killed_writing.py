@@ -33,6 +33,7 @@ from pathlib import Path
 import rhino3dm
 
 from spheremesh import nodes
+from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.rhino import writer as rhino
 from spheremesh.fabrication.step import writer as step
 from spheremesh.interfaces.panel import PanelOptions, panel_graph, run_job
@@ -48,7 +49,7 @@ beams = nodes.beams(nodes.annulus_support(spheres, depth=0.25).annuli, 0.025).be
 write = nodes.write_3dm if sys.argv[1].endswith(".3dm") else nodes.write_step
 write(made, sys.argv[1], beams=beams)
 """
-Writer = Callable[[Panels, Path], object]
+Writer = Callable[[Model, Path], object]
 FORK = multiprocessing.get_context("fork")
 
 
@@ -62,7 +63,7 @@ def export(path: Path) -> int:
 
 def kill(write: Writer, panels: Panels, path: Path, wait: Callable[[], None]) -> None:
     """Write in another process and kill it when the wait is over."""
-    process = FORK.Process(target=write, args=(panels, path))
+    process = FORK.Process(target=write, args=(Model(panels), path))
     process.start()
     wait()
     process.kill()
@@ -92,10 +93,10 @@ def is_whole(path: Path, n_panels: int) -> bool:
 
 def torment(write: Writer, panels: Panels, path: Path, kills: int) -> Counter[str]:
     """What was found after each kill."""
-    write(panels, path)
+    write(Model(panels), path)
     assert is_whole(path, panels.n_panels)
     began = time.perf_counter()
-    process = FORK.Process(target=write, args=(panels, path))
+    process = FORK.Process(target=write, args=(Model(panels), path))
     process.start()
     process.join()
     seconds = time.perf_counter() - began

@@ -21,7 +21,7 @@ Figures = dict[str, float]
 
 def optimise(n_span: int, n_length: int) -> Figures:
     """Net, start and angle minimisation of a roof."""
-    from spheremesh.kernel.optimization.pencil import minimize_angles
+    from spheremesh.kernel.optimization.angle_minimization import minimize_angles
     from spheremesh.kernel.sphere_meshes.fit import fit_spheres
     from spheremesh.nodes import roof_mesh
 
@@ -42,7 +42,8 @@ def optimise(n_span: int, n_length: int) -> Figures:
 
 def write(kind: str) -> Figures:
     """One file of 5,000 panels."""
-    from spheremesh.fabrication.rhino.writer import RhinoContents, write_3dm
+    from spheremesh.fabrication.model import Model
+    from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
     from spheremesh.fabrication.step.writer import write_step
     from spheremesh.nodes import cluster_radii, fit_spheres, minimize_angles, panels, roof_mesh
 
@@ -52,9 +53,9 @@ def write(kind: str) -> Figures:
     path = Path(tempfile.mkdtemp()) / ("panels.step" if kind == "step" else "model.3dm")
     began = time.process_time()
     if kind == "step":
-        write_step(cut, path)
+        write_step(Model(cut), path)
     else:
-        write_3dm(cut, path, contents=RhinoContents(render_meshes=kind == "3dm"))
+        write_3dm(Model(cut), path, RhinoOptions(render_meshes=kind == "3dm"))
     return {
         "panels": cut.n_panels,
         "write_s": time.process_time() - began,

@@ -29,8 +29,9 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from spheremesh import SphereMesh
-from spheremesh.fabrication.solids.beam_shapes import beam_shapes
-from spheremesh.fabrication.solids.panel_shapes import panel_shapes
+from spheremesh.fabrication.model import Model
+from spheremesh.fabrication.solids.opencascade_beams import beam_shapes
+from spheremesh.fabrication.solids.opencascade_panels import panel_shapes
 from spheremesh.fabrication.step.check import check_part21
 from spheremesh.fabrication.step.writer import write_step
 from spheremesh.interfaces.panel import PanelOptions, panel_graph
@@ -45,7 +46,7 @@ from spheremesh.kernel.panels.panels import (
     panel_areas,
     panel_volumes,
 )
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.spheres.arcs import (
     Arcs,
     arc_lengths,
@@ -201,7 +202,7 @@ def judge_job(name: str) -> None:
         print("  panels:", judge(panel_shapes(panels, MILLIMETERS), *kinds["panels"]))
         print("  beams: ", judge(beam_shapes(beams, MILLIMETERS), *kinds["beams"]), flush=True)
         began = time.process_time()
-        path = write_step(panels, Path(folder) / "model.step", beams=beams)
+        path = write_step(Model(panels, beams), Path(folder) / "model.step").path
         seconds, count = time.process_time() - began, panels.n_panels + beams.n_beams
         print(
             f"model.step: {seconds:.2f} s, {1000 * seconds / count:.2f} ms each, "

@@ -19,15 +19,16 @@ from exactness import judge_step
 
 from spheremesh.fabrication.audit.panels import audit_panels
 from spheremesh.fabrication.drawings.moulds import write_mould_drawings
+from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.opennurbs.render_meshes import (
     MESH_TOLERANCE,
     mesh_streams,
     panel_meshes,
 )
-from spheremesh.fabrication.rhino.writer import RhinoContents, write_3dm
+from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
 from spheremesh.fabrication.schedules.schedule import write_schedule
 from spheremesh.fabrication.step.check import check_part21
-from spheremesh.fabrication.step.writer import write_step
+from spheremesh.fabrication.step.writer import StepOptions, write_step
 from spheremesh.kernel.panels.congruent import congruent_panels
 from spheremesh.kernel.panels.mould_blanks import mould_blanks
 from spheremesh.kernel.panels.panels import Panels
@@ -72,11 +73,9 @@ def rhino_files(made: Panels, folder: Path) -> None:
     """Panels with user text and edges, with and without render meshes."""
     import rhino3dm  # noqa: F401 - outside the clock
 
-    bare = RhinoContents(render_meshes=False)
-    clock(".3dm", lambda: write_3dm(made, folder / "p.3dm").path)
-    clock(
-        ".3dm, no render meshes", lambda: write_3dm(made, folder / "b.3dm", contents=bare).path
-    )
+    bare = RhinoOptions(render_meshes=False)
+    clock(".3dm", lambda: write_3dm(Model(made), folder / "p.3dm").path)
+    clock(".3dm, no render meshes", lambda: write_3dm(Model(made), folder / "b.3dm", bare).path)
     clock("render meshes alone", lambda: mesh_streams(panel_meshes(made, MESH_TOLERANCE)))
 
 
@@ -88,21 +87,26 @@ def main() -> None:
     rhino_files(made, folder)
     if sys.argv[1:] == ["rhino"]:
         return
-    clock("STEP, 5,000 shapes", lambda: write_step(made, folder / "shapes.step"))
+    clock("STEP, 5,000 shapes", lambda: write_step(Model(made), folder / "shapes.step").path)
     clock("its check", lambda: check_part21(folder / "shapes.step"))
     ring = torus()
-    clock("STEP, instances", lambda: write_step(ring, folder / "i.step", copies="instances"))
+    clock(
+        "STEP, instances",
+        lambda: (
+            write_step(Model(ring), folder / "i.step", StepOptions(copies="instances")).path
+        ),
+    )
     clock("its check", lambda: check_part21(folder / "i.step"))
-    clock("STEP, same without", lambda: write_step(ring, folder / "s.step"))
+    clock("STEP, same without", lambda: write_step(Model(ring), folder / "s.step").path)
     same = congruent_panels(made)
     clock("identical panels", lambda: congruent_panels(made))
     clock("identical panels, torus", lambda: congruent_panels(ring))
     clock("mould blanks", lambda: mould_blanks(made, same))
     clock("audit", lambda: audit_panels(made))
-    clock("schedule.csv", lambda: write_schedule(made, folder / "s.csv"))
-    clock("schedule.json", lambda: write_schedule(made, folder / "s.json"))
-    clock("moulds.dxf", lambda: write_mould_drawings(made, folder / "m.dxf"))
-    clock("moulds.svg", lambda: write_mould_drawings(made, folder / "m.svg"))
+    clock("schedule.csv", lambda: write_schedule(Model(made), folder / "s.csv").path)
+    clock("schedule.json", lambda: write_schedule(Model(made), folder / "s.json").path)
+    clock("moulds.dxf", lambda: write_mould_drawings(Model(made), folder / "m.dxf").path)
+    clock("moulds.svg", lambda: write_mould_drawings(Model(made), folder / "m.svg").path)
     if sys.argv[1:] == ["exact"]:
         for side in ("inward", "centred"):
             print(side)

@@ -19,6 +19,7 @@ import threading
 import time
 import warnings
 from collections import Counter
+from dataclasses import replace
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -27,9 +28,10 @@ from typing import Any
 import numpy as np
 
 from spheremesh import nodes
-from spheremesh.fabrication.rhino.writer import RhinoContents, RhinoFile, write_3dm
+from spheremesh.fabrication.model import Model, Written
+from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
 from spheremesh.kernel.meshes.mesh import Mesh
-from spheremesh.kernel.panels.panels import select_panels
+from spheremesh.kernel.parts.records import select_parts
 
 HERE = Path(__file__).parent
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
@@ -37,22 +39,22 @@ KINDS = {"ArcCurve": "Curve", "LineCurve": "Curve"}
 PATIENCE = 120
 
 
-def write_model(mesh: Mesh, path: Path, contents: RhinoContents, moulds: int) -> RhinoFile:
+def write_model(mesh: Mesh, path: Path, options: RhinoOptions, moulds: int) -> Written:
     """A mesh as panels in a Rhino file."""
     optimum = nodes.minimize_angles(nodes.fit_spheres(mesh))
     clusters = nodes.cluster_radii(optimum.sphere_mesh, k=moulds)
     made = nodes.panels(clusters.sphere_mesh, joint_gap=0.02, labels=clusters.labels)
-    return write_3dm(made.panels, path, graph_json='{"steps": {}}', contents=contents)
+    return write_3dm(Model(made.panels), path, replace(options, graph_json='{"steps": {}}'))
 
 
-def write_beams(mesh: Mesh, path: Path, contents: RhinoContents, moulds: int) -> RhinoFile:
+def write_beams(mesh: Mesh, path: Path, options: RhinoOptions, moulds: int) -> Written:
     """Every other panel of a mesh, so that the beams below are seen."""
     spheres = nodes.central_spheres(mesh)
     labels = nodes.cluster_radii(spheres, k=moulds).labels
     made = nodes.panels(spheres, edges="intersection", joint_gap=0.02, labels=labels).panels
-    shown = select_panels(made, np.arange(made.n_panels) % 2 == 0)
+    shown = select_parts(made, np.arange(made.n_panels) % 2 == 0)
     beams = nodes.beams(nodes.annulus_support(spheres).annuli).beams
-    return write_3dm(shown, path, graph_json="{}", contents=contents, beams=beams)
+    return write_3dm(Model(shown, beams), path, replace(options, graph_json="{}"))
 
 
 class Handler(SimpleHTTPRequestHandler):
@@ -134,9 +136,9 @@ def main() -> None:
     roof, torus = nodes.roof_mesh(24, 40), nodes.torus_mesh(24, 16)
     layers = ("Edges", "Centres", "Moulds")
     models = {
-        "roof": (write_model, roof, RhinoContents(layers=layers, reference=roof), 5),
-        "torus of blocks": (write_model, torus, RhinoContents("blocks", ()), 3),
-        "torus on beams": (write_beams, torus, RhinoContents(), 4),
+        "roof": (write_model, roof, RhinoOptions(layers=layers, reference=roof), 5),
+        "torus of blocks": (write_model, torus, RhinoOptions("blocks", ()), 3),
+        "torus on beams": (write_beams, torus, RhinoOptions(), 4),
     }
     is_good = True
     for name, (write, mesh, contents, moulds) in models.items():
@@ -144,7 +146,7 @@ def main() -> None:
             place = Path(folder)
             shutil.copy(HERE / "index.html", place)
             (place / "node_modules").symlink_to(modules)
-            written = dict(write(mesh, place / "model.3dm", contents, moulds).objects)
+            written = dict(write(mesh, place / "model.3dm", contents, moulds).counts)
             n_instances = written.pop("InstanceReference", 0)
             if n_instances:
                 # three.js sets the member of a block in place of every instance.

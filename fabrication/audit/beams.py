@@ -12,7 +12,6 @@ import numpy as np
 
 from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.beams.beams import Beams, scale_beams
-from ...kernel.beams.checks import finite_beams
 from ...kernel.beams.drilling import NO_MARKS
 from ...kernel.beams.facts import BeamFacts, beam_facts
 from ...kernel.parts.findings import (
@@ -22,7 +21,7 @@ from ...kernel.parts.findings import (
     rejected_report,
     repeated_names,
 )
-from ...kernel.support.annulus_checks import RejectedBeam
+from ...kernel.parts.records import RejectedPart, finite_parts
 from ...kernel.tolerances import OVERLAP
 from ..units import millimeters_per
 from .panels import AuditLimits
@@ -54,7 +53,7 @@ BeamCheck = Callable[[BeamSubject], Iterable[Finding]]
 def audit_beams(
     beams: Beams,
     units: str = "m",
-    rejected: Iterable[RejectedBeam] = (),
+    rejected: Iterable[RejectedPart] = (),
     limits: AuditLimits | None = None,
 ) -> tuple[Finding, ...]:
     """
@@ -66,7 +65,7 @@ def audit_beams(
         B beams, perhaps none.
     units : str
         Model units: mm, cm, m, in or ft.
-    rejected : iterable of RejectedBeam
+    rejected : iterable of RejectedPart
         Beams that could not be made.
     limits : AuditLimits, optional
         What the workshop can do.
@@ -89,7 +88,7 @@ def audit_beams(
     """
     scaled = scale_beams(beams, millimeters_per(units))
     ids = beams.annuli.ids
-    finite = finite_beams(beams)
+    finite = finite_parts(beams)
     findings = [
         *repeated_names(ids, "B001", "beams"),
         *(

@@ -12,7 +12,6 @@ from typing import Final
 import numpy as np
 
 from ...kernel.arrays import BoolArray, FloatArray, IntArray
-from ...kernel.panels.checks import RejectedPanel, finite_panels
 from ...kernel.panels.facts import PanelFacts, panel_facts
 from ...kernel.panels.panels import Panels, neighbor_ids, scale_panels
 from ...kernel.parts.findings import (
@@ -23,6 +22,7 @@ from ...kernel.parts.findings import (
     rejected_report,
     repeated_names,
 )
+from ...kernel.parts.records import RejectedPart, finite_parts
 from ...kernel.tolerances import CAP_ANGLE
 from ..units import millimeters_per
 
@@ -95,7 +95,7 @@ PanelCheck = Callable[[PanelSubject], Iterable[Finding]]
 def audit_panels(
     panels: Panels,
     units: str = "m",
-    rejected: Iterable[RejectedPanel] = (),
+    rejected: Iterable[RejectedPart] = (),
     limits: AuditLimits | None = None,
 ) -> tuple[Finding, ...]:
     """
@@ -107,7 +107,7 @@ def audit_panels(
         P panels, perhaps none.
     units : str
         Model units: mm, cm, m, in or ft.
-    rejected : iterable of RejectedPanel
+    rejected : iterable of RejectedPart
         Panels that could not be made.
     limits : AuditLimits, optional
         What the workshop can do.
@@ -132,7 +132,7 @@ def audit_panels(
         *repeated_names(panels.ids, "P001", "panels"),
         *refusals(rejected_report(rejected)),
     ]
-    finite = finite_panels(panels)
+    finite = finite_parts(panels)
     findings += [
         Finding("P002", panels.ids[i], "has numbers that are not finite")
         for i in np.flatnonzero(~finite)

@@ -11,20 +11,21 @@ import math
 import os
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, NamedTuple, TypeAlias
+from typing import Any, Final, TypeAlias
 from unicodedata import east_asian_width
 
 import numpy as np
 
 from ...kernel.arrays import FloatArray, norm
 from ...kernel.beams.beams import Beams, DrillMarks, scale_beams
-from ...kernel.beams.checks import check_writable_beams
 from ...kernel.beams.contours import Contours, beam_contours, contour_boxes, shelves
 from ...kernel.beams.drilling import mark_centers
 from ...kernel.errors import InputError, MissingLibraryError
 from ...kernel.support.node_axes import node_name
 from ..files import check_suffix, replacing
+from ..model import Model, Written, check_parts
 from ..units import millimeters_per
 
 # What comes from ezdxf is partly untyped.
@@ -32,9 +33,6 @@ _Untyped: TypeAlias = Any
 
 LAYERS: Final = {"CUT": 1, "ENGRAVE": 3, "DRILL": 5, "SHEET": 8}
 """Layers of a drawing and their colours, by AutoCAD's index."""
-
-SHEET: Final = (3000.0, 1500.0)
-"""Width and height of a usual sheet, in millimetres."""
 
 _MILLIMETERS = 4
 """Code of the unit in a DXF file."""
@@ -48,52 +46,45 @@ _LETTER = 0.9
 as wide in the scripts of East Asia."""
 
 
-class DxfFile(NamedTuple):
+@dataclass(frozen=True)
+class SheetOptions:
     """
-    What was written.
+    The sheets that beams are cut from, in millimetres.
 
     Attributes
     ----------
-    path : Path
-        The file.
-    n_sheets : int
-        Number of sheets.
-    oversize : tuple of str
-        Beams larger than a sheet; each is drawn on a larger one of its own.
+    size : (float, float)
+        Width and height.
+    spacing : float
+        Distance between pieces, and from the rim of the sheet.
     """
 
-    path: Path
-    n_sheets: int
-    oversize: tuple[str, ...]
+    size: tuple[float, float] = (3000.0, 1500.0)
+    spacing: float = 10.0
+
+
+_USUAL_SHEETS: Final = SheetOptions()
 
 
 def write_dxf(
-    beams: Beams,
-    path: str | os.PathLike[str],
-    units: str = "m",
-    sheet: tuple[float, float] = SHEET,
-    spacing: float = 10.0,
-) -> DxfFile:
+    model: Model, path: str | os.PathLike[str], options: SheetOptions = _USUAL_SHEETS
+) -> Written:
     """
     Write the flat contours of beams to a DXF file.
 
     Parameters
     ----------
-    beams : Beams
-        The beams; at least one.
+    model : Model
+        At least one beam; panels are not drawn.
     path : path
         File to write. It is replaced when the new one is complete.
-    units : str
-        Unit of the model: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
-    sheet : (float, float)
-        Width and height of the sheets, in millimetres.
-    spacing : float
-        Distance between pieces, and from the rim of the sheet, in millimetres.
+    options : SheetOptions
 
     Returns
     -------
-    DxfFile
-        The file, how many sheets, and which pieces are larger than a sheet.
+    Written
+        The file, how many ``sheets``, and a note on the beams that are larger than a sheet:
+        each is drawn on a larger one of its own.
 
     Raises
     ------
@@ -110,8 +101,9 @@ def write_dxf(
     """
     target = Path(path)
     check_suffix(target, ".dxf")
-    scale = millimeters_per(units)
-    check_writable_beams(beams, target)
+    scale = millimeters_per(model.units)
+    beams = check_parts(model.beams, "beam", target)
+    sheet, spacing = options.size, options.spacing
     if not (np.isfinite([*sheet, spacing]).all() and min(sheet) > 0 and spacing >= 0):
         raise InputError(f"sheet {sheet} and spacing {spacing} must be lengths in millimetres")
     beams = scale_beams(beams, scale)
@@ -135,7 +127,9 @@ def write_dxf(
         document.write(stream)
     with replacing(target) as temporary:
         temporary.write_text(stream.getvalue(), encoding="utf-8")
-    return DxfFile(target, len(corners), tuple(beams.annuli.ids[i] for i in oversize))
+    shown = ", ".join(beams.ids[i] for i in oversize[:8])
+    note = f"{len(oversize)} beams are larger than the sheet: {shown}"
+    return Written(target, notes=(note,) if oversize else (), counts={"sheets": len(corners)})
 
 
 def _sheet_corners(
@@ -186,7 +180,6 @@ def text_width(text: str) -> float:
     Parameters
     ----------
     text : str
-        The text.
 
     Returns
     -------

@@ -15,12 +15,12 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray, dot, unit
-from ...kernel.panels.checks import check_writable
 from ...kernel.panels.mould_blanks import PanelCaps, panel_caps
 from ...kernel.panels.panels import Panels, inner_panel_arcs, panel_arcs, scale_panels
 from ...kernel.parts.colors import mould_name
 from ...kernel.spheres.arcs import Arcs, arc_points
 from ..files import check_suffix, replacing
+from ..model import Model, Written, check_parts
 from ..units import millimeters_per
 from .beams import fixed_ezdxf, millimeter_drawing, text_width
 
@@ -46,7 +46,6 @@ class Label:
     Attributes
     ----------
     text : str
-        The text.
     at : tuple of float
         Where its baseline begins (or its middle is), in mm.
     height : float
@@ -73,7 +72,6 @@ class Drawing:
     rims : list of tuple of float
         Centre x, y and radius of each blank.
     labels : list of Label
-        The texts.
     width, height : float
         Size: x from 0 to the width, y from minus the height to 0.
     """
@@ -85,24 +83,20 @@ class Drawing:
     height: float
 
 
-def write_mould_drawings(
-    panels: Panels, path: str | os.PathLike[str], units: str = "m"
-) -> Path:
+def write_mould_drawings(model: Model, path: str | os.PathLike[str]) -> Written:
     """
     Draw the panels of every mould into one file.
 
     Parameters
     ----------
-    panels : Panels
-        P panels, at least one.
+    model : Model
+        At least one panel; beams are not drawn.
     path : path
         File ending in ``.dxf`` or ``.svg``.
-    units : str
-        Model units: mm, cm, m, in or ft.
 
     Returns
     -------
-    Path
+    Written
         The file.
 
     Raises
@@ -117,12 +111,11 @@ def write_mould_drawings(
     """
     target = Path(path)
     check_suffix(target, ".dxf", ".svg")
-    check_writable(panels, target)
-    drawing = layout_moulds(panels, units)
+    drawing = layout_moulds(check_parts(model.panels, "panel", target), model.units)
     text = _dxf(drawing) if target.suffix.lower() == ".dxf" else _svg(drawing)
     with replacing(target) as temporary:
         temporary.write_text(text, encoding="utf-8")
-    return target
+    return Written(target)
 
 
 def layout_moulds(panels: Panels, units: str = "m") -> Drawing:

@@ -12,16 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from ...kernel.beams.beams import Beams
-from ...kernel.beams.checks import check_writable_beams
 from ...kernel.errors import InputError
-from ...kernel.panels.checks import check_writable
 from ...kernel.panels.congruent import CongruentPanels, congruent_panels
 from ...kernel.panels.facts import panel_facts
 from ...kernel.panels.mould_blanks import mould_blanks
 from ...kernel.panels.panels import Panels, neighbor_ids, scale_panels
 from ..audit.panels import AuditLimits, PanelSubject, check_panels, findings_by_id, warning_text
 from ..files import check_suffix, replacing
+from ..model import Model, Written, check_model
 from ..tables import finite_or_none, format_xlsx, write_csv
 from ..units import CUBIC_METER, SQUARE_METER, millimeters_per
 from .beams import beam_rows, node_rows
@@ -139,32 +137,23 @@ def mould_rows(panels: Panels, units: str) -> list[dict[str, Any]]:
     return rows
 
 
-def write_schedule(
-    panels: Panels | None,
-    path: str | os.PathLike[str],
-    units: str = "m",
-    beams: Beams | None = None,
-) -> Path:
+def write_schedule(model: Model, path: str | os.PathLike[str]) -> Written:
     """
     Write the schedule as a table or as JSON, by the suffix of the path.
 
     Parameters
     ----------
-    panels : Panels or None
-        P panels, at least one; None only if there are beams.
+    model : Model
+        At least one panel or beam.
     path : path
         File ending in ``.csv`` (one table, in UTF-8 with byte order mark, as spreadsheets
         expect; lists are separated by blanks, points by semicolons), ``.xlsx`` (sheets of
         panels and moulds, of beams and nodes, the lists as in CSV) or ``.json`` (the lists
         ``panels`` and ``moulds``, ``beams`` and ``nodes``).
-    units : str
-        Model units: mm, cm, m, in or ft.
-    beams : Beams, optional
-        B beams, at least one.
 
     Returns
     -------
-    Path
+    Written
         The file.
 
     Raises
@@ -178,8 +167,8 @@ def write_schedule(
     """
     target = Path(path)
     check_suffix(target, ".csv", ".json", ".xlsx")
-    if panels is None and beams is None:
-        raise InputError(f"there are no panels or beams to write to {target}")
+    check_model(model, target)
+    panels, beams, units = model.panels, model.beams, model.units
     is_csv = target.suffix.lower() == ".csv"
     if is_csv and panels is not None and beams is not None:
         raise InputError(
@@ -188,10 +177,8 @@ def write_schedule(
         )
     tables: dict[str, list[dict[str, Any]]] = {}
     if panels is not None:
-        check_writable(panels, target)
         tables |= {"Panels": schedule_rows(panels, units), "Moulds": mould_rows(panels, units)}
     if beams is not None:
-        check_writable_beams(beams, target)
         tables |= {"Beams": beam_rows(beams, units), "Nodes": node_rows(beams, units)}
     workbook = format_xlsx(tables) if target.suffix.lower() == ".xlsx" else b""
     with replacing(target) as temporary:
@@ -203,4 +190,4 @@ def write_schedule(
             content = {"units": "mm"} | {name.lower(): rows for name, rows in tables.items()}
             text = json.dumps(content, indent=1, allow_nan=False) + "\n"
             temporary.write_text(text, encoding="utf-8")
-    return target
+    return Written(target)

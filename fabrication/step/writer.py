@@ -1,32 +1,24 @@
-"""
-Panels and beams as exact CAD geometry: STEP files, and objects for CadQuery.
-
-Files are written as text, without a CAD kernel. CadQuery and OpenCASCADE (the package OCP) are
-imported when objects are asked for.
-"""
+"""Writes STEP files of panels and beams: exact solids and faces, without a CAD kernel."""
 
 import os
-from collections.abc import Generator
-from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import Final, Literal, get_args
 
 import numpy as np
 
 from ...kernel.arrays import FloatArray
 from ...kernel.beams.beams import Beams, node_axis_segments, scale_beams
-from ...kernel.beams.checks import check_writable_beams
 from ...kernel.beams.node_cylinders import node_cylinders
-from ...kernel.errors import InputError, MissingLibraryError
-from ...kernel.panels.checks import check_writable
+from ...kernel.errors import InputError
 from ...kernel.panels.congruent import congruent_panels
 from ...kernel.panels.panels import Panels
 from ...kernel.parts.colors import AXIS, BEAM, NODE, Color, mould_color, mould_name
 from ..files import check_suffix, check_target, replacing
-from ..solids.beam_numbers import beam_numbers
-from ..solids.panel_numbers import (
+from ..model import Model, Written, check_model
+from ..solids.beam_geometry import beam_geometry
+from ..solids.panel_geometry import (
     CONFUSION,
     copy_places,
     panel_tolerances,
@@ -40,48 +32,52 @@ from .bodies import line_body
 from .node_bodies import cylinder_bodies
 from .panel_bodies import panel_bodies
 
-if TYPE_CHECKING:
-    import cadquery
-
 StepCopies = Literal["shapes", "instances"]
 
 
-def write_step(
-    panels: Panels | None,
-    path: str | os.PathLike[str],
-    units: str = "m",
-    step_units: str = "mm",
-    schema: StepSchema = "AP214IS",
-    title: str = "Spherical panels",
-    copies: StepCopies = "shapes",
-    beams: Beams | None = None,
-) -> Path:
+@dataclass(frozen=True)
+class StepOptions:
     """
-    Write panels to a STEP file as exact faces, or solids where they have a thickness.
+    How a STEP file is written.
 
-    Parameters
+    Attributes
     ----------
-    panels : Panels or None
-        The panels; at least one, unless there are beams.
-    path : path
-        File to write. It is replaced when the new one is complete.
     units : str
-        Unit of the model: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
-    step_units : str
-        Unit that the file declares, of the same.
+        Unit that the file declares: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
     schema : {"AP214IS", "AP242DIS"}
-        Application protocol.
     title : str
         Title in the header of the file.
     copies : {"shapes", "instances"}
         ``shapes``: a shape of its own for every panel. ``instances``: identical panels (see
         `congruent_panels`) are instances of one shape, named after the first of them.
-    beams : Beams, optional
-        Beams to write as exact solids, with or without panels.
+    """
+
+    units: str = "mm"
+    schema: StepSchema = "AP214IS"
+    title: str = "Spherical panels"
+    copies: StepCopies = "shapes"
+
+
+_SHAPES_IN_MM: Final = StepOptions()
+
+
+def write_step(
+    model: Model, path: str | os.PathLike[str], options: StepOptions = _SHAPES_IN_MM
+) -> Written:
+    """
+    Write panels and beams to a STEP file as exact solids, or faces without thickness.
+
+    Parameters
+    ----------
+    model : Model
+        At least one panel or beam.
+    path : path
+        File to write. It is replaced when the new one is complete.
+    options : StepOptions
 
     Returns
     -------
-    Path
+    Written
         The file. It holds one assembly ``Panels`` with a component per panel, named by its id,
         on the layer and in the colour of its mould. With beams, it is part of an assembly
         ``Model``, together with an assembly ``Beams``, an assembly ``Nodes`` of the node
@@ -105,35 +101,32 @@ def write_step(
     """
     target = Path(path)
     check_suffix(target, ".step", ".stp")
-    n_beams = beams.n_beams if beams else 0
-    if panels is not None and (panels.n_panels or not n_beams):
-        check_writable(panels, target)
-    elif not n_beams:
-        raise InputError(f"there are no panels or beams to write to {target}")
-    if beams is not None and n_beams:
-        check_writable_beams(beams, target)
+    check_model(model, target)
     check_target(target)
-    if schema not in get_args(StepSchema):
-        raise InputError(f"unknown STEP schema {schema!r}: use AP214IS or AP242DIS")
-    if copies not in get_args(StepCopies):
-        raise InputError(f"copies must be shapes or instances, not {copies!r}")
-    millimeters = millimeters_per(step_units)
-    scale, confusion = millimeters_per(units) / millimeters, CONFUSION / millimeters
-    build = _panel_parts if copies == "shapes" else _shared_parts
+    panels, beams = model.panels, model.beams
+    if options.schema not in get_args(StepSchema):
+        raise InputError(f"unknown STEP schema {options.schema!r}: use AP214IS or AP242DIS")
+    if options.copies not in get_args(StepCopies):
+        raise InputError(f"copies must be shapes or instances, not {options.copies!r}")
+    millimeters = millimeters_per(options.units)
+    scale, confusion = millimeters_per(model.units) / millimeters, CONFUSION / millimeters
+    build = _panel_parts if options.copies == "shapes" else _shared_parts
     parts = build(panels, scale, confusion) if panels is not None and panels.n_panels else []
     root = Group("Panels", parts)
-    if beams is not None and n_beams:
+    if beams is not None and beams.n_beams:
         support = _support_parts(beams, scale, confusion)
         root = Group("Model", [root, *support] if parts else support)
     system = f"spheremesh {version('spheremesh')}"
-    header = StepHeader(schema, step_units, millimeters, confusion, title, system)
+    header = StepHeader(
+        options.schema, options.units, millimeters, confusion, options.title, system
+    )
     lines = assembly_lines(root, header)
     with (
         replacing(target) as temporary,
         temporary.open("w", encoding="ascii", newline="\n") as file,
     ):
         file.writelines(lines)
-    return target
+    return Written(target)
 
 
 def _panel_parts(panels: Panels, scale: float, confusion: float) -> list[Part]:
@@ -168,7 +161,7 @@ def _shared_parts(panels: Panels, scale: float, confusion: float) -> list[Part]:
 
 def _beam_parts(beams: Beams, scale: float, confusion: float) -> list[Part]:
     """A part per beam, where it stands."""
-    numbers = beam_numbers(scale_beams(beams, scale), confusion)
+    numbers = beam_geometry(scale_beams(beams, scale), confusion)
     tolerances = _file_tolerances(numbers.tolerances, confusion)
     return [
         Part(body, name, "Beams", BEAM, tolerance, (Instance(name, tuple(place)),))
@@ -207,80 +200,6 @@ def _file_tolerances(tolerances: FloatArray, confusion: float) -> list[float]:
     return [float(f"{confusion * 10**step:.3g}") for step in steps.tolist()]
 
 
-def beams_to_cadquery(beams: Beams, units: str = "m") -> "cadquery.Assembly":
-    """
-    Beams as a CadQuery assembly, for further modelling.
-
-    Parameters
-    ----------
-    beams : Beams
-        The beams.
-    units : str
-        Unit of the model: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
-
-    Returns
-    -------
-    cadquery.Assembly
-        Assembly in millimetres, with a `cadquery.Solid` per beam, named by its id.
-
-    Raises
-    ------
-    InputError
-        If the unit is not known.
-    MissingLibraryError
-        If CadQuery or a library of the system that it needs is missing.
-    """
-    scale = millimeters_per(units)
-    with _opencascade():
-        import cadquery
-
-        from ..solids import beam_shapes as beam_brep
-    assembly = cadquery.Assembly(name="Beams")
-    color = cadquery.Color(*(value / 255 for value in BEAM))
-    for shape, name in zip(beam_brep.beam_shapes(beams, scale), beams.annuli.ids, strict=True):
-        assembly.add(cadquery.Solid(shape), name=name, color=color)
-    return assembly
-
-
-def to_cadquery(panels: Panels, units: str = "m") -> "cadquery.Assembly":
-    """
-    Panels as a CadQuery assembly, for further modelling.
-
-    Parameters
-    ----------
-    panels : Panels
-        The panels.
-    units : str
-        Unit of the model: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
-
-    Returns
-    -------
-    cadquery.Assembly
-        Assembly in millimetres, with a `cadquery.Solid` (`cadquery.Face` without thickness)
-        per panel, named by its id and in the colour of its mould.
-
-    Raises
-    ------
-    InputError
-        If the unit is not known.
-    MissingLibraryError
-        If CadQuery or a library of the system that it needs is missing.
-    """
-    scale = millimeters_per(units)
-    with _opencascade():
-        import cadquery
-
-        from ..solids import panel_shapes as brep
-    kind = cadquery.Solid if panels.thickness > 0 else cadquery.Face
-    assembly = cadquery.Assembly(name="Panels")
-    for shape, name, (_, color) in zip(
-        brep.panel_shapes(panels, scale), panels.ids, _moulds(panels), strict=True
-    ):
-        red, green, blue = (value / 255 for value in color)
-        assembly.add(kind(shape), name=name, color=cadquery.Color(red, green, blue))
-    return assembly
-
-
 def _moulds(panels: Panels) -> list[tuple[str, Color]]:
     """Name and colour of the mould of each panel."""
     count = int(panels.labels.max(initial=-1)) + 1
@@ -288,19 +207,3 @@ def _moulds(panels: Panels) -> list[tuple[str, Color]]:
         (mould_name(label, count), mould_color(label, count))
         for label in panels.labels.tolist()
     ]
-
-
-@contextmanager
-def _opencascade() -> Generator[None]:
-    """Turn the failure to import OpenCASCADE into an error that names the remedy."""
-    try:
-        yield
-    except ImportError as error:
-        if "libGL" in str(error) or "libX" in str(error):
-            remedy = (
-                "install the packages libgl1 and libx11-6 (Debian, Ubuntu) or mesa-libGL and "
-                "libX11 (Fedora)"
-            )
-        else:
-            remedy = "install the package cadquery, which brings it"
-        raise MissingLibraryError(f"STEP needs OpenCASCADE: {error}; {remedy}") from error

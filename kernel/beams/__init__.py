@@ -3,7 +3,6 @@ Beams: annuli of a thickness, cut at their nodes, and what is known of them.
 
 beams           Beams: annuli of a thickness, cut at the nodes so that neighbours do not run
                 into each other.
-checks          What keeps beams from being written: names, and numbers that are not finite.
 contours        Flat contours of beams, for cutting: two arcs and two lines in a plane.
 cutting         Cutting beams out of annuli: mitres between neighbours, or square ends before
                 a node cylinder.

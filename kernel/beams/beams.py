@@ -8,14 +8,16 @@ direction, so an end is told by three levels across the thickness - the lower si
 where its two planes meet, the upper side - and by how far the cut lies inside at each.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, dot, norm
+from ..arrays import BoolArray, FloatArray, IntArray, dot, norm
+from ..parts.records import MAY_BE_NAN
 from ..spheres.arcs import Arcs, segment_areas, sphere_arcs
-from ..spheres.rows import meet_lines, recenter, rescale
-from ..support.annuli import Annuli, select_annuli
+from ..spheres.incidence import meet_lines
+from ..spheres.rows import recenter, rescale
+from ..support.annuli import Annuli
 
 
 @dataclass(frozen=True)
@@ -88,7 +90,31 @@ class Beams:
     thickness: float
     node_gap: float
     node_radius: float
-    marks: DrillMarks | None = None
+    marks: DrillMarks | None = field(default=None, metadata=MAY_BE_NAN)
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """
+        Stable names, those of the annuli.
+
+        Returns
+        -------
+        tuple of str
+            One per beam.
+        """
+        return self.annuli.ids
+
+    @property
+    def element_ids(self) -> IntArray:
+        """
+        Edge of each beam.
+
+        Returns
+        -------
+        (B,) int array
+            Those of the annuli.
+        """
+        return self.annuli.edge_ids
 
     @property
     def n_beams(self) -> int:
@@ -174,35 +200,6 @@ def cut_corners(annuli: Annuli, insets: FloatArray) -> tuple[FloatArray, BoolArr
     steps, exists = steps.reshape(points.shape[:-1]), exists.reshape(points.shape[:-1])
     reaches = np.asarray(exists.all(axis=(1, 2, 3)))
     return points + steps[..., None] * along, reaches
-
-
-def select_beams(beams: Beams, keep: BoolArray) -> Beams:
-    """
-    Some of the beams.
-
-    Parameters
-    ----------
-    beams : Beams
-        B beams.
-    keep : (B,) bool array
-        Which ones.
-
-    Returns
-    -------
-    Beams
-        The chosen beams, in the same order.
-    """
-    marks = beams.marks
-    return replace(
-        beams,
-        annuli=select_annuli(beams.annuli, keep),
-        levels=beams.levels[keep],
-        insets=beams.insets[keep],
-        is_flat=beams.is_flat[keep],
-        corners=beams.corners[keep],
-        sections=beams.sections[keep],
-        marks=marks and DrillMarks(marks.centers[keep], marks.fits[keep], marks.diameter),
-    )
 
 
 def scale_beams(beams: Beams, factor: float) -> Beams:

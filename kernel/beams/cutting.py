@@ -11,15 +11,16 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, dot, unit
 from ..errors import InputError
+from ..parts.records import RejectedPart, reject_parts
 from ..support.annuli import Annuli
-from ..support.annulus_checks import NO_CUT, RejectedBeam
+from ..support.annulus_checks import NO_CUT
 from ..tolerances import MITRE_LIMIT, PARALLEL_PLANES
-from .beams import Beams, cut_corners, insets_at, inward_directions, select_beams
+from .beams import Beams, cut_corners, insets_at, inward_directions
 
 
 def cut_beams(
     annuli: Annuli, thickness: float, node_gap: float = 0.0, node_radius: float = 0.0
-) -> tuple[Beams, tuple[RejectedBeam, ...]]:
+) -> tuple[Beams, tuple[RejectedPart, ...]]:
     """
     Give annuli a thickness and cut their ends.
 
@@ -38,7 +39,7 @@ def cut_beams(
     -------
     beams : Beams
         The beams that can be made.
-    rejected : tuple of RejectedBeam
+    rejected : tuple of RejectedPart
         The others, each with its reason.
 
     Raises
@@ -74,13 +75,7 @@ def cut_beams(
         float(thickness), float(node_gap), float(node_radius),
     )  # fmt: skip
     reasons = _rejection_reasons(beams, half_angles, exists & section_exists)
-    rejected = tuple(
-        RejectedBeam(annuli.ids[row], int(annuli.edge_ids[row]), reason, NO_CUT)
-        for row, reason in sorted(reasons.items())
-    )
-    keep = np.ones(annuli.n_annuli, bool)
-    keep[list(reasons)] = False
-    return select_beams(beams, keep), rejected
+    return reject_parts(beams, reasons, NO_CUT)
 
 
 def _check_options(thickness: float, node_gap: float, node_radius: float) -> None:

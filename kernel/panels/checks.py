@@ -1,103 +1,20 @@
 """What keeps a panel from being made: crossing boundaries, lost corners, caps too deep."""
 
-from collections import Counter
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, dot, norm, unit
-from ..errors import InputError, name_ids
-from ..parts.names import check_part_names
+from ..parts.records import select_parts
 from ..spheres.arc_crossings import crossing_boundaries
 from ..spheres.arcs import Arcs, arc_points
-from ..spheres.rows import normals
+from ..spheres.incidence import normals
 from ..tolerances import CAP_ANGLE, THIN
-from .panels import Panels, inner_panel_arcs, panel_arcs, panel_areas, select_panels
+from .panels import Panels, inner_panel_arcs, panel_arcs, panel_areas
 
-
-@dataclass(frozen=True)
-class RejectedPanel:
-    """
-    A panel that cannot be made.
-
-    Attributes
-    ----------
-    id : str
-        Name of the panel.
-    face_id : int
-        Its face.
-    reason : str
-        What is wrong, for a person.
-    code : str
-        Number of the finding that it is.
-    """
-
-    id: str
-    face_id: int
-    reason: str
-    code: str = "P100"
-
-
-def check_writable(panels: Panels, target: object) -> None:
-    """
-    Refuse panels that no file can hold.
-
-    Parameters
-    ----------
-    panels : Panels
-        P panels.
-    target : path
-        The file, for the message.
-
-    Raises
-    ------
-    InputError
-        If there is no panel, two have the same name, a name is no line of text, or one has
-        numbers that are not finite.
-    """
-    if panels.n_panels == 0:
-        raise InputError(f"there are no panels to write to {target}")
-    check_part_names(panels.ids, "panel")
-    counts = Counter(panels.ids)
-    for name, count in counts.items():
-        if count > 1:
-            faces = [i for i, other in enumerate(panels.ids) if other == name]
-            raise InputError(
-                f"{count} panels are called {name!r} (faces "
-                f"{name_ids(panels.face_ids[faces].tolist())}): give each a name of its own"
-            )
-    broken = [panels.ids[i] for i in np.flatnonzero(~finite_panels(panels))]
-    if broken:
-        raise InputError(f"panel {broken[0]} ({len(broken)} in all) is not finite")
-
-
-def finite_panels(panels: Panels) -> BoolArray:
-    """
-    Which panels have finite numbers only.
-
-    Parameters
-    ----------
-    panels : Panels
-        P panels.
-
-    Returns
-    -------
-    (P,) bool array
-        Whether origins, spheres, thicknesses, cutting planes and corners are finite.
-    """
-    rows = np.column_stack(
-        [
-            panels.origins, panels.spheres, panels.inner_spheres, panels.design_spheres,
-            panels.thicknesses,
-        ]
-    )  # fmt: skip
-    numbers = np.column_stack(
-        [panels.corners, panels.inner_corners, panels.plane_normals, panels.plane_offsets]
-    )
-    finite = np.all(np.isfinite(rows), axis=1)
-    broken = panels.corner_panels[~np.isfinite(numbers).all(axis=1)]
-    finite[broken] = False
-    return finite
+NO_PANEL: Final = "P100"
+"""Code of a panel that cannot be made."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +65,7 @@ def rejection_reasons(panels: Panels, found: Found) -> dict[int, str]:
     sound = ~np.any([bad for _, bad in faults], axis=0)
     # The area integral of an unsound panel may reach where it has no origin.
     areas = np.ones(panels.n_panels)
-    areas[sound] = panel_areas(select_panels(panels, sound))
+    areas[sound] = panel_areas(select_parts(panels, sound))
     faults.append(("the boundary runs clockwise about the face normal", areas <= 0))
     table = np.array([bad for _, bad in faults])
     causes = table.argmax(axis=0)

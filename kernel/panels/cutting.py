@@ -14,13 +14,16 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..errors import InputError
 from ..meshes.mesh import face_centroids, face_normals, local_corners, mean_edge_length
 from ..meshes.topology import Topology
+from ..parts.records import RejectedPart, reject_parts
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.arcs import Arcs, sphere_arcs
-from ..spheres.rows import angle, evaluate, meet_lines, recenter
+from ..spheres.incidence import evaluate, meet_lines
+from ..spheres.minkowski import angle
+from ..spheres.rows import recenter
 from ..tolerances import PLANE_SAGITTA, SAME_PLANE
-from .checks import Found, RejectedPanel, rejection_reasons
+from .checks import NO_PANEL, Found, rejection_reasons
 from .layers import Layer, Side, panel_layers
-from .panels import Panels, corner_points, panel_ids, select_panels
+from .panels import Panels, corner_points, panel_ids
 
 EdgeMode = Literal["bisector", "intersection"]
 
@@ -289,7 +292,7 @@ def cut_panels(
     labels: IntArray | None = None,
     side: Side = "inward",
     layer: Layer = "offset",
-) -> tuple[Panels, tuple[RejectedPanel, ...]]:
+) -> tuple[Panels, tuple[RejectedPart, ...]]:
     """
     Cut a panel out of the sphere of every face.
 
@@ -315,7 +318,7 @@ def cut_panels(
     -------
     panels : Panels
         The panels that can be made.
-    rejected : tuple of RejectedPanel
+    rejected : tuple of RejectedPart
         All others, each with its reason.
 
     Raises
@@ -355,14 +358,7 @@ def cut_panels(
         joint_gap=float(joint_gap),
     )
     found = Found(local_corners(mesh), layers.exists, cuts.exists, exists, inner_exists)
-    reasons = rejection_reasons(panels, found)
-    rejected = tuple(
-        RejectedPanel(panels.ids[face], face, reason)
-        for face, reason in sorted(reasons.items())
-    )
-    keep = np.ones(mesh.n_faces, bool)
-    keep[list(reasons)] = False
-    return select_panels(panels, keep), rejected
+    return reject_parts(panels, rejection_reasons(panels, found), NO_PANEL)
 
 
 def thickness_report(panels: Panels) -> dict[str, float]:

@@ -6,7 +6,8 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray, dot, norm, unit
 from ..spheres.arcs import arc_circles, arc_lengths, arc_points, arc_reaches, arc_tangents
-from ..spheres.rows import center_radius, normals
+from ..spheres.incidence import normals
+from ..spheres.rows import center_radius
 from .mould_blanks import PanelCaps, panel_caps
 from .panels import (
     Panels,

@@ -6,13 +6,15 @@ consecutive planes. All geometry is local to the panel (its origin is the centro
 face), so the site's coordinates cost no digits. `kernel.cutting` makes panels.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, unit
+from ..parts.records import PER_CORNER
 from ..spheres.arcs import Arcs, patch_areas, sphere_arcs
-from ..spheres.rows import meet_lines, offset, recenter, rescale
+from ..spheres.incidence import meet_lines
+from ..spheres.rows import offset, recenter, rescale
 from ..tolerances import PARALLEL_PLANES
 
 
@@ -69,15 +71,27 @@ class Panels:
     inner_spheres: FloatArray
     design_spheres: FloatArray
     offsets: IntArray
-    plane_normals: FloatArray
-    plane_offsets: FloatArray
-    corners: FloatArray
-    inner_corners: FloatArray
-    neighbors: IntArray
-    edge_ids: IntArray
+    plane_normals: FloatArray = field(metadata=PER_CORNER)
+    plane_offsets: FloatArray = field(metadata=PER_CORNER)
+    corners: FloatArray = field(metadata=PER_CORNER)
+    inner_corners: FloatArray = field(metadata=PER_CORNER)
+    neighbors: IntArray = field(metadata=PER_CORNER)
+    edge_ids: IntArray = field(metadata=PER_CORNER)
     thicknesses: FloatArray
     thickness: float
     joint_gap: float
+
+    @property
+    def element_ids(self) -> IntArray:
+        """
+        Face of each panel.
+
+        Returns
+        -------
+        (P,) int array
+            Those of `face_ids`.
+        """
+        return self.face_ids
 
     @property
     def n_panels(self) -> int:
@@ -247,46 +261,6 @@ def neighbor_ids(panels: Panels) -> list[str | None]:
     """
     names = dict(zip(panels.face_ids.tolist(), panels.ids, strict=True))
     return [names.get(face) for face in panels.neighbors.tolist()]
-
-
-def select_panels(panels: Panels, keep: BoolArray) -> Panels:
-    """
-    Some of the panels.
-
-    Parameters
-    ----------
-    panels : Panels
-        P panels.
-    keep : (P,) bool array
-        Which ones.
-
-    Returns
-    -------
-    Panels
-        The chosen panels, in the same order.
-    """
-    if keep.all():
-        return panels
-    chosen = np.flatnonzero(keep)
-    corner_keep = keep[panels.corner_panels]
-    return replace(
-        panels,
-        ids=tuple(panels.ids[i] for i in chosen),
-        face_ids=panels.face_ids[chosen],
-        labels=panels.labels[chosen],
-        origins=panels.origins[chosen],
-        spheres=panels.spheres[chosen],
-        inner_spheres=panels.inner_spheres[chosen],
-        design_spheres=panels.design_spheres[chosen],
-        offsets=np.concatenate([[0], np.cumsum(panels.degrees[chosen])]),
-        plane_normals=panels.plane_normals[corner_keep],
-        plane_offsets=panels.plane_offsets[corner_keep],
-        corners=panels.corners[corner_keep],
-        inner_corners=panels.inner_corners[corner_keep],
-        neighbors=panels.neighbors[corner_keep],
-        edge_ids=panels.edge_ids[corner_keep],
-        thicknesses=panels.thicknesses[chosen],
-    )
 
 
 def scale_panels(panels: Panels, factor: float) -> Panels:

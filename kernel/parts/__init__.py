@@ -3,5 +3,5 @@ What panels, beams and nodes are called, and what is said of them.
 
 colors    Names and colours of moulds: the same in every file and picture.
 findings  Findings: what checks say of parts, numbered, for people and programs to sort.
-names     What panels and beams may be called, so that every kind of file can say it.
+records   Records of parts: a row per part or per corner, choosing some, and which are finite.
 """

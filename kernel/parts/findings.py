@@ -3,11 +3,12 @@
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
+from .records import RejectedPart
 
 Severity = Literal["error", "note"]
 
@@ -38,32 +39,13 @@ class Finding:
     severity: Severity = "error"
 
 
-class Rejected(Protocol):
-    """A part that cannot be made: its id, why, and the code of the finding that it is."""
-
-    @property
-    def id(self) -> str:
-        """Name of the part."""
-        ...
-
-    @property
-    def reason(self) -> str:
-        """What is wrong, for a person."""
-        ...
-
-    @property
-    def code(self) -> str:
-        """Number of the finding."""
-        ...
-
-
-def rejected_report(rejected: Iterable[Rejected]) -> list[dict[str, str]]:
+def rejected_report(rejected: Iterable[RejectedPart]) -> list[dict[str, str]]:
     """
     Parts that cannot be made as plain values.
 
     Parameters
     ----------
-    rejected : iterable of Rejected
+    rejected : iterable of RejectedPart
         Panels or beams.
 
     Returns

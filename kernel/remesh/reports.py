@@ -10,10 +10,11 @@ from ..arrays import FloatArray, IntArray, dot
 from ..meshes.mesh import Mesh, face_vector_areas, mean_edge_length, shortest_edge
 from ..reports import Report
 from ..sphere_meshes.sphere_mesh import SphereMesh, vertex_error
-from .field.directions import ConjugateDirections
+from .field.conjugate_directions import ConjugateDirections
 from .field.relax import Relaxation
 from .pipeline import Remeshing
-from .planar.planarize import Nodes, Planarization, axis_angles, measure_nodes
+from .planar.nodes import Nodes, measure_nodes, node_axis_angles
+from .planar.planarize import Planarization
 
 
 @dataclass(frozen=True, eq=False)
@@ -258,7 +259,7 @@ def planarization_report(start: SphereMesh, result: Planarization) -> Planarizat
     after = result.sphere_mesh
     nodes = measure_nodes(after)
     values = [_quality(start, measure_nodes(start)), _quality(after, nodes)]
-    angles = np.degrees(axis_angles(after, nodes))
+    angles = np.degrees(node_axis_angles(after, nodes))
     return PlanarizationReport(
         status=result.status,
         iterations=result.iterations,

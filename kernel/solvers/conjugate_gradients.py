@@ -1,14 +1,12 @@
 """Truncated conjugate gradients for the steps of a descent."""
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from ..arrays import FloatArray, dot
 from ..tolerances import ROUNDED_DIRECTION, STEP_MODEL
-
-Product = Callable[[FloatArray], FloatArray]
+from .products import Product
 
 
 class CgStep(NamedTuple):

@@ -6,11 +6,11 @@ as the unit row of the sphere that has it as a great circle, so that straight be
 and nothing divides by A. `kernel.annulus_support` finds the annuli of a sphere mesh.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by
+from ..arrays import FloatArray, IntArray, dot, norm, sum_by
 from ..spheres.arcs import Arcs, sphere_arcs
 
 
@@ -73,6 +73,18 @@ class Annuli:
     depth: float
 
     @property
+    def element_ids(self) -> IntArray:
+        """
+        Edge of each annulus.
+
+        Returns
+        -------
+        (B,) int array
+            Those of `edge_ids`.
+        """
+        return self.edge_ids
+
+    @property
     def n_annuli(self) -> int:
         """
         Number of annuli.
@@ -106,40 +118,6 @@ def beam_ids(n_edges: int) -> tuple[str, ...]:
     """
     width = max(4, len(str(n_edges - 1)))
     return tuple(f"B{edge:0{width}d}" for edge in range(n_edges))
-
-
-def select_annuli(annuli: Annuli, keep: BoolArray) -> Annuli:
-    """
-    Some of the annuli.
-
-    Parameters
-    ----------
-    annuli : Annuli
-        B annuli.
-    keep : (B,) bool array
-        Which ones.
-
-    Returns
-    -------
-    Annuli
-        The chosen annuli, in the same order.
-    """
-    return replace(
-        annuli,
-        ids=tuple(annuli.ids[i] for i in np.flatnonzero(keep)),
-        edge_ids=annuli.edge_ids[keep],
-        edge_vertices=annuli.edge_vertices[keep],
-        edge_faces=annuli.edge_faces[keep],
-        panel_ids=tuple(annuli.panel_ids[i] for i in np.flatnonzero(keep)),
-        origins=annuli.origins[keep],
-        frames=annuli.frames[keep],
-        outer=annuli.outer[keep],
-        inner=annuli.inner[keep],
-        corners=annuli.corners[keep],
-        end_directions=annuli.end_directions[keep],
-        node_axes=annuli.node_axes[keep],
-        tilt=annuli.tilt[keep],
-    )
 
 
 def annulus_arcs(annuli: Annuli) -> tuple[Arcs, Arcs]:

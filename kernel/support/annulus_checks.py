@@ -1,12 +1,11 @@
 """What keeps an annulus from being made: planes that lie flat, ends that lean or cross."""
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from ..arrays import BoolArray, dot, norm
-from ..spheres.rows import normals
+from ..spheres.incidence import normals
 from ..tolerances import AXIS_LEAN, DEGENERATE
 from .annuli import Annuli
 
@@ -15,29 +14,6 @@ NO_ANNULUS: Final = "B100"
 
 NO_CUT: Final = "B101"
 """Code of a beam whose annulus cannot be cut at the nodes."""
-
-
-@dataclass(frozen=True)
-class RejectedBeam:
-    """
-    A beam that cannot be made.
-
-    Attributes
-    ----------
-    id : str
-        Name of the beam.
-    edge_id : int
-        Its edge.
-    reason : str
-        What is wrong, for a person.
-    code : str
-        Number of the finding that it is: `NO_ANNULUS` or `NO_CUT`.
-    """
-
-    id: str
-    edge_id: int
-    reason: str
-    code: str
 
 
 def standing_reasons(annuli: Annuli, is_real: BoolArray, max_tilt: float) -> dict[int, str]:

@@ -16,9 +16,12 @@ from ..meshes.mesh import Mesh, face_centroids, face_normals, local_corners, mea
 from ..panels.cutting import flatten_nearly_plane
 from ..panels.panels import panel_ids
 from ..parts.findings import rejected_report
+from ..parts.records import RejectedPart, reject_parts
 from ..reports import Report
 from ..sphere_meshes.sphere_mesh import SphereMesh
-from ..spheres.rows import evaluate, meet_lines, minkowski, normals, recenter
+from ..spheres.incidence import evaluate, meet_lines, normals
+from ..spheres.minkowski import minkowski
+from ..spheres.rows import recenter
 from ..tolerances import BEAM_TILT, DEGENERATE
 from .annuli import (
     Annuli,
@@ -26,9 +29,8 @@ from .annuli import (
     beam_ids,
     corner_mismatch,
     end_depths,
-    select_annuli,
 )
-from .annulus_checks import NO_ANNULUS, RejectedBeam, inner_reasons, standing_reasons
+from .annulus_checks import NO_ANNULUS, inner_reasons, standing_reasons
 from .node_axes import SupportStructure, arc_planes, support_structure
 
 
@@ -41,7 +43,7 @@ class AnnulusSupport:
     ----------
     annuli : Annuli
         Those that can be made.
-    rejected : tuple of RejectedBeam
+    rejected : tuple of RejectedPart
         The others, each with its reason.
     kappa_max : float
         Largest admissible power of the annuli that stand, in squared model units; infinite
@@ -49,7 +51,7 @@ class AnnulusSupport:
     """
 
     annuli: Annuli
-    rejected: tuple[RejectedBeam, ...]
+    rejected: tuple[RejectedPart, ...]
     kappa_max: float
 
 
@@ -115,13 +117,7 @@ def annulus_support(
         _check_kappa(float(kappa or 0), kappa_max)
         annuli = _with_power(annuli, float(kappa or 0), stands)
     reasons = inner_reasons(annuli, mean_edge_length(sphere_mesh.mesh)) | reasons
-    rejected = tuple(
-        RejectedBeam(annuli.ids[row], row, reason, NO_ANNULUS)
-        for row, reason in sorted(reasons.items())
-    )
-    keep = np.ones(annuli.n_annuli, bool)
-    keep[list(reasons)] = False
-    return AnnulusSupport(select_annuli(annuli, keep), rejected, kappa_max)
+    return AnnulusSupport(*reject_parts(annuli, reasons, NO_ANNULUS), kappa_max)
 
 
 def _check_options(depth: float | None, kappa: float | None, max_tilt: float) -> None:

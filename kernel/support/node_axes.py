@@ -20,7 +20,9 @@ from ..meshes.mesh import Mesh, local_corners, mean_edge_length
 from ..panels.cutting import flatten_nearly_plane
 from ..reports import Report
 from ..sphere_meshes.sphere_mesh import SphereMesh
-from ..spheres.rows import angle, recenter, signed_distance
+from ..spheres.incidence import signed_distance
+from ..spheres.minkowski import angle
+from ..spheres.rows import recenter
 from ..tolerances import (
     AXIS_LEAN,
     MIRROR_LEAST,

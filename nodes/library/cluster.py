@@ -6,13 +6,13 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from ...kernel.analysis import angle_summary
-from ...kernel.arrays import FloatArray, IntArray
 from ...kernel.optimization import clustering
 from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.tolerances import COMMON_VERTEX
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
+from .arrays import FaceLabels, MouldRadii
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,8 +49,8 @@ class Clusters(NamedTuple):
     """A sphere mesh of few radii."""
 
     sphere_mesh: SphereMesh
-    labels: IntArray
-    radii: FloatArray
+    labels: FaceLabels
+    radii: MouldRadii
     report: MouldsReport
 
 
@@ -111,14 +111,14 @@ def cluster_radii(
             result, move = relaxed, run.vertex_move
         else:
             warn(
-                f"the vertices do not reach the moulds' spheres within {tolerance:g} mean "
-                "edges: they stay where they were"
+                f"vertices are not moved: within {tolerance:g} mean edges they do not reach "
+                "the spheres of the moulds; allow more tolerance"
             )
     reassigned = np.flatnonzero(clusters.reassigned).tolist()
     if reassigned:
         warn(f"{len(reassigned)} faces are too large for their mould and moved to a larger one")
     if len(clusters.radii) < k:
-        warn(f"{len(clusters.radii)} moulds suffice: no more radii differ")
+        warn(f"{len(clusters.radii)} moulds suffice: there are no more different radii")
     report = MouldsReport(
         count=len(clusters.radii),
         radii=[float(r) if np.isfinite(r) else None for r in clusters.radii],

@@ -6,10 +6,10 @@ from typing import Annotated, Literal, NamedTuple
 from ...fabrication.drawings import beams as dxf
 from ...fabrication.drawings import moulds as mould_drawings
 from ...fabrication.files import check_suffix, replacing
+from ...fabrication.model import Model, Written
 from ...fabrication.rhino import writer as rhino
 from ...fabrication.schedules import schedule
 from ...fabrication.step import writer as step
-from ...kernel.arrays import IntArray
 from ...kernel.beams.beams import Beams
 from ...kernel.errors import name_ids
 from ...kernel.meshes.mesh import Mesh
@@ -20,9 +20,8 @@ from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...viewer.render import render_image
 from ..graphs.node import node, running_graph, warn
-from ..graphs.ports import Port, Units, WritePath
-
-Length = Annotated[float, Port(min=0)]
+from ..graphs.ports import Length, Port, Units, WritePath
+from .arrays import FaceLabels
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +61,7 @@ def panels(
     edges: Literal["bisector", "intersection"] = "bisector",
     thickness: Length = 0.0,
     joint_gap: Length = 0.0,
-    labels: IntArray | None = None,
+    labels: FaceLabels | None = None,
     side: Literal["inward", "outward", "centred"] = "inward",
     layer: Literal["offset", "power"] = "offset",
 ) -> PanelSet:
@@ -110,7 +109,7 @@ def panels(
     if rejected:
         warn(
             f"{len(rejected)} panels cannot be made: faces "
-            f"{name_ids([panel.face_id for panel in rejected])} "
+            f"{name_ids([panel.element_id for panel in rejected])} "
             f"({rejected[0].id}: {rejected[0].reason})"
         )
     report = CutReport(
@@ -166,9 +165,8 @@ def write_step(
     ...     write_step(made.panels, f"{folder}/vase.step").endswith("vase.step")
     True
     """
-    return str(
-        step.write_step(panels, path, units, step_units, schema, beams=beams, copies=copies)
-    )
+    options = step.StepOptions(step_units, schema, copies=copies)
+    return _tell(step.write_step(Model(panels, beams, units), path, options))
 
 
 @node
@@ -222,17 +220,9 @@ def write_3dm(
     True
     """
     mesh = reference.mesh if isinstance(reference, SphereMesh) else reference
-    contents = rhino.RhinoContents(shape, layers, mesh)
-    file = rhino.write_3dm(
-        panels, path, units, running_graph(), version, contents=contents, beams=beams
-    )
-    if file.rejected:
-        shown = "; ".join(f"{panel.id}: {panel.reason}" for panel in file.rejected[:8])
-        more = f"; {len(file.rejected) - 8} more" if len(file.rejected) > 8 else ""
-        warn(f"{len(file.rejected)} panels are not in {file.path.name}: {shown}{more}")
-    for note in file.notes:
-        warn(f"{file.path.name}: {note}")
-    return str(file.path)
+    graph = running_graph()
+    options = rhino.RhinoOptions(shape, layers, mesh, version=version, graph_json=graph)
+    return _tell(rhino.write_3dm(Model(panels, beams, units), path, options))
 
 
 @node
@@ -274,11 +264,8 @@ def write_dxf(
     ...     write_dxf(made.beams, f"{folder}/beams.dxf").endswith("beams.dxf")
     True
     """
-    file = dxf.write_dxf(beams, path, units, sheet, spacing)
-    if file.oversize:
-        shown = ", ".join(file.oversize[:8])
-        warn(f"{len(file.oversize)} beams are larger than the sheet: {shown}")
-    return str(file.path)
+    options = dxf.SheetOptions(sheet, spacing)
+    return _tell(dxf.write_dxf(Model(beams=beams, units=units), path, options))
 
 
 @node
@@ -317,7 +304,7 @@ def write_schedule(
     ...     len(Path(path).read_text("utf-8").splitlines())
     73
     """
-    return str(schedule.write_schedule(panels, path, units, beams))
+    return _tell(schedule.write_schedule(Model(panels, beams, units), path))
 
 
 @node
@@ -346,7 +333,19 @@ def write_mould_drawings(panels: Panels, path: WritePath, units: Units = "m") ->
     ...     write_mould_drawings(made.panels, f"{folder}/panels.svg").endswith("panels.svg")
     True
     """
-    return str(mould_drawings.write_mould_drawings(panels, path, units))
+    return _tell(mould_drawings.write_mould_drawings(Model(panels, units=units), path))
+
+
+def _tell(written: Written) -> str:
+    """Warn of what differs from what was asked for; the path."""
+    name, rejected = written.path.name, written.rejected
+    if rejected:
+        shown = "; ".join(f"{part.id}: {part.reason}" for part in rejected[:8])
+        more = f"; {len(rejected) - 8} more" if len(rejected) > 8 else ""
+        warn(f"{len(rejected)} panels are not in {name}: {shown}{more}")
+    for note in written.notes:
+        warn(f"{name}: {note}")
+    return str(written.path)
 
 
 @node

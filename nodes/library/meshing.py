@@ -117,7 +117,7 @@ def remesh_triangles(
     if iterations and share < MOSTLY_EVEN:
         warn(
             f"only {100 * share:.0f} % of the edges are between 0.5 and 1.6 times as long as "
-            "asked for: details, corners or creases of the mesh are closer than that; choose "
-            "shorter edges or a larger crease angle"
+            "asked for: the mesh has finer details, corners or creases; choose shorter "
+            "edges or a larger crease angle"
         )
     return result

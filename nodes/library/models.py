@@ -1,25 +1,23 @@
 """Sphere meshes with a support structure by construction, and how to recognise them."""
 
-from typing import Annotated, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from ...kernel.arrays import FloatArray
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.sphere_meshes import model_change as models
 from ...kernel.sphere_meshes import support_type as support
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ..graphs.node import node
-from ..graphs.ports import Port
-
-Length = Annotated[float, Port(min=0)]
+from ..graphs.ports import Length
+from .arrays import Sphere, Vector
 
 
 class SupportType(NamedTuple):
     """The sphere to which all spheres of a mesh are orthogonal."""
 
     kind: str
-    omega: FloatArray
+    omega: Sphere
     residual: float
 
 
@@ -28,7 +26,7 @@ def model_change(
     mesh: Mesh,
     geometry: Literal["hyperbolic", "elliptic"] = "hyperbolic",
     radius: Length = 1.0,
-    center: FloatArray | None = None,
+    center: Vector | None = None,
     branch: Literal["inner", "outer"] = "inner",
 ) -> SphereMesh:
     """
@@ -66,7 +64,7 @@ def model_change(
 
 
 @node
-def sphere_bundle(mesh: Mesh, center: FloatArray, radius: Length = 1.0) -> SphereMesh:
+def sphere_bundle(mesh: Mesh, center: Vector, radius: Length = 1.0) -> SphereMesh:
     """
     Turn planar faces into spheres through one point, by an inversion.
 

@@ -6,19 +6,19 @@ from typing import Annotated, Any, Literal, NamedTuple
 import numpy as np
 
 from ...kernel.analysis import angle_summary
-from ...kernel.arrays import FloatArray
 from ...kernel.errors import ConvergenceError, InputError, name_ids
 from ...kernel.meshes.mesh import Mesh, mean_edge_length
-from ...kernel.optimization import pencil, strips
+from ...kernel.optimization import angle_minimization, strips
 from ...kernel.optimization import whole_energy as optimization
 from ...kernel.optimization.energies.table import EnergyWeights
 from ...kernel.reports import Report
 from ...kernel.sphere_meshes.fit import face_planes
-from ...kernel.sphere_meshes.planarity import circularity
+from ...kernel.sphere_meshes.planarity_circularity import circularity
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ...kernel.tolerances import CIRCULAR, LITTLE_GAIN, VERTEX_MISS
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
+from .arrays import EdgeWeights, FaceRadii, FaceVectors, Vector
 
 Weight = Annotated[float, Port(min=0)]
 
@@ -93,7 +93,7 @@ class Optimum(NamedTuple):
 def minimize_angles(
     sphere_mesh: SphereMesh,
     target_angle: Annotated[float, Port(unit="deg", min=0, max=90)] = 0.0,
-    edge_weights: FloatArray | None = None,
+    edge_weights: EdgeWeights | None = None,
     max_miss: Annotated[float | None, Port(min=0)] = None,
 ) -> Optimum:
     """
@@ -125,10 +125,12 @@ def minimize_angles(
     >>> {kind: round(found["mean"], 1) for kind, found in report["angles_deg"].items()}
     {'planar': 24.9, 'spherical': 15.6}
     """
-    result, run = pencil.minimize_angles(sphere_mesh, np.radians(target_angle), edge_weights)
+    result, run = angle_minimization.minimize_angles(
+        sphere_mesh, np.radians(target_angle), edge_weights
+    )
     if not run.converged:
         raise ConvergenceError(
-            f"the angles did not come to rest in {sum(run.iterations)} steps (last step "
+            f"the angles did not converge in {sum(run.iterations)} steps (last step "
             f"{run.step:.1e} rad): look for nearly degenerate faces"
         )
     if max_miss is not None and run.circle_miss > max(max_miss, CIRCULAR):
@@ -136,15 +138,15 @@ def minimize_angles(
         faces = np.flatnonzero(misses > max(max_miss, CIRCULAR)).tolist()
         raise ConvergenceError(
             f"the vertices of faces {name_ids(faces)} lie on no circle: they miss it by up to "
-            f"{run.circle_miss:.3g} mean edges and {max_miss:g} is allowed; let vertices move "
-            "by a tolerance of about as much"
+            f"{run.circle_miss:.3g} mean edges and {max_miss:g} is allowed; give a tolerance "
+            "of about that size"
         )
     outcome = _outcome(result, sphere_mesh.mesh)
     relative = outcome["vertex_error"]["relative_to_edge"]
     if relative > VERTEX_MISS:
         warn(
             f"vertices miss their spheres by up to {relative:.3g} mean edges: the faces are "
-            "not circular; panels are exact, but their corners move off the mesh by as much"
+            "not circular; panels are exact, but their corners are off the mesh by as much"
         )
     if target_angle == 0:
         _warn_of_little_gain(outcome)
@@ -168,9 +170,9 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     fairness: Weight = 0.0,
     closeness: Weight = 0.0,
     target_angle: Annotated[float, Port(unit="deg", min=0, max=90)] = 0.0,
-    edge_weights: FloatArray | None = None,
+    edge_weights: EdgeWeights | None = None,
     tolerance: Annotated[float, Port(min=0)] = 0.0,
-    fixed_radii: FloatArray | None = None,
+    fixed_radii: FaceRadii | None = None,
     interior: Literal["free", "glide"] = "free",
     boundary: Literal["free", "glide", "fixed"] = "free",
     max_iterations: Annotated[int, Port(min=1)] = 100,
@@ -260,7 +262,7 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
 
 
 @node
-def strip_weights(mesh: Mesh, direction: int | FloatArray = 0) -> FloatArray:
+def strip_weights(mesh: Mesh, direction: int | Vector | FaceVectors = 0) -> EdgeWeights:
     """
     Weights that let spheres join smoothly along strips, and only there.
 

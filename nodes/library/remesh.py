@@ -5,20 +5,26 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from ...kernel.analysis import deviation
-from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.errors import ConvergenceError, name_ids
 from ...kernel.meshes.mesh import Mesh, mean_edge_length
 from ...kernel.remesh import pipeline, reports
-from ...kernel.remesh.field import directions, relax
+from ...kernel.remesh.field import conjugate_directions as directions
+from ...kernel.remesh.field import relax
 from ...kernel.remesh.field.relax import CongruenceQuality
 from ...kernel.remesh.field.smooth_surface import SmoothSurface
-from ...kernel.remesh.planar.held_nets import SHORT_EDGE, planarize_held
-from ...kernel.remesh.planar.node_sites import node_distances
-from ...kernel.remesh.planar.planarize import Planarization, measure_nodes, planarize
+from ...kernel.remesh.planar.conditions import node_distances
+from ...kernel.remesh.planar.nodes import measure_nodes
+from ...kernel.remesh.planar.planarize import (
+    SHORT_EDGE,
+    Planarization,
+    planarize,
+    planarize_held,
+)
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.tolerances import NODE_ON_SPHERES, TORSION_FREE
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
+from .arrays import VertexDirections, VertexMarks, VertexSpheres
 
 COMPLEX_SHARE = 0.05
 """A share of the area with complex directions, or none, that is worth a warning."""
@@ -33,8 +39,8 @@ Rings = Annotated[int, Port(min=1, max=10)]
 class Directions(NamedTuple):
     """Conjugate directions at the vertices of a congruence."""
 
-    directions: FloatArray
-    is_real: BoolArray
+    directions: VertexDirections
+    is_real: VertexMarks
     report: reports.DirectionsReport
 
 
@@ -47,7 +53,7 @@ class Remeshed(NamedTuple):
 
 @node
 def conjugate_directions(
-    mesh: Mesh, spheres: FloatArray, degree: Degree = None, rings: Rings = 4
+    mesh: Mesh, spheres: VertexSpheres, degree: Degree = None, rings: Rings = 4
 ) -> Directions:
     """
     The directions that a net of these spheres must follow to have a support structure.
@@ -91,7 +97,7 @@ def conjugate_directions(
 @node
 def p4_remesh(
     mesh: Mesh,
-    spheres: FloatArray,
+    spheres: VertexSpheres,
     edge_length: Annotated[float, Port(min=0)],
     smoothing: Annotated[float, Port(min=0, max=10)] = 0.5,
     least_angle: Annotated[float, Port(unit="deg", min=0, max=80)] = 20.0,
@@ -198,15 +204,15 @@ def _distances(sphere_mesh: SphereMesh, mesh: Mesh, surface: SmoothSurface) -> d
 def _warn_of_directions(complex_share: float, umbilic_share: float) -> None:
     if umbilic_share > COMPLEX_SHARE:
         warn(
-            f"on {_percent(umbilic_share)} of the area the spheres do not tell the conjugate "
-            "directions, as if they touched one sphere: there noise chooses the net; much "
-            "smoothing, over 5 edges or more, makes it even"
+            f"on {_percent(umbilic_share)} of the area the spheres do not determine the "
+            "conjugate directions (they nearly touch one sphere), and noise does: set "
+            "smoothing to 5 or more"
         )
     if complex_share > COMPLEX_SHARE:
         warn(
             f"the conjugate directions are complex on {_percent(complex_share)} of the area: "
-            "no real net follows these spheres there; relax_congruence makes it real, and "
-            "tangent spheres of constant offset have a real one"
+            "these spheres have no real net there; relax the spheres with relax_congruence, or "
+            "use tangent spheres of constant offset"
         )
 
 
@@ -218,14 +224,14 @@ def _warn_of_nodes(done: pipeline.Remeshing, edge_length: float) -> None:
     if small > 0:
         warn(
             f"the spheres at {_percent(small)} of the vertices have radii below "
-            f"{smallest:.3g}, 0.71 edges: around a node they do not meet; choose larger "
+            f"{smallest:.3g}, 0.71 edges: they do not meet around a node; choose larger "
             f"spheres, or an edge length of {np.sqrt(2) * radii.min():.3g} at most"
         )
     lean = reports.angle_report(done.axis_angles)["p95"]
     if lean is not None and lean > LEANING:
         warn(
-            f"node axes will lean from the normals, by more than {lean:.3g} degrees at 5 % of "
-            "the vertices: beams lie down; relax_congruence sets them up"
+            f"node axes will lean from the normals by more than {lean:.3g} degrees at 5 % of "
+            "the vertices, and beams will lie flat: relax_congruence makes them upright"
         )
 
 
@@ -300,22 +306,22 @@ def _warn_of_damage(report: reports.PlanarizationReport) -> None:
         warn(
             f"the shortest edge measures {shortest:.2g} of the mean, and the number of faces "
             f"that turned over is {len(report['turned_faces'])}: nodes moved by up to "
-            f"{report['moved']['max']:.2g} edges to become planar; larger spheres of more even "
-            "size need smaller moves, and singular points close to each other a coarser net"
+            f"{report['moved']['max']:.2g} edges to become planar; choose larger spheres "
+            "of more even size, or a coarser net where singular points are close to each other"
         )
 
 
 class Relaxed(NamedTuple):
     """A congruence that can be remeshed, and how far it is from the given one."""
 
-    spheres: FloatArray
+    spheres: VertexSpheres
     report: reports.RelaxationReport
 
 
 @node
 def relax_congruence(
     mesh: Mesh,
-    spheres: FloatArray,
+    spheres: VertexSpheres,
     max_complex: Annotated[float, Port(min=0, max=1)] = 0.02,
     max_axis_angle: Annotated[float, Port(unit="deg", min=0, max=90)] = 20.0,
     radius: float | None = None,

@@ -3,7 +3,9 @@
 from typing import Annotated, NamedTuple
 
 from ...kernel.meshes.mesh import Mesh
-from ...kernel.sphere_meshes import central, fit
+from ...kernel.sphere_meshes import central_spheres as central
+from ...kernel.sphere_meshes import fit
+from ...kernel.sphere_meshes import smoothed_spheres as smoothing
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ..graphs.node import node
 from ..graphs.ports import Port
@@ -113,7 +115,7 @@ def smoothed_spheres(mesh: Mesh) -> SphereMesh:
     >>> float(angles.mean().round(1))
     18.3
     """
-    return central.smoothed_spheres(mesh)
+    return smoothing.smoothed_spheres(mesh)
 
 
 @node

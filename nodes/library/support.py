@@ -5,22 +5,22 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.beams import cutting as beam_cutting
 from ...kernel.beams.beams import Beams, beam_lengths, beam_volumes
 from ...kernel.beams.drilling import drill_beams
 from ...kernel.errors import InputError, name_ids
 from ...kernel.meshes.mesh import mean_edge_length
 from ...kernel.parts.findings import findings_report, rejected_report
-from ...kernel.remesh.planar.held_nets import planarize_near
+from ...kernel.parts.records import RejectedPart
+from ...kernel.remesh.planar.landing import planarize_near
 from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.support import annulus_support as annulus
 from ...kernel.support import node_axes as support
 from ...kernel.support.annuli import Annuli, corner_mismatch, mean_end_depth
-from ...kernel.support.annulus_checks import RejectedBeam
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
+from .arrays import VertexAngles, VertexAxes, VertexMarks
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,9 +98,9 @@ class LandedNodes(NamedTuple):
 class Nodes(NamedTuple):
     """The nodes of a support structure, one per vertex."""
 
-    axes: FloatArray
-    torsion: FloatArray
-    is_valid: BoolArray
+    axes: VertexAxes
+    torsion: VertexAngles
+    is_valid: VertexMarks
     report: support.NodesReport
 
 
@@ -303,8 +303,8 @@ def beams(
     if thickness is None:
         if annuli.n_annuli == 0:
             raise InputError(
-                "there is no annulus to make a beam of: see what the report of annulus_support "
-                "rejected, and why"
+                "there is no annulus to make a beam of: the report of annulus_support lists "
+                "the rejected ones with reasons"
             )
         thickness = mean_end_depth(annuli) / 10
     made, rejected = beam_cutting.cut_beams(annuli, thickness, node_gap, node_radius)
@@ -372,10 +372,10 @@ def drilling_marks(
     return MarkedBeams(marked, report)
 
 
-def _warn_of_rejected(rejected: tuple[RejectedBeam, ...], what: str) -> None:
+def _warn_of_rejected(rejected: tuple[RejectedPart, ...], what: str) -> None:
     if rejected:
         warn(
             f"{len(rejected)} {what} cannot be made: edges "
-            f"{name_ids([beam.edge_id for beam in rejected])} "
+            f"{name_ids([beam.element_id for beam in rejected])} "
             f"({rejected[0].id}: {rejected[0].reason})"
         )

@@ -8,7 +8,6 @@ import numpy as np
 from ...fabrication.audit import beams as beam_audit
 from ...fabrication.audit import panels as panel_audit
 from ...kernel.analysis import angle_summary
-from ...kernel.arrays import IntArray
 from ...kernel.beams.beams import Beams
 from ...kernel.meshes.mesh import mean_edge_length
 from ...kernel.panels import congruent
@@ -21,13 +20,13 @@ from ...kernel.support.annulus_support import AnnuliReport
 from ...kernel.support.node_axes import NodesReport
 from ...kernel.tolerances import SAME_PANEL
 from ..graphs.node import node, warn
-from ..graphs.ports import Port, Units
+from ..graphs.ports import Length, Port, Units
+from .arrays import PanelLabels
 from .cluster import MouldsReport
 from .fabricate import CutReport
 from .optimise import OptimumReport
 from .support import BeamsReport, LandingReport
 
-Length = Annotated[float, Port(min=0)]
 Millimeters = Annotated[float, Port(unit="mm", min=0)]
 Degrees = Annotated[float, Port(unit="deg", min=0, max=180)]
 
@@ -131,7 +130,7 @@ class PanellingReport(Report):
 class IdenticalPanels(NamedTuple):
     """Panels gathered by shape."""
 
-    labels: IntArray
+    labels: PanelLabels
     report: ShapesReport
 
 
@@ -208,7 +207,7 @@ def mould_blanks(panels: Panels, size_step: Length = 0.0) -> BlanksReport:
     found = blanks.mould_blanks(panels, congruent.congruent_panels(panels), size_step)
     without = int((panels.labels < 0).sum())
     if without:
-        warn(f"{without} of {panels.n_panels} panels belong to no mould and count no blank")
+        warn(f"{without} of {panels.n_panels} panels belong to no mould and need no blank")
     rows = [
         {
             "mould": int(found.labels[i]) + 1,

@@ -15,39 +15,33 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication.audit.panels import audit_panels
 from spheremesh.fabrication.drawings.beams import write_dxf
 from spheremesh.fabrication.drawings.moulds import write_mould_drawings
-from spheremesh.fabrication.rhino.writer import RhinoContents, write_3dm
+from spheremesh.fabrication.model import Model, Written
+from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
 from spheremesh.fabrication.schedules.schedule import schedule_rows, write_schedule
-from spheremesh.fabrication.solids.panel_shapes import panel_shapes
+from spheremesh.fabrication.solids.opencascade_panels import panel_shapes
 from spheremesh.fabrication.step.check import check_part21
-from spheremesh.fabrication.step.writer import write_step
-from spheremesh.kernel.arrays import FloatArray, norm
-from spheremesh.kernel.beams.beams import select_beams
+from spheremesh.fabrication.step.writer import StepOptions, write_step
+from spheremesh.kernel.arrays import norm
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.optimization.clustering import cluster_radii
-from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
-from spheremesh.kernel.panels.panels import Panels, select_panels
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.panels.panels import Panels
+from spheremesh.kernel.parts.records import select_parts
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
-from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.kernel.support.annulus_support import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
 
-Writer = Callable[[Panels, Path], Path]
+Writer = Callable[[Model, Path], Written]
 
 
-def write_rhino(panels: Panels, path: Path) -> Path:
-    file = write_3dm(
-        panels, path, contents=RhinoContents(layers=("Edges", "Centres", "Moulds"))
-    )
-    assert file.rejected == file.notes == ()
-    return file.path
+def write_rhino(model: Model, path: Path) -> Written:
+    return write_3dm(model, path, RhinoOptions(layers=("Edges", "Centres", "Moulds")))
 
 
 WRITERS: dict[str, Writer] = {
     "p.step": write_step,
-    "q.step": lambda panels, path: write_step(panels, path, copies="instances"),
+    "q.step": lambda model, path: write_step(model, path, StepOptions(copies="instances")),
     "p.3dm": write_rhino,
     "p.csv": write_schedule,
     "p.json": write_schedule,
@@ -59,7 +53,9 @@ WRITERS: dict[str, Writer] = {
 def write_all(panels: Panels, folder: Path) -> None:
     """Every file; STEP text is sound and every solid valid."""
     for name, write in WRITERS.items():
-        path = write(panels, folder / name)
+        file = write(Model(panels), folder / name)
+        path = file.path
+        assert file.rejected == file.notes == ()
         assert path.stat().st_size > 0
         if path.suffix == ".step":
             assert check_part21(path) == ()
@@ -86,37 +82,29 @@ def step_names(path: Path) -> set[str]:
     }
 
 
-def curved(mesh: Mesh, angles: FloatArray | list[float]) -> SphereMesh:
-    planes, great_spheres = circle_pencils(face_circles(mesh)[0])
-    return SphereMesh.from_local(
-        mesh, pencil_spheres(planes, great_spheres, np.asarray(angles, float))
-    )
-
-
-def squares(*angles: float) -> SphereMesh:
-    """Unit squares in a row under spheres of the given half openings."""
-    points = [[x, y, 0.0] for x in range(len(angles) + 1) for y in (0, 1)]
-    faces = [[2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1] for i in range(len(angles))]
-    return curved(Mesh(points, faces), list(angles))
-
-
 @pytest.mark.parametrize("thickness", [0.0, 0.05])
 @pytest.mark.parametrize("angle", [-0.4, 0.0, 0.4])
-def test_one_panel(tmp_path: Path, thickness: float, angle: float) -> None:
+def test_one_panel(
+    squares: Callable[..., SphereMesh], tmp_path: Path, thickness: float, angle: float
+) -> None:
     panels, rejected = cut_panels(squares(angle), thickness=thickness)
     assert not rejected
     write_all(panels, tmp_path)
 
 
 @pytest.mark.parametrize("side", ["inward", "outward", "centred"])
-def test_planes_and_spheres_of_both_signs(tmp_path: Path, side: str) -> None:
+def test_planes_and_spheres_of_both_signs(
+    squares: Callable[..., SphereMesh], tmp_path: Path, side: str
+) -> None:
     found = squares(0.0, 0.3, -0.3, 0.0, 1e-9, -0.02)
     panels, rejected = cut_panels(found, "bisector", 0.03, 0.01, side=side)  # type: ignore[arg-type]
     assert not rejected
     write_all(panels, tmp_path)
 
 
-def test_radii_below_three_quarters_of_an_edge(tmp_path: Path) -> None:
+def test_radii_below_three_quarters_of_an_edge(
+    squares: Callable[..., SphereMesh], tmp_path: Path
+) -> None:
     panels, rejected = cut_panels(squares(1.25, -1.25, 1.3), thickness=0.02, joint_gap=0.02)
     assert not rejected
     radii = 0.5 / np.abs(panels.spheres[:, 0])
@@ -128,7 +116,11 @@ def test_radii_below_three_quarters_of_an_edge(tmp_path: Path) -> None:
 @pytest.mark.parametrize("angle", [0.0, 0.2])
 @pytest.mark.parametrize("thickness", [0.0, 0.01])
 def test_corners_of_a_hundredth_of_a_degree(
-    tmp_path: Path, degrees: float, angle: float, thickness: float
+    curved: Callable[..., SphereMesh],
+    tmp_path: Path,
+    degrees: float,
+    angle: float,
+    thickness: float,
 ) -> None:
     height = np.tan(np.radians(degrees))
     mesh = Mesh([[0, 0, 0], [1, 0, 0], [1, height, 0]], [[0, 1, 2]])
@@ -144,7 +136,7 @@ def test_corners_of_a_hundredth_of_a_degree(
     assert refused.reason
 
 
-def test_names_of_any_script(tmp_path: Path) -> None:
+def test_names_of_any_script(squares: Callable[..., SphereMesh], tmp_path: Path) -> None:
     found = squares(*[0.1] * 8)
     panels, _ = cut_panels(found, thickness=0.05, labels=np.zeros(8, np.int64))
     names = (
@@ -174,7 +166,9 @@ def test_names_of_any_script(tmp_path: Path) -> None:
     ["", " A", "A ", "A\n1", "A\rB", "\t", "A\0",
      "\x07", "A\x85B", "A\u2028", "\ud800", "\ufffe"],
 )  # fmt: skip
-def test_names_that_files_would_change_are_refused(tmp_path: Path, name: str) -> None:
+def test_names_that_files_would_change_are_refused(
+    squares: Callable[..., SphereMesh], tmp_path: Path, name: str
+) -> None:
     """Rhino trims and cuts them, XML and workbooks break on them, DXF joins their lines."""
     panels, _ = cut_panels(squares(0.1, 0.2), thickness=0.05)
     named = replace(panels, ids=("A", name))
@@ -182,26 +176,26 @@ def test_names_that_files_would_change_are_refused(tmp_path: Path, name: str) ->
         with pytest.raises(
             InputError, match=r"panel 1 is called .*: a name is one line of text"
         ):
-            write(named, tmp_path / file)
+            write(Model(named), tmp_path / file)
     spheres = central_spheres(torus_net(7, 5, 3.0, 1.0))
     beams = cut_beams(annulus_support(spheres, 0.3).annuli, 0.04)[0]
-    beams = select_beams(beams, np.arange(beams.n_beams) < 2)
+    beams = select_parts(beams, np.arange(beams.n_beams) < 2)
     beams = replace(beams, annuli=replace(beams.annuli, ids=(name, "B")))
     with pytest.raises(InputError, match=r"beam 0 is called .*: a name is one line of text"):
-        write_dxf(beams, tmp_path / "b.dxf")
+        write_dxf(Model(beams=beams), tmp_path / "b.dxf")
     assert not list(tmp_path.iterdir())
 
 
 def test_names_of_beams_in_any_script(tmp_path: Path) -> None:
     spheres = central_spheres(torus_net(7, 5, 3.0, 1.0))
     beams = cut_beams(annulus_support(spheres, 0.3).annuli, 0.04)[0]
-    beams = select_beams(beams, np.arange(beams.n_beams) < 2)
+    beams = select_parts(beams, np.arange(beams.n_beams) < 2)
     names = ("Träger 1", "梁-2")
     beams = replace(beams, annuli=replace(beams.annuli, ids=names))
-    path = write_step(None, tmp_path / "b.step", beams=beams)
+    path = write_step(Model(beams=beams), tmp_path / "b.step").path
     assert set(names) < step_names(path)
-    assert "梁-2" in write_dxf(beams, tmp_path / "b.dxf").path.read_text("utf-8")
-    path = write_3dm(None, tmp_path / "b.3dm", beams=beams).path
+    assert "梁-2" in write_dxf(Model(beams=beams), tmp_path / "b.dxf").path.read_text("utf-8")
+    path = write_3dm(Model(beams=beams), tmp_path / "b.3dm").path
     model: Any = rhino3dm.File3dm.Read(str(path))
     found = [
         each.Attributes for each in model.Objects if type(each.Geometry).__name__ == "Extrusion"
@@ -211,22 +205,24 @@ def test_names_of_beams_in_any_script(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", WRITERS)
-def test_what_no_file_can_hold_is_refused_by_name(tmp_path: Path, name: str) -> None:
+def test_what_no_file_can_hold_is_refused_by_name(
+    squares: Callable[..., SphereMesh], tmp_path: Path, name: str
+) -> None:
     panels, _ = cut_panels(squares(0.1, 0.2, 0.3), thickness=0.05)
     write, target = WRITERS[name], tmp_path / name
     with pytest.raises(InputError, match="there are no panels to write to"):
-        write(select_panels(panels, np.zeros(3, bool)), target)
+        write(Model(select_parts(panels, np.zeros(3, bool))), target)
     with pytest.raises(InputError, match=r"2 panels are called 'A' \(faces \[0, 2\]\)"):
-        write(replace(panels, ids=("A", "B", "A")), target)
+        write(Model(replace(panels, ids=("A", "B", "A"))), target)
     inner = panels.inner_corners.copy()
     inner[6] = np.inf
     with pytest.raises(InputError, match=r"panel P0001 \(1 in all\) is not finite"):
-        write(replace(panels, inner_corners=inner), target)
+        write(Model(replace(panels, inner_corners=inner)), target)
     assert not list(tmp_path.iterdir())
 
 
 def test_caps_and_thicknesses_beyond_reach_are_refused_and_the_rest_is_written(
-    tmp_path: Path,
+    squares: Callable[..., SphereMesh], tmp_path: Path
 ) -> None:
     found = squares(0.2, 1.5, -1.0, 0.0, -0.3)
     # Radius 0.84 on the third: a thickness of 0.84 leaves nothing of it.
@@ -239,23 +235,19 @@ def test_caps_and_thicknesses_beyond_reach_are_refused_and_the_rest_is_written(
     write_all(panels, tmp_path)
 
 
-def roof(scale: float) -> Panels:
-    mesh = roof_net(6, 7, 30.0)
-    found = minimize_angles(fit_spheres(Mesh(scale * mesh.vertices, mesh.faces)))[0]
-    found, clusters = cluster_radii(found, 3)
-    lengths = 0.05 * scale, 0.01 * scale
-    panels, rejected = cut_panels(found, "bisector", *lengths, clusters.labels)
-    assert not rejected
-    return panels
-
-
-def test_law_millimetres_are_the_same_in_every_unit(tmp_path: Path) -> None:
+def test_law_millimetres_are_the_same_in_every_unit(
+    moulded: Callable[..., Panels], tmp_path: Path
+) -> None:
     """A roof drawn in metres, millimetres and feet, from the mesh to the files."""
     rows, numbers = [], []
     for units, scale in (("m", 1.0), ("mm", 1000.0), ("ft", 1 / 0.3048)):
-        panels = roof(scale)
+        roof = roof_net(6, 7, 30.0)
+        spheres = fit_spheres(Mesh(scale * roof.vertices, roof.faces))
+        panels = moulded(spheres, 0.05 * scale, 0.01 * scale)
         rows.append(schedule_rows(panels, units))
-        text = write_step(panels, tmp_path / "p.step", units).read_text("ascii")
+        text = write_step(Model(panels, units=units), tmp_path / "p.step").path.read_text(
+            "ascii"
+        )
         found = re.findall(r"CARTESIAN_POINT\('',\(([^)]*)\)\)", text.replace("\n", ""))
         numbers.append(np.array([[float(x) for x in point.split(",")] for point in found]))
     for other in (1, 2):

@@ -13,7 +13,8 @@ import rhino3dm
 from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication.drawings.beams import write_dxf
 from spheremesh.fabrication.drawings.moulds import write_mould_drawings
-from spheremesh.fabrication.rhino.writer import RhinoContents, write_3dm
+from spheremesh.fabrication.model import Model
+from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
 from spheremesh.fabrication.schedules.schedule import mould_rows, schedule_rows
 from spheremesh.fabrication.step.writer import write_step
 from spheremesh.fabrication.units import millimeters_per
@@ -21,14 +22,14 @@ from spheremesh.kernel.arrays import FloatArray
 from spheremesh.kernel.beams.beams import Beams
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.meshes.mesh import mean_edge_length
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.optimization.clustering import cluster_radii
 from spheremesh.kernel.optimization.energies.table import EnergyWeights
-from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.optimization.whole_energy import Conditions, optimize_spheres
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.panels import Panels
-from spheremesh.kernel.remesh.planar.held_nets import planarize_near
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.remesh.planar.landing import planarize_near
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import fit_spheres
 from spheremesh.kernel.spheres.rows import rescale
 from spheremesh.kernel.support.annulus_support import annulus_support
@@ -105,7 +106,7 @@ def moulds(job: Job, _: Path) -> FloatArray:
 
 
 def step(job: Job, folder: Path) -> FloatArray:
-    path = write_step(job.panels, folder / "p.step", job.units, beams=job.beams)
+    path = write_step(Model(job.panels, job.beams, job.units), folder / "p.step").path
     text = path.read_text("ascii").replace("\n", "")
     points = re.findall(r"CARTESIAN_POINT\('',\(([^)]*)\)\)", text)
     radii = re.findall(
@@ -116,10 +117,8 @@ def step(job: Job, folder: Path) -> FloatArray:
 
 def rhino(job: Job, folder: Path) -> FloatArray:
     """Corners and radii of everything, in millimetres."""
-    contents = RhinoContents(layers=("Edges", "Centres", "Moulds"))
-    path = write_3dm(
-        job.panels, folder / "p.3dm", job.units, contents=contents, beams=job.beams
-    ).path
+    contents = RhinoOptions(layers=("Edges", "Centres", "Moulds"))
+    path = write_3dm(Model(job.panels, job.beams, job.units), folder / "p.3dm", contents).path
     model: Any = rhino3dm.File3dm.Read(str(path))
     found: list[float] = []
     for item in model.Objects:
@@ -147,7 +146,7 @@ def coordinates(point: Any) -> list[float]:  # noqa: ANN401
 
 def cutting(job: Job, folder: Path) -> FloatArray:
     """Rings from their lower left corner: where they lie on the sheet is of no matter."""
-    path = write_dxf(job.beams, folder / "b.dxf", job.units).path
+    path = write_dxf(Model(beams=job.beams, units=job.units), folder / "b.dxf").path
     found: list[FloatArray] = []
     for ring in ezdxf.readfile(path).modelspace().query("LWPOLYLINE[layer=='CUT']"):
         points = np.array(list(ring.get_points("xyb")))
@@ -156,7 +155,7 @@ def cutting(job: Job, folder: Path) -> FloatArray:
 
 
 def drawing(job: Job, folder: Path) -> FloatArray:
-    path = write_mould_drawings(job.panels, folder / "m.dxf", job.units)
+    path = write_mould_drawings(Model(job.panels, units=job.units), folder / "m.dxf").path
     model = ezdxf.readfile(path).modelspace()
     rings = [np.array(list(each.get_points("xy"))) for each in model.query("LWPOLYLINE")]
     rims = [[*each.dxf.center, each.dxf.radius] for each in model.query("CIRCLE")]

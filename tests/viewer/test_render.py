@@ -6,8 +6,9 @@ from spheremesh.kernel.arrays import norm
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import Mesh
 from spheremesh.kernel.panels.cutting import cut_panels
-from spheremesh.kernel.panels.panels import Panels, select_panels
+from spheremesh.kernel.panels.panels import Panels
 from spheremesh.kernel.parts.colors import UNLABELLED, mould_color
+from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.sphere_meshes.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres.rows import from_center_radius, normalize
@@ -220,4 +221,4 @@ def test_unusable_options_are_named(options: dict[str, object], message: str) ->
 
 def test_no_panels_no_picture() -> None:
     with pytest.raises(InputError, match="no panels"):
-        render_image(select_panels(dome(1.0), np.zeros(1, bool)))
+        render_image(select_parts(dome(1.0), np.zeros(1, bool)))

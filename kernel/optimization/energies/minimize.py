@@ -56,11 +56,9 @@ def energy_problem(setting: Setting, freedom: Freedom, weights: EnergyWeights) -
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     freedom : Freedom
         Which way the unknowns may move; vertices are unknown if they may move at all.
     weights : EnergyWeights
-        Weights of the terms.
 
     Returns
     -------
@@ -92,9 +90,7 @@ def weighted_residuals(problem: EnergyProblem, unknowns: Unknowns) -> list[Float
     Parameters
     ----------
     problem : EnergyProblem
-        The problem.
     unknowns : Unknowns
-        The values.
 
     Returns
     -------
@@ -116,9 +112,7 @@ def weighted_entries(
     Parameters
     ----------
     problem : EnergyProblem
-        The problem.
     unknowns : Unknowns
-        The values.
 
     Returns
     -------
@@ -144,9 +138,7 @@ def minimize_energy(
     Parameters
     ----------
     problem : EnergyProblem
-        The problem.
     start : Unknowns
-        Where to start.
     max_iterations : int
         Largest number of linear systems.
     change : float

@@ -10,13 +10,14 @@ from spheremesh import Mesh
 from spheremesh.fabrication.audit.beams import audit_beams
 from spheremesh.fabrication.audit.panels import AuditLimits
 from spheremesh.fabrication.schedules.beams import beam_rows
-from spheremesh.kernel.beams.beams import Beams, scale_beams, select_beams
+from spheremesh.kernel.beams.beams import Beams, scale_beams
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.beams.drilling import drill_beams
 from spheremesh.kernel.beams.facts import beam_facts
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.parts.findings import Finding, findings_report
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.parts.records import select_parts
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.support.annulus_support import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
@@ -155,7 +156,7 @@ def test_no_beams_are_audited_too() -> None:
     assert [(f.code, f.id) for f in findings] == [("B100", f"B000{i}") for i in range(4)]
     report = findings_report(findings)
     assert json.loads(json.dumps(report, allow_nan=False)) == report
-    assert audit_beams(select_beams(sound(), np.zeros(192, bool))) == ()
+    assert audit_beams(select_parts(sound(), np.zeros(192, bool))) == ()
 
 
 def test_the_worse_end_counts() -> None:
@@ -199,7 +200,7 @@ def test_a_beam_that_is_left_alone_runs_into_nobody() -> None:
     assert codes(audit_beams(beams)) == set()
     np.testing.assert_allclose(beam_facts(beams).clearances, 0, atol=1e-12)
     for row in range(beams.n_beams):
-        alone = select_beams(beams, np.arange(beams.n_beams) == row)
+        alone = select_parts(beams, np.arange(beams.n_beams) == row)
         assert codes(audit_beams(alone)) == set()
         assert np.isinf(beam_facts(alone).clearances).all()
         assert beam_rows(alone, "m")[0]["clearances_mm"] == [None, None]

@@ -1,5 +1,6 @@
 """Cutting drawings, read back by ezdxf."""
 
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -13,13 +14,15 @@ from ezdxf.bbox import extents
 from ezdxf.math import Vec2, bulge_radius, is_point_in_polygon_2d
 from ezdxf.path import make_path
 
-from spheremesh.fabrication.drawings.beams import write_dxf
+from spheremesh.fabrication.drawings.beams import SheetOptions, write_dxf
+from spheremesh.fabrication.model import Model
 from spheremesh.kernel.arrays import FloatArray, norm
-from spheremesh.kernel.beams.beams import Beams, section_arcs, select_beams
+from spheremesh.kernel.beams.beams import Beams, section_arcs
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.beams.drilling import drill_beams
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.parts.records import select_parts
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.arcs import arc_circles
 from spheremesh.kernel.support.annulus_support import annulus_support
@@ -36,9 +39,9 @@ def beams() -> Beams:
 @pytest.fixture(scope="module")
 def path(beams: Beams, tmp_path_factory: pytest.TempPathFactory) -> Path:
     target = tmp_path_factory.mktemp("dxf") / "beams.dxf"
-    file = write_dxf(beams, target)
+    file = write_dxf(Model(beams=beams), target)
     assert file.path == target
-    assert file.oversize == ()
+    assert file.notes == ()
     return target
 
 
@@ -106,7 +109,7 @@ def test_labels_stay_on_bowed_beams_of_models_and_buildings(
 ) -> None:
     found = central_spheres(torus_net(7, 5, 3.0 * size, size))
     bowed = cut_beams(annulus_support(found, depth * size).annuli, 0.02 * size, 0.03 * size)[0]
-    drawing: Any = ezdxf.readfile(write_dxf(bowed, tmp_path / "b.dxf").path)  # pyright: ignore
+    drawing: Any = ezdxf.readfile(write_dxf(Model(beams=bowed), tmp_path / "b.dxf").path)  # pyright: ignore
     space = drawing.modelspace()
     texts = list(space.query("TEXT"))
     for i, ring in enumerate(space.query('LWPOLYLINE[layer=="CUT"]')):
@@ -141,14 +144,14 @@ def test_labels_name_the_beam_and_its_nodes(drawing: Any, beams: Beams) -> None:
 
 
 def test_the_same_beams_give_the_same_bytes(beams: Beams, path: Path, tmp_path: Path) -> None:
-    again = write_dxf(beams, tmp_path / "again.dxf").path
+    again = write_dxf(Model(beams=beams), tmp_path / "again.dxf").path
     assert again.read_bytes() == path.read_bytes()
 
 
 def test_units_of_the_model(beams: Beams, tmp_path: Path) -> None:
-    few = select_beams(beams, np.arange(beams.n_beams) < 3)
+    few = select_parts(beams, np.arange(beams.n_beams) < 3)
     for units, factor in (("mm", 1.0), ("ft", 304.8)):
-        file = write_dxf(few, tmp_path / "u.dxf", units)
+        file = write_dxf(Model(beams=few, units=units), tmp_path / "u.dxf")
         ring = rings(ezdxf.readfile(file.path), "CUT")[0]  # pyright: ignore
         outer, _ = section_arcs(few)
         length = norm(ring[3, :2] - ring[2, :2])
@@ -156,18 +159,23 @@ def test_units_of_the_model(beams: Beams, tmp_path: Path) -> None:
 
 
 def test_pieces_larger_than_a_sheet_get_their_own(beams: Beams, tmp_path: Path) -> None:
-    file = write_dxf(beams, tmp_path / "small.dxf", sheet=(1300.0, 900.0))
+    file = write_dxf(
+        Model(beams=beams), tmp_path / "small.dxf", SheetOptions(size=(1300.0, 900.0))
+    )
     drawing = ezdxf.readfile(file.path)  # pyright: ignore
-    assert 0 < len(file.oversize) < beams.n_beams
+    note = re.match(r"(\d+) beams are larger than the sheet: ", file.notes[0])
+    assert note
+    n_oversize = int(note[1])
+    assert 0 < n_oversize < beams.n_beams
     assert len(rings(drawing, "CUT")) == beams.n_beams
-    assert len(rings(drawing, "SHEET")) == file.n_sheets > len(file.oversize)
+    assert len(rings(drawing, "SHEET")) == file.counts["sheets"] > n_oversize
     assert len(drawing.audit().errors) == 0
 
 
 def test_straight_beams_have_no_arcs(tmp_path: Path) -> None:
     planes = face_planes(ellipsoid_net(12, 5, 2.0, 3.0, 1.0))
     straight, _ = cut_beams(annulus_support(planes, depth=0.1).annuli, 0.02)
-    file = write_dxf(straight, tmp_path / "straight.dxf")
+    file = write_dxf(Model(beams=straight), tmp_path / "straight.dxf")
     for ring in rings(ezdxf.readfile(file.path), "CUT"):  # pyright: ignore
         assert (ring[:, 2] == 0).all()
 
@@ -175,17 +183,17 @@ def test_straight_beams_have_no_arcs(tmp_path: Path) -> None:
 def test_what_cannot_be_written(beams: Beams, tmp_path: Path) -> None:
     target = tmp_path / "b.dxf"
     with pytest.raises(InputError, match="no beams"):
-        write_dxf(select_beams(beams, np.zeros(beams.n_beams, bool)), target)
+        write_dxf(Model(beams=select_parts(beams, np.zeros(beams.n_beams, bool))), target)
     with pytest.raises(InputError, match="unknown units 'km'"):
-        write_dxf(beams, target, "km")
+        write_dxf(Model(beams=beams, units="km"), target)
     with pytest.raises(InputError, match="must be lengths"):
-        write_dxf(beams, target, sheet=(0.0, 100.0))
+        write_dxf(Model(beams=beams), target, SheetOptions(size=(0.0, 100.0)))
     with pytest.raises(InputError, match="must be lengths"):
-        write_dxf(beams, target, spacing=float("nan"))
+        write_dxf(Model(beams=beams), target, SheetOptions(spacing=float("nan")))
     with pytest.raises(InputError, match=r"end the name in \.dxf"):
-        write_dxf(beams, tmp_path / "b.dwg")
+        write_dxf(Model(beams=beams), tmp_path / "b.dwg")
     with pytest.raises(InputError, match="no folder"):
-        write_dxf(beams, tmp_path / "none" / "b.dxf")
+        write_dxf(Model(beams=beams), tmp_path / "none" / "b.dxf")
     assert not list(tmp_path.iterdir())
 
 
@@ -204,7 +212,9 @@ def test_law_e6_drilling_marks_in_the_file(
     """Circles lie in their own contour, at the inset from the side of its end."""
     drilled, refused = drill_beams(beams, 2, 0.03, 0.3)
     assert 0 < len(refused) < beams.n_beams
-    drawing = ezdxf.readfile(write_dxf(drilled, tmp_path / "d.dxf", units).path)  # pyright: ignore
+    drawing = ezdxf.readfile(
+        write_dxf(Model(beams=drilled, units=units), tmp_path / "d.dxf").path
+    )  # pyright: ignore
     assert len(drawing.audit().errors) == 0
     circles = drawing.modelspace().query('CIRCLE[layer=="DRILL"]')
     assert drilled.marks is not None
@@ -230,8 +240,8 @@ def test_bad_beams_are_named(beams: Beams, tmp_path: Path) -> None:
     sections = beams.sections.copy()
     sections[4] = np.nan
     with pytest.raises(InputError, match=r"beam B0004 \(1 in all\) is not finite"):
-        write_dxf(replace(beams, sections=sections), tmp_path / "n.dxf")
+        write_dxf(Model(beams=replace(beams, sections=sections)), tmp_path / "n.dxf")
     twice = replace(beams, annuli=replace(beams.annuli, ids=("B",) * beams.n_beams))
     with pytest.raises(InputError, match=r"beams are called 'B' \(edges \[0, 1,"):
-        write_dxf(twice, tmp_path / "n.dxf")
+        write_dxf(Model(beams=twice), tmp_path / "n.dxf")
     assert not list(tmp_path.iterdir())

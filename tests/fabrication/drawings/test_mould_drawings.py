@@ -1,5 +1,6 @@
 """Drawings of moulds: read back by ezdxf and by an XML parser."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
@@ -10,28 +11,26 @@ from PIL import ImageFont
 
 from spheremesh import Mesh
 from spheremesh.fabrication.drawings.moulds import layout_moulds, write_mould_drawings
+from spheremesh.fabrication.model import Model
 from spheremesh.kernel.arrays import norm
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.optimization.clustering import cluster_radii
-from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.mould_blanks import panel_caps
-from spheremesh.kernel.panels.panels import Panels, select_panels
+from spheremesh.kernel.panels.panels import Panels
+from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.surfaces.circular_nets import vase_net
 
 
 @pytest.fixture(scope="module")
-def panels() -> Panels:
-    found = minimize_angles(face_planes(vase_net(12, 6, 1.0, 2.0, 0.3)))[0]
-    found, clusters = cluster_radii(found, 3)
-    return cut_panels(found, "bisector", 0.02, 0.005, clusters.labels)[0]
+def panels(moulded: Callable[..., Panels]) -> Panels:
+    return moulded(face_planes(vase_net(12, 6, 1.0, 2.0, 0.3)), 0.02, 0.005)
 
 
 def test_dxf_is_sound_and_complete(panels: Panels, tmp_path: Path) -> None:
     import ezdxf
 
-    path = write_mould_drawings(panels, tmp_path / "moulds.dxf")
+    path = write_mould_drawings(Model(panels), tmp_path / "moulds.dxf").path
     document = ezdxf.readfile(path)
     assert not document.audit().errors
     assert document.units == 4
@@ -52,7 +51,7 @@ def test_dxf_is_sound_and_complete(panels: Panels, tmp_path: Path) -> None:
 
 
 def test_svg_is_sound_and_complete(panels: Panels, tmp_path: Path) -> None:
-    path = write_mould_drawings(panels, tmp_path / "moulds.svg")
+    path = write_mould_drawings(Model(panels), tmp_path / "moulds.svg").path
     root = ElementTree.parse(path).getroot()  # noqa: S314
     name = "{http://www.w3.org/2000/svg}"
     groups = {group.get("id"): group for group in root.findall(f"{name}g")}
@@ -102,7 +101,7 @@ def test_flat_panels_are_drawn_in_true_size() -> None:
 
 def test_no_text_runs_out_of_the_drawing(panels: Panels) -> None:
     """A mould with one panel has a title that is wider than its blank."""
-    one = select_panels(panels, np.arange(panels.n_panels) == 0)
+    one = select_parts(panels, np.arange(panels.n_panels) == 0)
     for name in ("P0000", "屋根の板" * 20, "Dachplatte-" * 30):
         drawing = layout_moulds(replace(one, ids=(name,)))
         assert len(drawing.labels) == 3
@@ -119,15 +118,15 @@ def test_no_text_runs_out_of_the_drawing(panels: Panels) -> None:
 
 def test_the_same_drawing_has_the_same_bytes(panels: Panels, tmp_path: Path) -> None:
     for suffix in ("dxf", "svg"):
-        first = write_mould_drawings(panels, tmp_path / f"a.{suffix}")
-        second = write_mould_drawings(panels, tmp_path / f"b.{suffix}")
+        first = write_mould_drawings(Model(panels), tmp_path / f"a.{suffix}").path
+        second = write_mould_drawings(Model(panels), tmp_path / f"b.{suffix}").path
         assert first.read_bytes() == second.read_bytes()
 
 
 def test_what_cannot_be_drawn(panels: Panels, tmp_path: Path) -> None:
-    none = select_panels(panels, np.zeros(panels.n_panels, bool))
+    none = select_parts(panels, np.zeros(panels.n_panels, bool))
     with pytest.raises(InputError, match="no panels to write"):
-        write_mould_drawings(none, tmp_path / "m.dxf")
+        write_mould_drawings(Model(none), tmp_path / "m.dxf")
     with pytest.raises(InputError, match=r"end the name in \.dxf or \.svg"):
-        write_mould_drawings(panels, tmp_path / "m.pdf")
+        write_mould_drawings(Model(panels), tmp_path / "m.pdf")
     assert not list(tmp_path.iterdir())

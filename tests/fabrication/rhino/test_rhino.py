@@ -15,27 +15,28 @@ import pytest
 import rhino3dm
 
 from spheremesh import nodes
-from spheremesh.fabrication.mesh_files.formats import read_mesh
+from spheremesh.fabrication.mesh_files.reader import read_mesh
+from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.opennurbs.brep_audit import BrepErrors, verify_breps
-from spheremesh.fabrication.opennurbs.brep_layout import read_brep_streams
+from spheremesh.fabrication.opennurbs.brep_reader import read_brep_streams
 from spheremesh.fabrication.opennurbs.render_meshes import (
     MESH_TOLERANCE,
     RenderMeshes,
     mesh_streams,
     panel_meshes,
 )
-from spheremesh.fabrication.rhino import blocks as rhino_blocks
-from spheremesh.fabrication.rhino import writer as rhino
-from spheremesh.fabrication.rhino.writer import RhinoContents, write_3dm
+from spheremesh.fabrication.rhino import block_writer, panel_writer
+from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
 from spheremesh.fabrication.schedules.panel_text import TEXT_KEYS, panel_text
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import Mesh
 from spheremesh.kernel.panels.cutting import cut_panels
-from spheremesh.kernel.panels.panels import Panels, panel_areas, select_panels
+from spheremesh.kernel.panels.panels import Panels, panel_areas
 from spheremesh.kernel.parts.colors import mould_color
+from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
-from spheremesh.kernel.spheres.rows import normals, signed_distance
+from spheremesh.kernel.spheres.incidence import normals, signed_distance
 from spheremesh.kernel.surfaces.circular_nets import roof_net
 from spheremesh.nodes import NodeWarning
 
@@ -72,8 +73,10 @@ def panels() -> Panels:
 @pytest.fixture(scope="module")
 def path(panels: Panels, tmp_path_factory: pytest.TempPathFactory) -> Path:
     target = tmp_path_factory.mktemp("rhino") / "Dächer.3dm"
-    contents = RhinoContents(layers=("Edges", "Centres"), reference=design())
-    result = write_3dm(panels, target, graph_json=GRAPH, title="Roof", contents=contents)
+    options = RhinoOptions(
+        layers=("Edges", "Centres"), reference=design(), title="Roof", graph_json=GRAPH
+    )
+    result = write_3dm(Model(panels), target, options)
     assert result.path == target
     assert result.rejected == ()
     return target
@@ -141,7 +144,7 @@ def test_neighbours_are_mutual(panels: Panels) -> None:
     keep = np.arange(panels.n_panels) != 20
     text = {
         row["id"]: row["neighbors"].split()
-        for row in panel_text(select_panels(panels, keep), "m")
+        for row in panel_text(select_parts(panels, keep), "m")
     }
     assert all(len(names) == 4 for names in text.values())
     pairs = Counter(
@@ -187,8 +190,10 @@ def test_document(model: Any, path: Path) -> None:  # noqa: ANN401
 
 def test_bytes_that_are_no_text_do_no_harm(panels: Panels, tmp_path: Path) -> None:
     """Names of files on Linux may be in any encoding, and are in the graph."""
-    one = select_panels(panels, np.arange(panels.n_panels) == 0)
-    file = write_3dm(one, tmp_path / "m.3dm", graph_json='{"path": "d\udce4cher.obj"}')
+    one = select_parts(panels, np.arange(panels.n_panels) == 0)
+    file = write_3dm(
+        Model(one), tmp_path / "m.3dm", RhinoOptions(graph_json='{"path": "d\udce4cher.obj"}')
+    )
     model: Any = rhino3dm.File3dm.Read(str(file.path))
     assert model.Strings["spheremesh::graph"] == '{"path": "d?cher.obj"}'
 
@@ -201,15 +206,15 @@ def test_centres(model: Any, panels: Panels) -> None:  # noqa: ANN401
 def test_ids_are_stable_and_unique(model: Any, panels: Panels, tmp_path: Path) -> None:  # noqa: ANN401
     ids = [item.Attributes.Id for item in model.Objects]
     assert len(set(ids)) == len(ids)
-    fewer = select_panels(panels, np.arange(panels.n_panels) >= 4)
-    again = rhino3dm.File3dm.Read(str(write_3dm(fewer, tmp_path / "fewer.3dm").path))
+    fewer = select_parts(panels, np.arange(panels.n_panels) >= 4)
+    again = rhino3dm.File3dm.Read(str(write_3dm(Model(fewer), tmp_path / "fewer.3dm").path))
     names = {item.Attributes.Id: item.Attributes.Name for item in model.Objects}
     assert all(names[item.Attributes.Id] == item.Attributes.Name for item in again.Objects)
 
 
 def test_output_is_the_same_but_for_the_time(panels: Panels, tmp_path: Path) -> None:
-    first = write_3dm(panels, tmp_path / "first.3dm").path.read_bytes()
-    second = write_3dm(panels, tmp_path / "second.3dm").path.read_bytes()
+    first = write_3dm(Model(panels), tmp_path / "first.3dm").path.read_bytes()
+    second = write_3dm(Model(panels), tmp_path / "second.3dm").path.read_bytes()
     assert len(first) == len(second)
     different = np.frombuffer(first, np.uint8) != np.frombuffer(second, np.uint8)
     assert np.count_nonzero(different) < 32
@@ -221,8 +226,10 @@ def test_output_is_the_same_but_for_the_time(panels: Panels, tmp_path: Path) -> 
 def test_versions_and_units(
     panels: Panels, tmp_path: Path, version: int, units: str, name: str
 ) -> None:
-    few = select_panels(panels, np.arange(panels.n_panels) < 5)
-    path = write_3dm(few, tmp_path / "model.3dm", units, version=version).path
+    few = select_parts(panels, np.arange(panels.n_panels) < 5)
+    path = write_3dm(
+        Model(few, units=units), tmp_path / "model.3dm", RhinoOptions(version=version)
+    ).path
     model = rhino3dm.File3dm.Read(str(path))
     assert model.ArchiveVersion // 10 == version
     assert model.Settings.ModelUnitSystem == getattr(rhino3dm.UnitSystem, name)
@@ -233,7 +240,7 @@ def test_versions_and_units(
 @pytest.fixture
 def one_is_off(monkeypatch: pytest.MonkeyPatch) -> None:
     """Write panel 17 with a corner off by a millionth."""
-    exact_streams = rhino.brep_streams
+    exact_streams = panel_writer.brep_streams
 
     def shifted(given: Panels, meshes: RenderMeshes | None = None) -> list[bytes]:
         corners = given.corners.copy()
@@ -241,14 +248,14 @@ def one_is_off(monkeypatch: pytest.MonkeyPatch) -> None:
             corners[given.offsets[17]] += 1e-6
         return exact_streams(replace(given, corners=corners), meshes)
 
-    monkeypatch.setattr(rhino, "brep_streams", shifted)
+    monkeypatch.setattr(panel_writer, "brep_streams", shifted)
 
 
 @pytest.mark.usefixtures("one_is_off")
 def test_an_inexact_brep_is_left_out_by_name(panels: Panels, tmp_path: Path) -> None:
-    file = write_3dm(panels, tmp_path / "model.3dm")
+    file = write_3dm(Model(panels), tmp_path / "model.3dm")
     (refused,) = file.rejected
-    assert (refused.id, refused.face_id) == (panels.ids[17], 17)
+    assert (refused.id, refused.element_id) == (panels.ids[17], 17)
     assert "a trim leaves its edge" in refused.reason
     model = rhino3dm.File3dm.Read(str(file.path))
     names = [item.Attributes.Name for item in on_layer(model, "Panels")]
@@ -272,10 +279,12 @@ def test_breps_that_opennurbs_refuses(
     old = tmp_path / "old.3dm"
     old.write_bytes(b"older file")
     sound = [BrepErrors("", 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, True, True)] * panels.n_panels  # noqa: FBT003
-    monkeypatch.setattr(rhino, "verify_breps", lambda *_: sound)
-    monkeypatch.setattr(rhino, "brep_streams", lambda given, _: [b"junk"] * given.n_panels)
+    monkeypatch.setattr(panel_writer, "verify_breps", lambda *_: sound)
+    monkeypatch.setattr(
+        panel_writer, "brep_streams", lambda given, _: [b"junk"] * given.n_panels
+    )
     with pytest.raises(InputError, match=r"none of the 96 panels has .* openNURBS cannot read"):
-        write_3dm(panels, old)
+        write_3dm(Model(panels), old)
     assert old.read_bytes() == b"older file"
     assert [file.name for file in tmp_path.iterdir()] == ["old.3dm"]
 
@@ -304,10 +313,10 @@ def test_reference_is_the_design(path: Path) -> None:
 
 def test_a_reference_that_rhino_refuses_is_left_out(panels: Panels, tmp_path: Path) -> None:
     degenerate = Mesh([[0, 0, 0], [1, 0, 0], [1, 0, 0]], [[0, 1, 2]])
-    few = select_panels(panels, np.arange(panels.n_panels) < 2)
-    file = write_3dm(few, tmp_path / "a.3dm", contents=RhinoContents(reference=degenerate))
+    few = select_parts(panels, np.arange(panels.n_panels) < 2)
+    file = write_3dm(Model(few), tmp_path / "a.3dm", RhinoOptions(reference=degenerate))
     assert "the reference is left out: Rhino calls the mesh invalid" in file.notes[0]
-    assert "Mesh" not in file.objects
+    assert "Mesh" not in file.counts
 
 
 def test_groups_and_views(model: Any, panels: Panels) -> None:  # noqa: ANN401
@@ -346,10 +355,10 @@ def test_identical_panels_are_instances(tmp_path: Path) -> None:
     keep = np.arange(panels.n_panels) != 0
     others = panels.labels.copy()
     others[5] = 0
-    panels = select_panels(replace(panels, labels=others), keep)
+    panels = select_parts(replace(panels, labels=others), keep)
     path = tmp_path / "torus.3dm"
-    file = write_3dm(panels, path, contents=RhinoContents("blocks", ()))
-    assert file.objects == {"Brep": 4, "InstanceReference": 46}
+    file = write_3dm(Model(panels), path, RhinoOptions("blocks", ()))
+    assert file.counts == {"Brep": 4, "InstanceReference": 46}
     model = rhino3dm.File3dm.Read(str(path))
     blocks = {block.Id: block for block in model.InstanceDefinitions}
     assert len(blocks) == 3
@@ -376,7 +385,7 @@ def test_identical_panels_are_instances(tmp_path: Path) -> None:
         wanted = panels.corners[first:last] + panels.origins[panel]
         apart = np.linalg.norm(corners[:, None] - wanted, axis=2).min(1)
         assert apart.max() < 1e-12
-    again = write_3dm(panels, tmp_path / "again.3dm", contents=RhinoContents("blocks", ()))
+    again = write_3dm(Model(panels), tmp_path / "again.3dm", RhinoOptions("blocks", ()))
     first_ids = {item.Attributes.Id for item in model.Objects} | set(blocks)
     model = rhino3dm.File3dm.Read(str(again.path))
     second_ids = {item.Attributes.Id for item in model.Objects}
@@ -387,7 +396,7 @@ def test_a_block_that_is_not_exact_is_none(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its panels are written one by one."""
-    exact_streams = rhino.brep_streams
+    exact_streams = panel_writer.brep_streams
 
     def shifted(given: Panels, meshes: RenderMeshes | None = None) -> list[bytes]:
         corners = given.corners.copy()
@@ -396,22 +405,22 @@ def test_a_block_that_is_not_exact_is_none(
         return exact_streams(replace(given, corners=corners), meshes)
 
     panels = torus_panels()
-    sound = write_3dm(panels, tmp_path / "a.3dm", contents=RhinoContents("blocks", ()))
-    monkeypatch.setattr(rhino, "brep_streams", shifted)
-    file = write_3dm(panels, tmp_path / "a.3dm", contents=RhinoContents("blocks", ()))
+    sound = write_3dm(Model(panels), tmp_path / "a.3dm", RhinoOptions("blocks", ()))
+    monkeypatch.setattr(panel_writer, "brep_streams", shifted)
+    file = write_3dm(Model(panels), tmp_path / "a.3dm", RhinoOptions("blocks", ()))
     assert file.rejected == ()
-    n_instances = sound.objects["InstanceReference"] - file.objects["InstanceReference"]
+    n_instances = sound.counts["InstanceReference"] - file.counts["InstanceReference"]
     assert n_instances > 0
-    assert file.objects["Brep"] == sound.objects["Brep"] + n_instances - 1
+    assert file.counts["Brep"] == sound.counts["Brep"] + n_instances - 1
 
 
 def test_a_block_for_every_mould(tmp_path: Path) -> None:
     """Set under its panels it is their mould; what stands on it is known by name."""
     sphere_mesh, labels, *_ = nodes.cluster_radii(nodes.fit_spheres(nodes.roof_mesh(4, 5)), k=3)
     panels = nodes.panels(sphere_mesh, thickness=0.1, labels=labels, side="outward").panels
-    contents = RhinoContents(layers=("Moulds",))
-    file = write_3dm(panels, tmp_path / "m.3dm", contents=contents)
-    assert (file.objects, file.notes) == ({"Brep": 23, "InstanceReference": 20}, ())
+    contents = RhinoOptions(layers=("Moulds",))
+    file = write_3dm(Model(panels), tmp_path / "m.3dm", contents)
+    assert (file.counts, file.notes) == ({"Brep": 23, "InstanceReference": 20}, ())
     model: Any = rhino3dm.File3dm.Read(str(file.path))
     assert not next(layer for layer in model.Layers if layer.Name == "Moulds").Visible
     names = [f"Mould {i:02d}" for i in range(1, 4)]
@@ -443,7 +452,7 @@ def test_a_panel_called_like_a_mould_has_a_block_of_its_own(tmp_path: Path) -> N
     panels = replace(
         panels, ids=("Mould 01", *panels.ids[1:]), labels=np.zeros(panels.n_panels, np.int64)
     )
-    file = write_3dm(panels, tmp_path / "m.3dm", contents=RhinoContents("blocks", ("Moulds",)))
+    file = write_3dm(Model(panels), tmp_path / "m.3dm", RhinoOptions("blocks", ("Moulds",)))
     model: Any = rhino3dm.File3dm.Read(str(file.path))
     names = {block.Name: block.Id for block in model.InstanceDefinitions}
     assert {"Mould 01", "Panel Mould 01"} <= set(names)
@@ -452,9 +461,9 @@ def test_a_panel_called_like_a_mould_has_a_block_of_its_own(tmp_path: Path) -> N
 
 
 def test_no_moulds_have_no_blocks(tmp_path: Path) -> None:
-    panels = select_panels(torus_panels(), np.arange(48) < 3)
-    file = write_3dm(panels, tmp_path / "m.3dm", contents=RhinoContents(layers=("Moulds",)))
-    assert (file.objects, file.notes) == ({"Brep": 3}, ())
+    panels = select_parts(torus_panels(), np.arange(48) < 3)
+    file = write_3dm(Model(panels), tmp_path / "m.3dm", RhinoOptions(layers=("Moulds",)))
+    assert (file.counts, file.notes) == ({"Brep": 3}, ())
 
 
 def test_a_mould_that_is_not_exact_is_named(
@@ -462,29 +471,29 @@ def test_a_mould_that_is_not_exact_is_named(
 ) -> None:
     panels = torus_panels()
     panels = replace(panels, labels=np.arange(48) % 2)
-    exact = rhino_blocks.brep_streams
+    exact = block_writer.brep_streams
 
     def shifted(given: Panels, meshes: RenderMeshes | None = None) -> list[bytes]:
         corners = given.corners.copy()
         corners[5] += 1e-6
         return exact(replace(given, corners=corners), meshes)
 
-    monkeypatch.setattr(rhino_blocks, "brep_streams", shifted)
-    file = write_3dm(panels, tmp_path / "m.3dm", contents=RhinoContents(layers=("Moulds",)))
-    assert file.objects == {"Brep": 49, "InstanceReference": 24}
+    monkeypatch.setattr(block_writer, "brep_streams", shifted)
+    file = write_3dm(Model(panels), tmp_path / "m.3dm", RhinoOptions(layers=("Moulds",)))
+    assert file.counts == {"Brep": 49, "InstanceReference": 24}
     assert "the block of Mould 02 is left out: a trim leaves its edge" in file.notes[0]
 
 
 def test_shell_joins_what_meets(tmp_path: Path) -> None:
     optimum = nodes.minimize_angles(nodes.fit_spheres(nodes.torus_mesh(8, 6)))
     panels = nodes.panels(optimum.sphere_mesh, edges="intersection").panels
-    shell = RhinoContents("shell", ())
+    shell = RhinoOptions("shell", ())
     for given, n_edges, n_vertices in (
         (panels, 96, 48),
-        (select_panels(panels, np.arange(48) != 7), 96, 48),
+        (select_parts(panels, np.arange(48) != 7), 96, 48),
     ):
-        file = write_3dm(given, tmp_path / "shell.3dm", contents=shell)
-        assert (file.objects, file.notes) == ({"Brep": 1}, ())
+        file = write_3dm(Model(given), tmp_path / "shell.3dm", shell)
+        assert (file.counts, file.notes) == ({"Brep": 1}, ())
         (item,) = rhino3dm.File3dm.Read(str(file.path)).Objects
         brep = item.Geometry
         assert brep.IsValid
@@ -503,7 +512,7 @@ def test_shell_joins_what_meets(tmp_path: Path) -> None:
 
 def test_shell_refuses_panels_with_joints(panels: Panels, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="all neighbours lie more than 1e-05 apart"):
-        write_3dm(panels, tmp_path / "shell.3dm", contents=RhinoContents("shell"))
+        write_3dm(Model(panels), tmp_path / "shell.3dm", RhinoOptions("shell"))
     assert not list(tmp_path.iterdir())
 
 
@@ -513,7 +522,7 @@ def test_shell_leaves_wide_edges_open(tmp_path: Path) -> None:
     moved = panels.origins.copy()
     moved[7] += (0.0, 0.0, 0.01)
     apart = replace(panels, origins=moved)
-    file = write_3dm(apart, tmp_path / "shell.3dm", contents=RhinoContents("shell"))
+    file = write_3dm(Model(apart), tmp_path / "shell.3dm", RhinoOptions("shell"))
     assert file.notes == ("4 edges of neighbours lie apart and stay open",)
     with pytest.warns(NodeWarning, match=r"shell.3dm: 4 edges of neighbours lie apart"):
         nodes.write_3dm(apart, tmp_path / "shell.3dm", shape="shell")
@@ -521,17 +530,17 @@ def test_shell_leaves_wide_edges_open(tmp_path: Path) -> None:
 
 def test_wrong_input(panels: Panels, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="unknown units 'km'"):
-        write_3dm(panels, tmp_path / "model.3dm", "km")
+        write_3dm(Model(panels, units="km"), tmp_path / "model.3dm")
     with pytest.raises(InputError, match="Rhino version 5"):
-        write_3dm(panels, tmp_path / "model.3dm", version=5)
+        write_3dm(Model(panels), tmp_path / "model.3dm", RhinoOptions(version=5))
     with pytest.raises(InputError, match="no folder"):
-        write_3dm(panels, tmp_path / "missing" / "model.3dm")
-    wrong: Any = (RhinoContents(shape="solid"), RhinoContents(layers=("edges",)))  # type: ignore[arg-type]
+        write_3dm(Model(panels), tmp_path / "missing" / "model.3dm")
+    wrong: Any = (RhinoOptions(shape="solid"), RhinoOptions(layers=("edges",)))  # type: ignore[arg-type]
     for contents in wrong:
         with pytest.raises(
             InputError, match=r"unknown shape .* use panels, blocks, shell, and"
         ):
-            write_3dm(panels, tmp_path / "model.3dm", contents=contents)
+            write_3dm(Model(panels), tmp_path / "model.3dm", contents)
 
 
 def test_an_exporting_process_ends_well(tmp_path: Path) -> None:
@@ -557,11 +566,11 @@ def test_a_thousand_panels(tmp_path: Path) -> None:
     """A fifth of what 5,000 panels may take: 10 s of CPU and 40 MB; render meshes 3 ms each."""
     panels = roof_panels(40, 25, 12)
     start = time.process_time()
-    contents = RhinoContents(render_meshes=False)
-    file = write_3dm(panels, tmp_path / "roof.3dm", graph_json=GRAPH, contents=contents)
+    options = RhinoOptions(render_meshes=False, graph_json=GRAPH)
+    file = write_3dm(Model(panels), tmp_path / "roof.3dm", options)
     assert time.process_time() - start < 2.4
     assert file.path.stat().st_size < 8e6
-    assert file.objects == {"Brep": 1000, "ArcCurve": 3428, "LineCurve": 572}
+    assert file.counts == {"Brep": 1000, "ArcCurve": 3428, "LineCurve": 572}
     start = time.process_time()
     streams = mesh_streams(panel_meshes(panels, MESH_TOLERANCE))
     assert time.process_time() - start < 1.0

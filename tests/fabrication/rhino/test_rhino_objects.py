@@ -8,9 +8,10 @@ import pytest
 import rhino3dm
 
 from spheremesh import nodes
-from spheremesh.fabrication.mesh_files.formats import read_mesh
-from spheremesh.fabrication.rhino.meshes import to_rhino_mesh
-from spheremesh.fabrication.rhino.writer import RhinoContents, write_3dm
+from spheremesh.fabrication.mesh_files.reader import read_mesh
+from spheremesh.fabrication.model import Model
+from spheremesh.fabrication.rhino.mesh_writer import to_rhino_mesh
+from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
 from spheremesh.kernel.arrays import FloatArray
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import Mesh, face_normals
@@ -116,7 +117,7 @@ def test_blocks_of_surfaces_are_what_single_surfaces_are(tmp_path: Path) -> None
     panels = nodes.panels(optimum.sphere_mesh, joint_gap=0.02).panels
     meshes: list[Mesh] = []
     for shape in ("panels", "blocks"):
-        file = write_3dm(panels, tmp_path / f"{shape}.3dm", contents=RhinoContents(shape, ()))
+        file = write_3dm(Model(panels), tmp_path / f"{shape}.3dm", RhinoOptions(shape, ()))
         meshes.append(read_mesh(file.path, "Panels", n_u=2, n_v=2))
     first, second = (mesh.vertices[mesh.corners].reshape(-1, 4, 3) for mesh in meshes)
     assert len(first) == len(second) == 48 * 4

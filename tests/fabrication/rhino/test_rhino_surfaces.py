@@ -8,9 +8,10 @@ import pytest
 import rhino3dm
 
 from spheremesh import nodes
-from spheremesh.fabrication.mesh_files.formats import read_mesh
-from spheremesh.fabrication.rhino.surfaces import _off_seams, nurbs_surface
-from spheremesh.fabrication.rhino.writer import RhinoContents, write_3dm
+from spheremesh.fabrication.mesh_files.reader import read_mesh
+from spheremesh.fabrication.model import Model
+from spheremesh.fabrication.rhino.surface_reader import nurbs_surface, off_seams
+from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
 from spheremesh.kernel.arrays import FloatArray
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import Mesh, face_normals
@@ -123,7 +124,7 @@ def test_trimmed_panels_are_read_back(tmp_path: Path, net: str, degree: int) -> 
     spheres = nodes.minimize_angles(nodes.fit_spheres(mesh)).sphere_mesh
     panels = nodes.panels(spheres, edges="intersection").panels
     assert degree in panels.degrees
-    file = write_3dm(panels, tmp_path / "a.3dm", contents=RhinoContents(layers=()))
+    file = write_3dm(Model(panels), tmp_path / "a.3dm", RhinoOptions(layers=()))
     grid = read_mesh(file.path, n_u=4, n_v=4)
     assert set(grid.degrees.tolist()) == {4}
     quads = np.where(panels.degrees == 4, 16, 4 * panels.degrees)
@@ -157,7 +158,7 @@ def fan_dome(degree: int) -> Mesh:
 def test_the_joined_shell_is_read_back(tmp_path: Path) -> None:
     spheres = nodes.minimize_angles(nodes.fit_spheres(nodes.torus_mesh(10, 8))).sphere_mesh
     panels = nodes.panels(spheres, edges="intersection").panels
-    file = write_3dm(panels, tmp_path / "a.3dm", contents=RhinoContents("shell", ()))
+    file = write_3dm(Model(panels), tmp_path / "a.3dm", RhinoOptions("shell", ()))
     grid = read_mesh(file.path, n_u=2, n_v=2)
     assert (grid.n_faces, n_boundary(grid)) == (320, 0)
 
@@ -178,7 +179,7 @@ def test_sides_on_a_seam_lie_where_the_face_is(end: int) -> None:
     ]
     confused = [side.copy() for side in sides]
     confused[3][1:4, 0] = low + high - seam
-    found = _off_seams(surface, [side[:, :: 1 - 2 * axis] for side in confused])
+    found = off_seams(surface, [side[:, :: 1 - 2 * axis] for side in confused])
     for side, right in zip(found, sides, strict=True):
         assert np.array_equal(side[:, :: 1 - 2 * axis], right)
 

@@ -8,16 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.schedules.beams import beam_rows, node_rows
 from spheremesh.fabrication.schedules.schedule import write_schedule
-from spheremesh.kernel.beams.beams import Beams, beam_volumes, scale_beams, select_beams
+from spheremesh.kernel.beams.beams import Beams, beam_volumes, scale_beams
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.beams.drilling import drill_beams
 from spheremesh.kernel.beams.facts import beam_facts
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.panels import Panels, panel_ids
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.parts.records import select_parts
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.support.annulus_support import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import vase_net
@@ -110,7 +112,7 @@ def test_law_millimetres_do_not_depend_on_units(units: str, scale: float) -> Non
 
 
 def test_csv_opens_in_spreadsheets_and_programs(tmp_path: Path) -> None:
-    path = write_schedule(None, tmp_path / "beams.csv", beams=BEAMS)
+    path = write_schedule(Model(beams=BEAMS), tmp_path / "beams.csv").path
     assert path.read_bytes().startswith(b"\xef\xbb\xbfid,edge,panels,nodes,")
     with path.open(encoding="utf-8-sig", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -128,9 +130,11 @@ def test_csv_opens_in_spreadsheets_and_programs(tmp_path: Path) -> None:
 
 
 def test_json_holds_panels_as_before_and_beams(panels: Panels, tmp_path: Path) -> None:
-    alone = json.loads(write_schedule(panels, tmp_path / "p.json").read_text("utf-8"))
+    alone = json.loads(
+        write_schedule(Model(panels), tmp_path / "p.json").path.read_text("utf-8")
+    )
     assert set(alone) == {"units", "panels", "moulds"}
-    both = write_schedule(panels, tmp_path / "b.json", beams=BEAMS)
+    both = write_schedule(Model(panels, BEAMS), tmp_path / "b.json").path
     content = json.loads(both.read_text("utf-8"))
     assert {name: content[name] for name in alone} == alone
     assert content["beams"] == json.loads(json.dumps(beam_rows(BEAMS, "m")))
@@ -141,7 +145,7 @@ def test_json_holds_panels_as_before_and_beams(panels: Panels, tmp_path: Path) -
 
 def test_xlsx_has_sheets_of_beams_and_nodes(panels: Panels, tmp_path: Path) -> None:
     openpyxl = pytest.importorskip("openpyxl")
-    path = write_schedule(panels, tmp_path / "s.xlsx", beams=BEAMS)
+    path = write_schedule(Model(panels, BEAMS), tmp_path / "s.xlsx").path
     book = openpyxl.load_workbook(path)
     assert book.sheetnames == ["Panels", "Moulds", "Beams", "Nodes"]
     header, *rows = book["Beams"].iter_rows(values_only=True)
@@ -152,14 +156,14 @@ def test_xlsx_has_sheets_of_beams_and_nodes(panels: Panels, tmp_path: Path) -> N
 
 def test_what_cannot_be_written(panels: Panels, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no panels or beams to write"):
-        write_schedule(None, tmp_path / "s.csv")
+        write_schedule(Model(), tmp_path / "s.csv")
     with pytest.raises(InputError, match="holds one table: write panels and beams to a"):
-        write_schedule(panels, tmp_path / "s.csv", beams=BEAMS)
-    none = select_beams(BEAMS, np.zeros(BEAMS.n_beams, bool))
+        write_schedule(Model(panels, BEAMS), tmp_path / "s.csv")
+    none = select_parts(BEAMS, np.zeros(BEAMS.n_beams, bool))
     with pytest.raises(InputError, match="no beams to write"):
-        write_schedule(None, tmp_path / "s.csv", beams=none)
+        write_schedule(Model(beams=none), tmp_path / "s.csv")
     corners = BEAMS.corners.copy()
     corners[2] = np.nan
     with pytest.raises(InputError, match=r"beam B0002 \(1 in all\) is not finite"):
-        write_schedule(None, tmp_path / "s.csv", beams=replace(BEAMS, corners=corners))
+        write_schedule(Model(beams=replace(BEAMS, corners=corners)), tmp_path / "s.csv")
     assert not list(tmp_path.iterdir())

@@ -10,6 +10,7 @@ import pytest
 import rhino3dm
 
 from spheremesh.fabrication.drawings.moulds import write_mould_drawings
+from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.rhino.writer import write_3dm
 from spheremesh.fabrication.schedules.schedule import schedule_rows
 from spheremesh.fabrication.step.writer import write_step
@@ -53,7 +54,7 @@ def texts(path: Path) -> dict[str, dict[str, str]]:
 )
 def test_user_text_is_the_row_of_the_schedule(tmp_path: Path, side: Side, layer: Layer) -> None:
     panels = roof(side, layer, plane_share=5 if layer == "offset" else 10**9)
-    found = texts(write_3dm(panels, tmp_path / "p.3dm", "ft").path)
+    found = texts(write_3dm(Model(panels, units="ft"), tmp_path / "p.3dm").path)
     rows = schedule_rows(panels, "ft")
     assert set(found) == {row["id"] for row in rows}
     assert layer == "power" or {row["shape"] for row in rows} == {"sphere", "plane"}
@@ -81,11 +82,11 @@ def test_moulds_have_one_name_in_every_file(tmp_path: Path) -> None:
     """A hundred moulds need three digits, everywhere."""
     panels = roof()
     panels = replace(panels, labels=np.where(panels.labels == 1, 99, panels.labels))
-    model: Any = rhino3dm.File3dm.Read(str(write_3dm(panels, tmp_path / "p.3dm").path))
+    model: Any = rhino3dm.File3dm.Read(str(write_3dm(Model(panels), tmp_path / "p.3dm").path))
     names = {layer.Name for layer in model.Layers if layer.Name.startswith("Mould")}
-    text = write_step(panels, tmp_path / "p.step").read_text("ascii")
+    text = write_step(Model(panels), tmp_path / "p.step").path.read_text("ascii")
     layers = set(re.findall(r"PRESENTATION_LAYER_ASSIGNMENT\('(Mould \d+)'", text))
-    drawn = write_mould_drawings(panels, tmp_path / "p.svg").read_text("utf-8")
+    drawn = write_mould_drawings(Model(panels), tmp_path / "p.svg").path.read_text("utf-8")
     assert {"Mould 001", "Mould 003", "Mould 100"} < layers <= names
     assert set(re.findall(r"(Mould \d+):", drawn)) == layers
     numbers = {text["mould"] for text in texts(tmp_path / "p.3dm").values()}

@@ -3,16 +3,16 @@
 import csv
 import json
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.schedules.schedule import mould_rows, schedule_rows, write_schedule
 from spheremesh.kernel.errors import InputError, MissingLibraryError
-from spheremesh.kernel.optimization.clustering import cluster_radii
-from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.mould_blanks import panel_caps
 from spheremesh.kernel.panels.panels import (
@@ -20,17 +20,15 @@ from spheremesh.kernel.panels.panels import (
     panel_areas,
     panel_volumes,
     scale_panels,
-    select_panels,
 )
+from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.surfaces.circular_nets import torus_net
 
 
 @pytest.fixture(scope="module")
-def panels() -> Panels:
-    found = minimize_angles(face_planes(torus_net(16, 8, 10.0, 3.0)))[0]
-    found, clusters = cluster_radii(found, 3)
-    return cut_panels(found, "bisector", 0.05, 0.01, clusters.labels, "outward")[0]
+def panels(moulded: Callable[..., Panels]) -> Panels:
+    return moulded(face_planes(torus_net(16, 8, 10.0, 3.0)), 0.05, 0.01, side="outward")
 
 
 def test_rows_say_what_the_panels_are(panels: Panels) -> None:
@@ -90,7 +88,7 @@ def test_law_millimetres_do_not_depend_on_units(
 
 
 def test_csv_opens_in_spreadsheets_and_programs(panels: Panels, tmp_path: Path) -> None:
-    path = write_schedule(panels, tmp_path / "schedule.csv")
+    path = write_schedule(Model(panels), tmp_path / "schedule.csv").path
     assert path.read_bytes().startswith(b"\xef\xbb\xbfid,face,mould,")
     with path.open(encoding="utf-8-sig", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -109,7 +107,7 @@ def test_csv_opens_in_spreadsheets_and_programs(panels: Panels, tmp_path: Path) 
 def test_csv_keeps_the_digits_of_site_coordinates(panels: Panels, tmp_path: Path) -> None:
     """A thousand kilometres from the origin, corners are still told to a micrometre."""
     far = replace(panels, origins=panels.origins + np.array([1e6, -2e6, 5e5]))
-    path = write_schedule(far, tmp_path / "schedule.csv")
+    path = write_schedule(Model(far), tmp_path / "schedule.csv").path
     with path.open(encoding="utf-8-sig", newline="") as file:
         rows = list(csv.DictReader(file))
     for row, other in zip(rows, schedule_rows(far, "m"), strict=True):
@@ -120,7 +118,7 @@ def test_csv_keeps_the_digits_of_site_coordinates(panels: Panels, tmp_path: Path
 
 
 def test_json_is_strict(panels: Panels, tmp_path: Path) -> None:
-    path = write_schedule(panels, tmp_path / "schedule.json")
+    path = write_schedule(Model(panels), tmp_path / "schedule.json").path
     content = json.loads(path.read_text("utf-8"))
     assert content["units"] == "mm"
     assert content["panels"] == json.loads(json.dumps(schedule_rows(panels, "m")))
@@ -129,7 +127,7 @@ def test_json_is_strict(panels: Panels, tmp_path: Path) -> None:
 
 def test_xlsx_has_numbers_as_numbers(panels: Panels, tmp_path: Path) -> None:
     openpyxl = pytest.importorskip("openpyxl")
-    path = write_schedule(panels, tmp_path / "schedule.xlsx")
+    path = write_schedule(Model(panels), tmp_path / "schedule.xlsx").path
     book = openpyxl.load_workbook(path)
     assert book.sheetnames == ["Panels", "Moulds"]
     header, *rows = book["Panels"].iter_rows(values_only=True)
@@ -146,10 +144,10 @@ def test_xlsx_has_numbers_as_numbers(panels: Panels, tmp_path: Path) -> None:
 def test_text_in_xlsx_is_what_it_is(panels: Panels, tmp_path: Path) -> None:
     """Neighbours begin with a dash at the boundary; names may look like formulas."""
     openpyxl = pytest.importorskip("openpyxl")
-    some = select_panels(panels, panels.face_ids % 8 > 2)
+    some = select_parts(panels, panels.face_ids % 8 > 2)
     names = ("=1+1", "-1", "+2", "@A", *some.ids[4:])
     named = replace(some, ids=names)
-    book = openpyxl.load_workbook(write_schedule(named, tmp_path / "schedule.xlsx"))
+    book = openpyxl.load_workbook(write_schedule(Model(named), tmp_path / "schedule.xlsx").path)
     header, *rows = book["Panels"].iter_rows()
     cells = [{key.value: cell for key, cell in zip(header, row, strict=True)} for row in rows]
     assert [row["id"].value for row in cells] == list(names)
@@ -165,7 +163,7 @@ def test_xlsx_without_openpyxl_names_the_extra(
 ) -> None:
     monkeypatch.setitem(sys.modules, "openpyxl", None)
     with pytest.raises(MissingLibraryError, match=r"install spheremesh\[excel\]"):
-        write_schedule(panels, tmp_path / "schedule.xlsx")
+        write_schedule(Model(panels), tmp_path / "schedule.xlsx")
     assert not list(tmp_path.iterdir())
 
 
@@ -174,16 +172,16 @@ def test_warnings_stand_in_the_row_of_their_panel(panels: Panels, tmp_path: Path
     rows = schedule_rows(small, "m")
     assert all(row["warnings"].startswith("P103 an edge of ") for row in rows)
     assert not any("P103" in row["warnings"] for row in schedule_rows(panels, "m"))
-    write_schedule(small, tmp_path / "schedule.csv")
+    write_schedule(Model(small), tmp_path / "schedule.csv")
 
 
 def test_what_cannot_be_written(panels: Panels, tmp_path: Path) -> None:
-    none = select_panels(panels, np.zeros(panels.n_panels, bool))
+    none = select_parts(panels, np.zeros(panels.n_panels, bool))
     for name in ("s.csv", "s.json", "s.xlsx"):
         with pytest.raises(InputError, match="no panels to write"):
-            write_schedule(none, tmp_path / name)
+            write_schedule(Model(none), tmp_path / name)
     with pytest.raises(InputError, match=r"end the name in \.csv or \.json or \.xlsx"):
-        write_schedule(panels, tmp_path / "s.txt")
+        write_schedule(Model(panels), tmp_path / "s.txt")
     with pytest.raises(InputError, match="unknown units 'mile'"):
-        write_schedule(panels, tmp_path / "s.csv", "mile")
+        write_schedule(Model(panels, units="mile"), tmp_path / "s.csv")
     assert not list(tmp_path.iterdir())

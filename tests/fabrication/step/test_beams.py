@@ -22,16 +22,18 @@ from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication.drawings.beams import write_dxf
+from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.opennurbs.render_meshes import MESH_TOLERANCE, gather_meshes
-from spheremesh.fabrication.rhino.beams import with_meshes
+from spheremesh.fabrication.rhino.beam_writer import with_meshes
 from spheremesh.fabrication.rhino.model import new_model
-from spheremesh.fabrication.rhino.writer import RhinoContents, write_3dm
-from spheremesh.fabrication.solids.beam_shapes import beam_shapes
+from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
+from spheremesh.fabrication.solids.cadquery_assembly import beams_to_cadquery
+from spheremesh.fabrication.solids.opencascade_beams import beam_shapes
 from spheremesh.fabrication.step.check import check_part21
-from spheremesh.fabrication.step.writer import beams_to_cadquery, write_step
+from spheremesh.fabrication.step.writer import write_step
 from spheremesh.kernel.arrays import FloatArray, dot, norm
 from spheremesh.kernel.beams import cutting as beam_cutting
-from spheremesh.kernel.beams.beams import Beams, beam_volumes, node_axis_segments, select_beams
+from spheremesh.kernel.beams.beams import Beams, beam_volumes, node_axis_segments
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.beams.drilling import drill_beams
 from spheremesh.kernel.beams.node_cylinders import node_cylinders
@@ -39,8 +41,8 @@ from spheremesh.kernel.beams.triangles import cylinder_triangles
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.panels.cutting import cut_panels
-from spheremesh.kernel.panels.panels import select_panels
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.parts.records import select_parts
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.support.annuli import Annuli
 from spheremesh.kernel.support.annulus_support import annulus_support
@@ -122,7 +124,7 @@ def test_nearly_square_ends_are_sound(
     shapes = beam_shapes(beams, 1000.0)
     assert all(is_valid(shape) for shape in shapes)
     if thickness * radius < 1:  # what is thicker than a metre is beyond the reader's digits
-        read = read_solids(write_step(None, tmp_path / "b.step", beams=beams))
+        read = read_solids(write_step(Model(beams=beams), tmp_path / "b.step").path)
         assert all(is_valid(shape) for shape in read)
     np.testing.assert_allclose(measure(shapes), 1e9 * beam_volumes(beams), rtol=1e-8)
 
@@ -150,7 +152,7 @@ def read_solids(path: Path) -> list[TopoDS_Shape]:
 @pytest.mark.parametrize("case", ["mitred", "square", "straight", "1 mm", "1 km"])
 def test_round_trip(tmp_path: Path, case: str) -> None:
     beams = CASES[case]
-    path = write_step(None, tmp_path / "b.step", beams=beams)
+    path = write_step(Model(beams=beams), tmp_path / "b.step").path
     solids, nodes = read_solids(path), node_cylinders(beams)
     assert len(solids) == beams.n_beams + nodes.n_nodes
     assert all(BRepCheck_Analyzer(solid).IsValid() for solid in solids)
@@ -167,7 +169,7 @@ def test_round_trip(tmp_path: Path, case: str) -> None:
 def test_panels_and_beams_in_one_file(tmp_path: Path) -> None:
     panels, _ = cut_panels(TORUS, "intersection", thickness=0.02)
     beams = CASES["mitred"]
-    path = write_step(panels, tmp_path / "m.step", beams=beams)
+    path = write_step(Model(panels, beams), tmp_path / "m.step").path
     assert len(read_solids(path)) == panels.n_panels + beams.n_beams
     names = set(re.findall(r"PRODUCT\('(\w+)'", path.read_text()))
     assert names == {"Model", "Panels", "Beams", "Axes", *panels.ids, *beams.annuli.ids}
@@ -189,7 +191,7 @@ def read_shapes(path: Path, kind: TopAbs_ShapeEnum) -> list[TopoDS_Shape]:
 @pytest.mark.parametrize("case", ["mitred", "square"])
 def test_node_axes_in_step(tmp_path: Path, case: str) -> None:
     beams = CASES[case]
-    path = write_step(None, tmp_path / "a.step", beams=beams)
+    path = write_step(Model(beams=beams), tmp_path / "a.step").path
     edges = read_shapes(path, TopAbs_ShapeEnum.TopAbs_EDGE)
     _, segments = node_axis_segments(beams)
     assert len(edges) == len(segments)
@@ -203,7 +205,7 @@ def test_node_axes_in_step(tmp_path: Path, case: str) -> None:
 
 def test_node_cylinders_in_step_stand_on_their_axes(tmp_path: Path) -> None:
     beams = CASES["square"]
-    path = write_step(None, tmp_path / "n.step", beams=beams)
+    path = write_step(Model(beams=beams), tmp_path / "n.step").path
     nodes = node_cylinders(beams)
     cylinders = read_solids(path)[beams.n_beams :]
     for i, solid in enumerate(cylinders):
@@ -230,21 +232,24 @@ def test_node_cylinders_in_step_stand_on_their_axes(tmp_path: Path) -> None:
 
 def test_panels_without_any_beam(tmp_path: Path) -> None:
     panels, _ = cut_panels(TORUS, "intersection", thickness=0.02)
-    none = select_beams(CASES["mitred"], np.zeros(CASES["mitred"].n_beams, bool))
-    path = write_step(panels, tmp_path / "m.step", beams=none)
+    none = select_parts(CASES["mitred"], np.zeros(CASES["mitred"].n_beams, bool))
+    path = write_step(Model(panels, none), tmp_path / "m.step").path
     assert len(read_solids(path)) == panels.n_panels
-    model = rhino3dm.File3dm.Read(str(write_3dm(panels, tmp_path / "m.3dm", beams=none).path))
+    model = rhino3dm.File3dm.Read(str(write_3dm(Model(panels, none), tmp_path / "m.3dm").path))
     assert on_layer(model, "Beams") == on_layer(model, "Axes") == []
 
 
 def test_beams_without_any_panel(tmp_path: Path) -> None:
     panels, _ = cut_panels(TORUS, "intersection", thickness=0.02)
-    none = select_panels(panels, np.zeros(panels.n_panels, bool))
+    none = select_parts(panels, np.zeros(panels.n_panels, bool))
     beams = CASES["mitred"]
-    contents = RhinoContents(layers=("Edges", "Centres", "Moulds"))
-    file = write_3dm(none, tmp_path / "m.3dm", beams=beams, contents=contents)
-    assert file.objects == {"Extrusion": beams.n_beams, "LineCurve": 35}
-    assert len(read_solids(write_step(none, tmp_path / "m.step", beams=beams))) == beams.n_beams
+    contents = RhinoOptions(layers=("Edges", "Centres", "Moulds"))
+    file = write_3dm(Model(none, beams), tmp_path / "m.3dm", contents)
+    assert file.counts == {"Extrusion": beams.n_beams, "LineCurve": 35}
+    assert (
+        len(read_solids(write_step(Model(none, beams), tmp_path / "m.step").path))
+        == beams.n_beams
+    )
 
 
 @pytest.mark.parametrize("ends", [{"node_gap": 0.02}, {"node_radius": 0.1}])
@@ -252,7 +257,7 @@ def test_far_from_the_origin_no_digit_is_lost(tmp_path: Path, ends: dict[str, fl
     mesh = TORUS.mesh
     moved = Mesh(mesh.vertices + np.array([5e5, -3e5, 2e5]), mesh.faces)
     beams = make(SphereMesh.from_local(moved, TORUS.local_spheres), **ends)
-    solids = read_solids(write_step(None, tmp_path / "far.step", beams=beams))
+    solids = read_solids(write_step(Model(beams=beams), tmp_path / "far.step").path)
     local = [solid.Located(TopLoc_Location()) for solid in solids]
     assert all(BRepCheck_Analyzer(solid).IsValid() for solid in local)
     nodes = node_cylinders(beams)
@@ -262,7 +267,7 @@ def test_far_from_the_origin_no_digit_is_lost(tmp_path: Path, ends: dict[str, fl
 
 
 def test_objects_of_cadquery() -> None:
-    beams = select_beams(CASES["mitred"], np.arange(CASES["mitred"].n_beams) < 4)
+    beams = select_parts(CASES["mitred"], np.arange(CASES["mitred"].n_beams) < 4)
     assembly = beams_to_cadquery(beams)
     assert [child.name for child in assembly.children] == list(beams.annuli.ids)
     for child, volume in zip(assembly.children, beam_volumes(beams), strict=True):
@@ -271,9 +276,9 @@ def test_objects_of_cadquery() -> None:
 
 def test_nothing_to_write(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no panels or beams"):
-        write_step(None, tmp_path / "n.step")
+        write_step(Model(), tmp_path / "n.step")
     with pytest.raises(InputError, match="no panels or beams"):
-        write_3dm(None, tmp_path / "n.3dm")
+        write_3dm(Model(), tmp_path / "n.3dm")
     assert not list(tmp_path.iterdir())
 
 
@@ -281,15 +286,15 @@ def test_nothing_to_write(tmp_path: Path) -> None:
 def test_beams_that_no_file_can_hold_are_refused_by_name(tmp_path: Path, name: str) -> None:
     def write(beams: Beams) -> None:
         if name.endswith("dxf"):
-            write_dxf(beams, tmp_path / name)
+            write_dxf(Model(beams=beams), tmp_path / name)
         elif name.endswith("step"):
-            write_step(None, tmp_path / name, beams=beams)
+            write_step(Model(beams=beams), tmp_path / name)
         else:
-            write_3dm(None, tmp_path / name, beams=beams)
+            write_3dm(Model(beams=beams), tmp_path / name)
 
     beams = CASES["mitred"]
     with pytest.raises(InputError, match=r"no (panels or )?beams to write to"):
-        write(select_beams(beams, np.zeros(beams.n_beams, bool)))
+        write(select_parts(beams, np.zeros(beams.n_beams, bool)))
     ids = ("A", "B", "A", *beams.annuli.ids[3:])
     edges = re.escape(str(beams.annuli.edge_ids[[0, 2]].tolist()))
     with pytest.raises(InputError, match=rf"2 beams are called 'A' \(edges {edges}\)"):
@@ -315,7 +320,7 @@ def point(value: Any) -> FloatArray:  # noqa: ANN401
 @pytest.mark.parametrize("case", ["mitred", "square", "straight", "1 mm", "1 km"])
 def test_extrusions_in_rhino(tmp_path: Path, case: str) -> None:
     beams = CASES[case]
-    model = rhino3dm.File3dm.Read(str(write_3dm(None, tmp_path / "b.3dm", beams=beams).path))
+    model = rhino3dm.File3dm.Read(str(write_3dm(Model(beams=beams), tmp_path / "b.3dm").path))
     objects = on_layer(model, "Beams")
     assert [item.Attributes.Name for item in objects] == list(beams.annuli.ids)
     size = norm(beams.sections[:, 0, 0] - beams.sections[:, 1, 0]).max()
@@ -352,7 +357,7 @@ def test_extrusions_of_a_building_site(tmp_path: Path) -> None:
     site = Mesh(roof.vertices + far, [list(face) for face in roof.faces])
     there, here = make(central_spheres(site)), CASES["torsion"]
     files = [
-        write_3dm(None, tmp_path / name, beams=each).path
+        write_3dm(Model(beams=each), tmp_path / name).path
         for name, each in (("there.3dm", there), ("here.3dm", here))
     ]
     solids, others = (
@@ -403,10 +408,10 @@ def test_any_extrusion_takes_a_render_mesh() -> None:
 
 
 def test_a_model_without_render_meshes(tmp_path: Path) -> None:
-    contents = RhinoContents(render_meshes=False)
+    contents = RhinoOptions(render_meshes=False)
     beams = CASES["straight"]
-    file = write_3dm(None, tmp_path / "b.3dm", beams=beams, contents=contents)
-    assert file.objects["Extrusion"] == beams.n_beams
+    file = write_3dm(Model(beams=beams), tmp_path / "b.3dm", contents)
+    assert file.counts["Extrusion"] == beams.n_beams
     solid = on_layer(rhino3dm.File3dm.Read(str(file.path)), "Beams")[0].Geometry
     assert solid.GetMesh(rhino3dm.MeshType.Any) is None
 
@@ -415,14 +420,15 @@ def test_a_model_without_render_meshes(tmp_path: Path) -> None:
 def test_every_version_of_rhino(tmp_path: Path, version: int) -> None:
     panels, _ = cut_panels(TORUS, "intersection", labels=np.arange(35) % 3)
     beams = CASES["mitred"]
-    contents = RhinoContents(layers=("Edges", "Centres", "Moulds"), reference=TORUS.mesh)
+    layers = ("Edges", "Centres", "Moulds")
+    options = RhinoOptions(layers=layers, reference=TORUS.mesh, version=version)
     path = tmp_path / "m.3dm"
-    file = write_3dm(panels, path, version=version, beams=beams, contents=contents)
+    file = write_3dm(Model(panels, beams), path, options)
     model = rhino3dm.File3dm.Read(str(path))
     assert model.ArchiveVersion // 10 == version
     objects: list[Any] = [model.Objects[i] for i in range(len(model.Objects))]
     kinds = Counter(type(item.Geometry).__name__ for item in objects)
-    assert kinds == file.objects
+    assert kinds == file.counts
     assert kinds["Extrusion"] == beams.n_beams
     assert kinds["InstanceReference"] == panels.n_panels
     assert all(item.Geometry.IsValid for item in objects)
@@ -434,7 +440,7 @@ def test_beams_far_from_the_origin_keep_precise_meshes(tmp_path: Path) -> None:
     shift = np.array([5e5, -3e5, 2e5])
     moved = Mesh(TORUS.mesh.vertices + shift, TORUS.mesh.faces)
     beams = make(SphereMesh.from_local(moved, TORUS.local_spheres))
-    file = write_3dm(None, tmp_path / "far.3dm", beams=beams)
+    file = write_3dm(Model(beams=beams), tmp_path / "far.3dm")
     items = on_layer(rhino3dm.File3dm.Read(str(file.path)), "Beams")
     assert len(items) == beams.n_beams
     for item in items:
@@ -457,7 +463,7 @@ def _check_view(view: Any, points: FloatArray) -> None:  # noqa: ANN401
 def test_axes_layers_and_text_in_rhino(tmp_path: Path) -> None:
     beams = CASES["mitred"]
     panels, _ = cut_panels(TORUS, "intersection")
-    path = write_3dm(panels, tmp_path / "m.3dm", beams=beams).path
+    path = write_3dm(Model(panels, beams), tmp_path / "m.3dm").path
     model = rhino3dm.File3dm.Read(str(path))
     assert {"Panels", "Edges", "Beams", "Axes"} <= {layer.Name for layer in model.Layers}
     axes = on_layer(model, "Axes")
@@ -474,7 +480,7 @@ def test_axes_layers_and_text_in_rhino(tmp_path: Path) -> None:
     assert text["nodes"] == " ".join(map(str, beams.annuli.edge_vertices[4].tolist()))
     assert float(text["thickness"]) == pytest.approx(beams.thickness, rel=1e-11)
     again = rhino3dm.File3dm.Read(
-        str(write_3dm(None, tmp_path / "again.3dm", beams=beams).path)
+        str(write_3dm(Model(beams=beams), tmp_path / "again.3dm").path)
     )
     ids = {str(item.Attributes.Id) for item in again.Objects}
     assert ids <= {str(item.Attributes.Id) for item in model.Objects}
@@ -488,7 +494,7 @@ def test_axes_layers_and_text_in_rhino(tmp_path: Path) -> None:
 def test_node_cylinders_in_rhino(tmp_path: Path) -> None:
     beams = CASES["square"]
     nodes = node_cylinders(beams)
-    model = rhino3dm.File3dm.Read(str(write_3dm(None, tmp_path / "n.3dm", beams=beams).path))
+    model = rhino3dm.File3dm.Read(str(write_3dm(Model(beams=beams), tmp_path / "n.3dm").path))
     objects = on_layer(model, "Nodes")
     assert [item.Attributes.Name for item in objects] == list(nodes.ids)
     assert len({str(item.Attributes.Id) for item in model.Objects}) == len(model.Objects)
@@ -507,7 +513,7 @@ def test_node_cylinders_carry_render_meshes(tmp_path: Path) -> None:
     """What viewers show: closed, outwards, on the cylinder, and nearly of its volume."""
     beams = CASES["square"]
     nodes = node_cylinders(beams)
-    model = rhino3dm.File3dm.Read(str(write_3dm(None, tmp_path / "n.3dm", beams=beams).path))
+    model = rhino3dm.File3dm.Read(str(write_3dm(Model(beams=beams), tmp_path / "n.3dm").path))
     for i, item in enumerate(on_layer(model, "Nodes")):
         mesh = item.Geometry.GetMesh(rhino3dm.MeshType.Render)
         points = np.array([point(vertex) for vertex in mesh.Vertices])
@@ -528,7 +534,7 @@ def test_drilling_marks_in_rhino(tmp_path: Path) -> None:
     assert 0 < len(refused) < beams.n_beams
     marks = beams.marks
     assert marks is not None
-    model = rhino3dm.File3dm.Read(str(write_3dm(None, tmp_path / "d.3dm", beams=beams).path))
+    model = rhino3dm.File3dm.Read(str(write_3dm(Model(beams=beams), tmp_path / "d.3dm").path))
     objects = on_layer(model, "Drilling")
     expected = [name for name, fits in zip(beams.annuli.ids, marks.fits, strict=True) if fits]
     assert [item.Attributes.Name for item in objects] == [n for n in expected for _ in range(4)]

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from spheremesh import Mesh
+from spheremesh.fabrication.model import Model
+from spheremesh.fabrication.step.assembly import StepSchema
 from spheremesh.fabrication.step.check import SHOWN, check_part21
-from spheremesh.fabrication.step.writer import StepCopies, StepSchema, write_step
+from spheremesh.fabrication.step.writer import StepCopies, StepOptions, write_step
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.panels import Panels
@@ -26,7 +28,9 @@ def ring(thickness: float) -> Panels:
 @pytest.fixture(scope="module")
 def text(tmp_path_factory: pytest.TempPathFactory) -> str:
     path = tmp_path_factory.mktemp("part21") / "p.step"
-    return write_step(ring(0.1), path, title="Dächer 'Süd'").read_text("ascii")
+    return write_step(Model(ring(0.1)), path, StepOptions(title="Dächer 'Süd'")).path.read_text(
+        "ascii"
+    )
 
 
 @pytest.mark.parametrize("thickness", [0.0, 0.1])
@@ -39,8 +43,10 @@ def test_what_the_library_writes_is_sound(
 ) -> None:
     panels = ring(thickness)
     path = write_step(
-        panels, tmp_path / "p.step", step_units=unit, schema=schema, copies=copies
-    )
+        Model(panels),
+        tmp_path / "p.step",
+        StepOptions(units=unit, schema=schema, copies=copies),
+    ).path
     assert check_part21(path) == ()
 
 
@@ -48,7 +54,9 @@ def test_names_of_any_script_are_sound(tmp_path: Path) -> None:
     names = ["Täfelchen Ⅷ", "面板-7", "l'été; #12=('", "a\\b", "𝔘"]
     panels = ring(0.0)
     ids = (*names, *panels.ids[len(names) :])
-    path = write_step(replace(panels, ids=ids), tmp_path / "p.step", title="屋根")
+    path = write_step(
+        Model(replace(panels, ids=ids)), tmp_path / "p.step", StepOptions(title="屋根")
+    ).path
     assert check_part21(path) == ()
 
 

@@ -27,11 +27,21 @@ from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_LayerTool
 
 from spheremesh import Mesh, SphereMesh
-from spheremesh.fabrication.solids.panel_shapes import panel_shapes
-from spheremesh.fabrication.step import writer as step
-from spheremesh.fabrication.step.assembly import Group, StepHeader, StepSchema, assembly_lines
+from spheremesh.fabrication.model import Model
+from spheremesh.fabrication.solids.cadquery_assembly import to_cadquery
+from spheremesh.fabrication.solids.opencascade_panels import panel_shapes
+from spheremesh.fabrication.solids.panel_geometry import panels_in_place
+from spheremesh.fabrication.step.assembly import (
+    Group,
+    Instance,
+    Part,
+    StepHeader,
+    StepSchema,
+    assembly_lines,
+)
 from spheremesh.fabrication.step.check import check_part21
-from spheremesh.fabrication.step.writer import to_cadquery, write_step
+from spheremesh.fabrication.step.panel_bodies import panel_bodies
+from spheremesh.fabrication.step.writer import StepOptions, write_step
 from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.errors import InputError, MissingLibraryError
 from spheremesh.kernel.panels.cutting import EdgeMode, cut_panels
@@ -39,9 +49,9 @@ from spheremesh.kernel.panels.panels import (
     Panels,
     panel_areas,
     panel_volumes,
-    select_panels,
 )
 from spheremesh.kernel.parts.colors import Color, mould_color
+from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.kernel.surfaces.circular_nets import catenoid_net, roof_net, torus_net
 
@@ -91,7 +101,7 @@ def panels() -> Panels:
 @pytest.fixture(scope="module")
 def path(panels: Panels, tmp_path_factory: pytest.TempPathFactory) -> Path:
     target = tmp_path_factory.mktemp("step") / "Dächer.step"
-    assert write_step(panels, target, title="Dach's Höhe") == target
+    assert write_step(Model(panels), target, StepOptions(title="Dach's Höhe")).path == target
     return target
 
 
@@ -263,7 +273,9 @@ def test_round_trip(
 ) -> None:
     labels = np.arange(13) % 4 - 1
     panels, _ = cut_panels(mixed(), thickness=thickness, joint_gap=0.01, labels=labels)
-    path = write_step(panels, tmp_path / "p.stp", step_units=step_units, schema=schema)
+    path = write_step(
+        Model(panels), tmp_path / "p.stp", StepOptions(units=step_units, schema=schema)
+    ).path
     name, parts = read_step(path)
     assert name == "Panels"
     assert [part.name for part in parts] == [part.definition for part in parts]
@@ -297,7 +309,9 @@ def test_round_trip_of_any_size(tmp_path: Path, case: str) -> None:
     sphere_mesh, thickness, gap = CASES[case]
     panels, _ = cut_panels(sphere_mesh, thickness=thickness, joint_gap=gap)
     for step_units in ("mm", "m"):
-        _, parts = read_step(write_step(panels, tmp_path / "p.step", step_units=step_units))
+        _, parts = read_step(
+            write_step(Model(panels), tmp_path / "p.step", StepOptions(units=step_units)).path
+        )
         shapes = [part.shape.Located(TopLoc_Location()) for part in parts]
         assert all(BRepCheck_Analyzer(shape).IsValid() for shape in shapes)
         _, volumes = areas_and_volumes(shapes)
@@ -311,7 +325,7 @@ def test_far_from_the_origin_no_digit_is_lost(tmp_path: Path) -> None:
     site = np.array([4.5e5, 6e6, 300.0])
     far = Mesh(near.vertices + site, near.faces)
     panels, _ = cut_panels(curved(far, 0.1), thickness=0.02)
-    _, parts = read_step(write_step(panels, tmp_path / "far.step"))
+    _, parts = read_step(write_step(Model(panels), tmp_path / "far.step").path)
     shapes = [part.shape.Located(TopLoc_Location()) for part in parts]
     assert all(BRepCheck_Analyzer(shape).IsValid() for shape in shapes)
     _, volumes = areas_and_volumes(shapes)
@@ -325,7 +339,9 @@ def test_names_of_any_script(tmp_path: Path) -> None:
     panels, _ = cut_panels(mixed())
     names = ("Täfelchen Ⅷ", "面板-7", "l'été; #12=('", "a\\b", "𝔘🏠屋ä", "x" * 300)
     panels = replace(panels, ids=(*names, *panels.ids[len(names) :]))
-    path = write_step(panels, tmp_path / "屋根.step", title="屋根 a\\b")
+    path = write_step(
+        Model(panels), tmp_path / "屋根.step", StepOptions(title="屋根 a\\b")
+    ).path
     _, parts = read_step(path)
     assert tuple(part.name for part in parts) == panels.ids
 
@@ -337,7 +353,7 @@ def test_identical_panels_share_a_shape(tmp_path: Path) -> None:
     labels = np.arange(mesh.n_faces) % 2
     panels, _ = cut_panels(curved(mesh, 0.1), thickness=0.05, labels=labels)
     separate, shared = (
-        write_step(panels, tmp_path / f"{copies}.step", copies=copies)
+        write_step(Model(panels), tmp_path / f"{copies}.step", StepOptions(copies=copies)).path
         for copies in ("shapes", "instances")
     )
     assert shared.stat().st_size < 0.3 * separate.stat().st_size
@@ -367,8 +383,14 @@ def mass_centers(shapes: list[TopoDS_Shape]) -> FloatArray:
 
 
 def test_groups_are_assemblies_within_the_assembly(panels: Panels, tmp_path: Path) -> None:
-    first = Group("Panels", step._panel_parts(panels, 1000.0, 1e-7))
-    second = Group("Beams", step._shared_parts(panels, 1000.0, 1e-7))
+    placed = panels_in_place(panels, 1000.0)
+    parts = [
+        Part(body, name, "Layer", (200, 100, 0), 1e-6, (Instance(name, tuple(place)),))
+        for body, name, place in zip(
+            panel_bodies(placed), placed.ids, placed.origins.tolist(), strict=True
+        )
+    ]
+    first, second = Group("Panels", parts), Group("Beams", parts)
     header = StepHeader("AP242DIS", "mm", 1.0, 1e-7, "Roof", "test")
     path = tmp_path / "roof.step"
     text = "".join(assembly_lines(Group("Roof", [first, second]), header))
@@ -396,7 +418,11 @@ def test_groups_are_assemblies_within_the_assembly(panels: Panels, tmp_path: Pat
 def test_units_of_the_model(tmp_path: Path) -> None:
     panels, _ = cut_panels(mixed(), thickness=0.02)
     for units, millimeters in (("mm", 1.0), ("in", 25.4), ("ft", 304.8)):
-        _, parts = read_step(write_step(panels, tmp_path / "p.step", units, step_units=units))
+        _, parts = read_step(
+            write_step(
+                Model(panels, units=units), tmp_path / "p.step", StepOptions(units=units)
+            ).path
+        )
         _, volumes = areas_and_volumes([part.shape for part in parts])
         expected = millimeters**3 * panel_volumes(panels)
         np.testing.assert_allclose(volumes, expected, rtol=1e-7)
@@ -529,7 +555,9 @@ def test_header(panels: Panels, path: Path, tmp_path: Path) -> None:
     assert "spheremesh" in header
     assert "AUTOMOTIVE_DESIGN" in header
     assert ".MILLI.,.METRE." in text
-    other = write_step(panels, tmp_path / "a.step", step_units="m", schema="AP242DIS")
+    other = write_step(
+        Model(panels), tmp_path / "a.step", StepOptions(units="m", schema="AP242DIS")
+    ).path
     text = other.read_text("ascii")
     assert "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING" in text
     assert ".MILLI." not in text
@@ -540,8 +568,12 @@ def test_header(panels: Panels, path: Path, tmp_path: Path) -> None:
 
 
 def test_writing_again_gives_the_same_text(panels: Panels, path: Path, tmp_path: Path) -> None:
-    write_step(panels, tmp_path / "other.step", step_units="m", schema="AP242DIS")
-    again = write_step(panels, tmp_path / "again.step", title="Dach's Höhe")
+    write_step(
+        Model(panels), tmp_path / "other.step", StepOptions(units="m", schema="AP242DIS")
+    )
+    again = write_step(
+        Model(panels), tmp_path / "again.step", StepOptions(title="Dach's Höhe")
+    ).path
     texts = [
         re.sub(r"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'", "", file.read_text("ascii"))
         for file in (path, again)
@@ -560,44 +592,52 @@ def test_an_interrupted_write_leaves_the_old_file(
 
     monkeypatch.setattr(os, "fsync", interrupt)
     with pytest.raises(KeyboardInterrupt):
-        write_step(panels, target)
+        write_step(Model(panels), target)
     assert [p.name for p in tmp_path.iterdir()] == ["panels.step"]
     assert target.read_text() == "old"
 
 
 def test_what_cannot_be_written(panels: Panels, tmp_path: Path) -> None:
     target = tmp_path / "p.step"
-    nothing = select_panels(panels, np.zeros(panels.n_panels, bool))
+    nothing = select_parts(panels, np.zeros(panels.n_panels, bool))
     with pytest.raises(InputError, match="no panels"):
-        write_step(nothing, target)
+        write_step(Model(nothing), target)
     corners = panels.corners.copy()
     corners[20] = np.nan
     with pytest.raises(InputError, match=r"panel P0005 \(1 in all\) is not finite"):
-        write_step(replace(panels, corners=corners), target)
+        write_step(Model(replace(panels, corners=corners)), target)
     with pytest.raises(InputError, match="unknown units 'furlong'"):
-        write_step(panels, target, "furlong")
+        write_step(Model(panels, units="furlong"), target)
     with pytest.raises(InputError, match="unknown units 'mile'"):
-        write_step(panels, target, step_units="mile")
+        write_step(Model(panels), target, StepOptions(units="mile"))
     with pytest.raises(InputError, match="unknown STEP schema 'AP203'"):
-        write_step(panels, target, schema="AP203")  # type: ignore[arg-type]
+        write_step(Model(panels), target, StepOptions(schema="AP203"))  # type: ignore[arg-type]
     with pytest.raises(InputError, match="copies must be shapes or instances, not 'twins'"):
-        write_step(panels, target, copies="twins")  # type: ignore[arg-type]
+        write_step(Model(panels), target, StepOptions(copies="twins"))  # type: ignore[arg-type]
     twice = replace(panels, ids=("A", "B", "A", *panels.ids[3:]))
     with pytest.raises(InputError, match=r"2 panels are called 'A' \(faces \[0, 2\]\)"):
-        write_step(twice, target)
+        write_step(Model(twice), target)
     with pytest.raises(InputError, match="no folder"):
-        write_step(panels, tmp_path / "none" / "p.step")
+        write_step(Model(panels), tmp_path / "none" / "p.step")
     assert not list(tmp_path.iterdir())
 
 
-def test_a_missing_library_of_the_system_is_named() -> None:
-    message = "libGL.so.1: cannot open shared object file: No such file or directory"
-    with pytest.raises(MissingLibraryError, match="libgl1") as error, step._opencascade():
-        raise ImportError(message)
+@pytest.mark.parametrize(
+    ("cause", "remedy"),
+    [
+        ("libGL.so.1: cannot open shared object file: No such file or directory", "libgl1"),
+        ("No module named 'OCP'", "package cadquery"),
+    ],
+)
+def test_a_missing_library_is_named(
+    panels: Panels, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cause: str, remedy: str
+) -> None:
+    (tmp_path / "cadquery.py").write_text(f"raise ImportError({cause!r})")
+    monkeypatch.delitem(sys.modules, "cadquery", raising=False)
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(MissingLibraryError, match=remedy) as error:
+        to_cadquery(panels)
     assert "\n" not in str(error.value)
-    message = "No module named 'OCP'"
-    with pytest.raises(MissingLibraryError, match="package cadquery"), step._opencascade():
-        raise ModuleNotFoundError(message)
 
 
 def test_files_need_no_opencascade(tmp_path: Path) -> None:

@@ -11,12 +11,13 @@ import numpy as np
 import pytest
 
 from spheremesh import Mesh
+from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.step.writer import write_step
 from spheremesh.kernel.arrays import FloatArray
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.panels.cutting import cut_panels
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.support.annulus_support import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
@@ -128,7 +129,7 @@ def judge(path: Path) -> tuple[Text, int]:
 @pytest.mark.parametrize("kind", KINDS)
 def test_law_panels_look_outwards(tmp_path: Path, thickness: float, kind: str) -> None:
     made = cut_panels(KINDS[kind], "intersection", thickness=thickness)[0]
-    text, count = judge(write_step(made, tmp_path / "p.step"))
+    text, count = judge(write_step(Model(made), tmp_path / "p.step").path)
     assert count == made.n_panels if thickness == 0 else count == 6 * made.n_panels
     # Faces look along N, whatever the side to which their spheres bulge.
     for face, panel in zip(text.ids("ADVANCED_FACE"), range(made.n_panels), strict=False):
@@ -151,4 +152,4 @@ def test_law_beams_look_outwards(tmp_path: Path, ends: dict[str, float], kind: s
         scaled = {name: value * size for name, value in ends.items()}
         beams, _ = cut_beams(annuli, 0.05 * size, **scaled)
         assert beams.n_beams > 10
-        judge(write_step(None, tmp_path / "b.step", beams=beams))
+        judge(write_step(Model(beams=beams), tmp_path / "b.step").path)

@@ -16,14 +16,14 @@ from spheremesh.kernel.beams.beams import (
     insets_at,
     inward_directions,
     scale_beams,
-    select_beams,
     side_arcs,
 )
 from spheremesh.kernel.beams.cutting import cut_beams, mitre_angles, neighbor_angles
 from spheremesh.kernel.beams.facts import BeamFacts, beam_facts
 from spheremesh.kernel.meshes.mesh import mean_edge_length
-from spheremesh.kernel.optimization.pencil import minimize_angles
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
+from spheremesh.kernel.parts.records import select_parts
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.arcs import Arcs, arc_points, arc_reaches
 from spheremesh.kernel.support.annulus_support import annulus_support
@@ -208,7 +208,7 @@ def _face_keys(edge_faces: IntArray, names: IntArray) -> IntArray:
 
 
 def _ordered(beams: Beams, order: IntArray) -> Beams:
-    single = [select_beams(beams, np.arange(beams.n_beams) == i) for i in order.tolist()]
+    single = [select_parts(beams, np.arange(beams.n_beams) == i) for i in order.tolist()]
     joined = {
         name: np.concatenate([getattr(one, name) for one in single])
         for name in ("levels", "insets", "is_flat", "corners", "sections")
@@ -277,5 +277,5 @@ def test_law_e6_beams_that_lack_clearance_run_into_each_other(radius: float) -> 
 
 
 def test_no_beams_have_no_measures() -> None:
-    none = select_beams(BEAMS, np.zeros(BEAMS.n_beams, bool))
+    none = select_parts(BEAMS, np.zeros(BEAMS.n_beams, bool))
     assert all(len(values) == 0 for values in vars(beam_facts(none)).values())

@@ -19,18 +19,18 @@ from spheremesh.kernel.beams.beams import (
     node_axis_segments,
     scale_beams,
     section_arcs,
-    select_beams,
     side_arcs,
 )
 from spheremesh.kernel.beams.contours import beam_contours, contour_boxes, shelves
 from spheremesh.kernel.beams.cutting import cut_beams, mitre_angles
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.parts.records import select_parts
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.arcs import Arcs, arc_circles, arc_points, segment_areas
-from spheremesh.kernel.spheres.rows import evaluate
-from spheremesh.kernel.support.annuli import Annuli, select_annuli
+from spheremesh.kernel.spheres.incidence import evaluate
+from spheremesh.kernel.support.annuli import Annuli
 from spheremesh.kernel.support.annulus_support import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import torus_net
 
@@ -105,7 +105,7 @@ def test_law_e6_half_angles_sum_to_a_full_turn(annuli: Annuli) -> None:
 
 def test_a_single_beam_ends_square(annuli: Annuli) -> None:
     alone = cut_beams(annuli, 0.03)[0]
-    alone = select_beams(alone, np.arange(alone.n_beams) == 5).annuli
+    alone = select_parts(alone, np.arange(alone.n_beams) == 5).annuli
     assert np.abs(mitre_angles(alone) - np.pi / 2).max() == 0
     beams, _ = cut_beams(alone, 0.03)
     assert beams.is_flat.all()
@@ -188,7 +188,7 @@ def test_beams_that_cannot_be_cut_are_listed(annuli: Annuli) -> None:
 
 
 def test_beams_in_the_same_direction_are_listed(annuli: Annuli) -> None:
-    once = select_annuli(annuli, np.arange(annuli.n_annuli) == 0)
+    once = select_parts(annuli, np.arange(annuli.n_annuli) == 0)
     arrays: dict[str, FloatArray] = {
         name: value for name, value in vars(once).items() if isinstance(value, np.ndarray)
     }

@@ -7,12 +7,13 @@ from hypothesis import strategies as st
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, dot, norm
-from spheremesh.kernel.beams.beams import Beams, scale_beams, section_arcs, select_beams
+from spheremesh.kernel.beams.beams import Beams, scale_beams, section_arcs
 from spheremesh.kernel.beams.contours import beam_contours
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.beams.drilling import drill_beams, mark_centers
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.parts.records import select_parts
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.spheres.arcs import arc_points
 from spheremesh.kernel.support.annulus_support import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import torus_net
@@ -102,7 +103,7 @@ def test_marks_that_do_not_fit_are_listed_by_name() -> None:
 def test_marks_go_with_their_beams() -> None:
     drilled, _ = drill_beams(BEAMS, 2, 0.03, 0.05)
     keep = np.arange(BEAMS.n_beams) % 3 == 1
-    few = select_beams(drilled, keep)
+    few = select_parts(drilled, keep)
     assert np.abs(marks_of(few) - marks_of(drilled)[keep]).max() == 0
     again, _ = drill_beams(drilled, 1, 0.03, 0.05)
     assert marks_of(again).shape[2] == 1
@@ -154,7 +155,7 @@ def test_bad_options_are_refused(options: tuple[int, float, float], match: str) 
 
 
 def test_no_beams_get_no_marks() -> None:
-    none = select_beams(BEAMS, np.zeros(BEAMS.n_beams, bool))
+    none = select_parts(BEAMS, np.zeros(BEAMS.n_beams, bool))
     drilled, findings = drill_beams(none, 2, 0.03, 0.05)
     assert findings == ()
     assert marks_of(drilled).shape == (0, 2, 2, 3)

@@ -7,11 +7,12 @@ import pytest
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, IntArray, dot, norm
-from spheremesh.kernel.beams.beams import Beams, scale_beams, select_beams
+from spheremesh.kernel.beams.beams import Beams, scale_beams
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.beams.node_cylinders import node_cylinders
 from spheremesh.kernel.meshes.mesh import mean_edge_length
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.parts.records import select_parts
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.support.annulus_support import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import torus_net, vase_net
 
@@ -79,11 +80,11 @@ def test_cylinders_are_as_high_as_their_beams() -> None:
 
 def test_only_nodes_with_beams_have_cylinders_and_only_with_a_radius() -> None:
     beams = made(TORUS)
-    few = select_beams(beams, np.arange(beams.n_beams) < 3)
+    few = select_parts(beams, np.arange(beams.n_beams) < 3)
     found = node_cylinders(few)
     assert found.vertices.tolist() == sorted(set(few.annuli.edge_vertices.ravel().tolist()))
     assert node_cylinders(made(TORUS, radius=0.0)).n_nodes == 0
-    none = node_cylinders(select_beams(beams, np.zeros(beams.n_beams, bool)))
+    none = node_cylinders(select_parts(beams, np.zeros(beams.n_beams, bool)))
     assert none.ids == none.beam_ids == ()
 
 

@@ -8,10 +8,11 @@ from hypothesis import strategies as st
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.panels.congruent import congruent_panels
 from spheremesh.kernel.panels.cutting import cut_panels
-from spheremesh.kernel.panels.panels import Panels, select_panels
+from spheremesh.kernel.panels.panels import Panels
+from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.kernel.surfaces.circular_nets import torus_net
@@ -120,7 +121,7 @@ def test_tolerance_is_relative_to_the_mean_edge() -> None:
 
 def test_no_panels_and_a_bad_tolerance() -> None:
     panels, _ = cut_panels(scattered(1)[0])
-    none = select_panels(panels, np.zeros(panels.n_panels, bool))
+    none = select_parts(panels, np.zeros(panels.n_panels, bool))
     assert congruent_panels(none).labels.shape == (0,)
     with pytest.raises(InputError, match="tolerance must be positive"):
         congruent_panels(panels, 0.0)

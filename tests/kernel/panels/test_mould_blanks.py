@@ -6,17 +6,18 @@ import pytest
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.errors import InputError
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.optimization.clustering import cluster_radii
-from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.panels.congruent import congruent_panels
 from spheremesh.kernel.panels.cutting import EdgeMode, cut_panels
 from spheremesh.kernel.panels.layers import Side
 from spheremesh.kernel.panels.mould_blanks import mould_blanks, panel_caps
-from spheremesh.kernel.panels.panels import Panels, inner_panel_arcs, panel_arcs, select_panels
+from spheremesh.kernel.panels.panels import Panels, inner_panel_arcs, panel_arcs
+from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.arcs import arc_points
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
-from spheremesh.kernel.spheres.rows import evaluate, project
+from spheremesh.kernel.spheres.incidence import evaluate, project
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
 
 
@@ -150,7 +151,7 @@ def test_a_large_mould_keeps_its_radius_where_small_panels_are_planes() -> None:
 
 def test_panels_without_moulds_need_no_blanks() -> None:
     panels, _ = cut_panels(on_regular_face(4, 0.2))
-    for found in (panels, select_panels(panels, np.zeros(1, bool))):
+    for found in (panels, select_parts(panels, np.zeros(1, bool))):
         blanks = mould_blanks(found, congruent_panels(found))
         assert len(blanks.labels) == len(blanks.counts) == 0
     with pytest.raises(InputError, match="step of blank sizes"):

@@ -5,15 +5,15 @@ import pytest
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import dot, norm, unit
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels, edge_gaps
 from spheremesh.kernel.panels.facts import panel_facts
 from spheremesh.kernel.panels.panels import (
     opposite_corners,
     panel_arcs,
     scale_panels,
-    select_panels,
 )
+from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.spheres.arcs import Arcs, arc_points, arc_tangents
 
@@ -50,7 +50,7 @@ def test_walls_that_lean_and_their_neighbours(octahedron: Mesh) -> None:
     gap, r = 0.2, 1.0
     panels, _ = cut_panels(octants(octahedron, r), joint_gap=gap)
     np.testing.assert_allclose(panel_facts(panels).wall_tilts, 0, atol=1e-12)
-    alone = select_panels(panels, np.arange(8) == 2)
+    alone = select_parts(panels, np.arange(8) == 2)
     facts = panel_facts(alone)
     np.testing.assert_allclose(facts.wall_tilts, np.arcsin(gap / 2 / r), rtol=1e-11)
     assert np.isnan(facts.steps).all()

@@ -154,7 +154,7 @@ def test_a_mesh_that_cannot_be_remeshed_is_one_clear_error() -> None:
     imaginary = spheres.copy()
     imaginary[[3, 7]] = [1.0, 0, 0, 0, 50.0]
     cases = [
-        (quads, around, "needs triangles.*use triangulate first"),
+        (quads, around, "no triangles: triangulate the mesh first"),
         (mesh, imaginary, r"vertices \[3, 7\] are imaginary"),
         (two, np.tile(spheres, (2, 1)), "2 separate pieces: remesh them one by one"),
     ]
@@ -231,9 +231,9 @@ def spherical_cap() -> sm.Mesh:
 def test_spheres_that_do_not_tell_directions_are_said() -> None:
     cap = spherical_cap()
     spheres = sphere_congruence(cap, "tangent", -0.5)
-    with pytest.warns(NodeWarning, match="on 100 % of the area the spheres do not tell"):
+    with pytest.warns(NodeWarning, match="on 100 % of the area the spheres do not determine"):
         assert conjugate_directions(cap, spheres).report["umbilic_share"] == 1
-    with pytest.warns(NodeWarning, match="smoothing, over 5 edges or more, makes it even"):
+    with pytest.warns(NodeWarning, match="set smoothing to 5 or more"):
         _, report = p4_remesh(cap, spheres, 0.24, smoothing=5)
     assert report["singular"] == []
     assert report["irregular_nodes"] == 0
