@@ -12,24 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from . import stream_codes as codes
 from .brep_layout import BrepLayout, Curve, FaceMesh, Side, Surface
-from .stream_codes import (
-    ANONYMOUS,
-    ARC_CURVE,
-    BOUNDARY_TRIM,
-    BREP,
-    CHUNK_HEADER,
-    CLASS,
-    CRC,
-    LINE_CURVE,
-    MESH,
-    MESH_VERSION,
-    NURBS_CURVE,
-    NURBS_SURFACE,
-    OUTER_LOOP,
-    PLANE_SURFACE,
-    SHORT_FLAG,
-)
 from .stream_reader import BufferPlace, StreamReader, UnreadableError
 
 _OBJECT_TABLE = 0x10000013
@@ -59,18 +43,18 @@ def read_brep_streams(data: bytes) -> list[bytes]:
             if record != _OBJECT_RECORD:
                 continue
             for inner, first, last in _chunks(data, begin, end):
-                named = first + CHUNK_HEADER.size
-                if inner == CLASS and data[named : named + len(BREP)] == BREP:
-                    streams.append(data[first - CHUNK_HEADER.size : last])
+                named = first + codes.CHUNK_HEADER.size
+                if inner == codes.CLASS and data[named : named + len(codes.BREP)] == codes.BREP:
+                    streams.append(data[first - codes.CHUNK_HEADER.size : last])
     return streams
 
 
 def _chunks(data: bytes, start: int, stop: int) -> Generator[tuple[int, int, int]]:
     """Type, begin and end of the bodies of consecutive chunks."""
-    while start + CHUNK_HEADER.size <= stop:
-        typecode, length = CHUNK_HEADER.unpack_from(data, start)
-        start += CHUNK_HEADER.size
-        length = 0 if typecode & SHORT_FLAG else length
+    while start + codes.CHUNK_HEADER.size <= stop:
+        typecode, length = codes.CHUNK_HEADER.unpack_from(data, start)
+        start += codes.CHUNK_HEADER.size
+        length = 0 if typecode & codes.SHORT_FLAG else length
         yield typecode, start, start + length
         start += length
 
@@ -98,7 +82,7 @@ def parse_brep(stream: bytes) -> BrepLayout:
     """
     reader = StreamReader(stream)
     with reader.object() as uuid:
-        if uuid != BREP:
+        if uuid != codes.BREP:
             raise UnreadableError("the stream is not a Brep")
         reader.expect(b"\x33", "Brep version 3.3")
         trim_curves = _curves(reader)
@@ -110,12 +94,12 @@ def parse_brep(stream: bytes) -> BrepLayout:
         loop = _loop(reader)
         is_reversed = _face(reader)
         reader.doubles(6)
-        with reader.chunk(ANONYMOUS):
+        with reader.chunk(codes.ANONYMOUS):
             mesh = _face_mesh(reader)
-        with reader.chunk(ANONYMOUS):
+        with reader.chunk(codes.ANONYMOUS):
             reader.expect(b"\0", "a face without analysis mesh")
         reader.ints(1)
-        with reader.chunk(ANONYMOUS):
+        with reader.chunk(codes.ANONYMOUS):
             reader.ints(2)
             reader.expect(b"\0", "a Brep without regions")
     if reader.position != len(stream):
@@ -128,7 +112,7 @@ def parse_brep(stream: bytes) -> BrepLayout:
         if buffer is not None and not buffer.is_deflated:
             fixed[buffer.start : buffer.stop] = False
     for checksum in reader.checksums:
-        fixed[checksum.place : checksum.place + CRC.size] = False
+        fixed[checksum.place : checksum.place + codes.CRC.size] = False
     try:
         sides = tuple(_side(trims[i], edges, trim_curves, edge_curves, vertices) for i in loop)
     except IndexError as error:
@@ -150,13 +134,13 @@ def _curves(reader: StreamReader) -> list[Curve]:
 
 def _curve(reader: StreamReader, uuid: bytes) -> Curve:
     version = reader.take(1)
-    if uuid in (LINE_CURVE, ARC_CURVE):
-        count = 6 if uuid == LINE_CURVE else 28
+    if uuid in (codes.LINE_CURVE, codes.ARC_CURVE):
+        count = 6 if uuid == codes.LINE_CURVE else 28
         points = reader.doubles(count)
         domain = reader.doubles(2)
         reader.ints(1)
         return Curve(uuid, (domain, domain + 8), points, count)
-    if uuid != NURBS_CURVE:
+    if uuid != codes.NURBS_CURVE:
         raise UnreadableError(f"a curve of unknown class before byte {version}")
     dimension, rational, order, n_points, *_ = reader.ints(6)
     reader.doubles(6)
@@ -186,11 +170,11 @@ def _surfaces(reader: StreamReader) -> list[Surface]:
 
 
 def _surface(reader: StreamReader, uuid: bytes) -> Surface:
-    if uuid == PLANE_SURFACE:
+    if uuid == codes.PLANE_SURFACE:
         points = reader.doubles(16)
         domains = reader.doubles(8)
         return Surface(uuid, (domains, domains + 16), points, (0, 0))
-    if uuid != NURBS_SURFACE:
+    if uuid != codes.NURBS_SURFACE:
         raise UnreadableError("a surface of unknown class")
     dimension, rational, *orders, n_u, n_v, _, _ = reader.ints(8)
     reader.doubles(6)
@@ -250,7 +234,7 @@ def _trims(reader: StreamReader) -> list[_Use]:
             reader.doubles(4)
             reader.expect(bytes(32), f"flags of trim {index}")
             reader.doubles(2)
-            if is_reversed or kind != BOUNDARY_TRIM or loop != 0:
+            if is_reversed or kind != codes.BOUNDARY_TRIM or loop != 0:
                 raise UnreadableError(f"trim {index} does not bound the face")
             trims.append(_Use(curve, edge, (first, last), domain))
     return trims
@@ -263,13 +247,13 @@ def _loop(reader: StreamReader) -> tuple[int, ...]:
         reader.ints(1)
         trims = reader.counted_ints()
         kind, face = reader.ints(2)
-        if kind != OUTER_LOOP or face != 0:
+        if kind != codes.OUTER_LOOP or face != 0:
             raise UnreadableError("the loop does not bound the face from outside")
     return trims
 
 
 def _face(reader: StreamReader) -> bool:
-    with reader.chunk(ANONYMOUS):
+    with reader.chunk(codes.ANONYMOUS):
         version = reader.data[reader.take(1)]
         (count,) = reader.ints(1)
         if count != 1 or version not in (0x11, 0x12):
@@ -290,9 +274,9 @@ def _face_mesh(reader: StreamReader) -> FaceMesh | None:
     if reader.data[reader.take(1)] == 0:
         return None
     with reader.object() as uuid:
-        if uuid != MESH:
+        if uuid != codes.MESH:
             raise UnreadableError("the render mesh is no mesh")
-        reader.expect(MESH_VERSION, "mesh version 3.8")
+        reader.expect(codes.MESH_VERSION, "mesh version 3.8")
         n_points, n_faces = reader.ints(2)
         reader.take(64 + 16 + 64 + 4)
         reader.expect(bytes(5), "a mesh without parameters and curvatures")
@@ -306,7 +290,7 @@ def _face_mesh(reader: StreamReader) -> FaceMesh | None:
             reader.buffer(0)
         reader.take(4 + 16)
         reader.buffer(0)
-        with reader.chunk(ANONYMOUS):
+        with reader.chunk(codes.ANONYMOUS):
             reader.take(160)
         reader.take(3)
         reader.expect(b"\0", "a mesh without ngons")
@@ -321,7 +305,7 @@ def _precise_points(reader: StreamReader, n_points: int) -> BufferPlace | None:
     """The vertices as float64, if they are there."""
     if reader.data[reader.take(1)] == 0:
         return None
-    with reader.chunk(ANONYMOUS):
+    with reader.chunk(codes.ANONYMOUS):
         if reader.ints(3) != (1, 0, n_points):
             raise UnreadableError("the render mesh has another number of precise vertices")
         return reader.buffer(24 * n_points)
@@ -350,5 +334,5 @@ def _check_chain(
     for side, following in zip(sides, (*sides[1:], sides[0]), strict=True):
         if side.end != following.start:
             raise UnreadableError("the trims of the loop do not follow one another")
-        if side.trim.uuid == ARC_CURVE or side.edge.uuid == NURBS_CURVE:
+        if side.trim.uuid == codes.ARC_CURVE or side.edge.uuid == codes.NURBS_CURVE:
             raise UnreadableError("an edge is not an arc or a line")

@@ -31,6 +31,7 @@ import numpy as np
 from ...kernel.arrays import FloatArray, unit
 from ...kernel.panels.panels import Panels, panel_arcs
 from ...kernel.spheres.arcs import ArcCircles, Arcs, arc_circles, arc_lengths
+from . import stream_codes as codes
 from .render_meshes import RenderMeshes, mesh_numbers, mesh_object
 from .sphere_patches import (
     PanelCharts,
@@ -39,17 +40,6 @@ from .sphere_patches import (
     select_charts,
     span_counts,
     trim_control_points,
-)
-from .stream_codes import (
-    ANONYMOUS,
-    ARC_CURVE,
-    BOUNDARY_TRIM,
-    BREP,
-    LINE_CURVE,
-    NURBS_CURVE,
-    NURBS_SURFACE,
-    OUTER_LOOP,
-    PLANE_SURFACE,
 )
 from .stream_writer import (
     Chunk,
@@ -183,31 +173,31 @@ _EMPTY_BOX = doubles(1, 0, 0, -1, 0, 0)
 
 def _edge_curve(edge: int, *, is_straight: bool) -> Chunk:
     if is_straight:
-        return class_object(LINE_CURVE, b"\x10", Slot("curve", edge, 8), ints(3))
-    return class_object(ARC_CURVE, b"\x10", Slot("curve", edge, 30), ints(3))
+        return class_object(codes.LINE_CURVE, b"\x10", Slot("curve", edge, 8), ints(3))
+    return class_object(codes.ARC_CURVE, b"\x10", Slot("curve", edge, 30), ints(3))
 
 
 def _trim_curve(trim: int, spans: int) -> Chunk:
     if spans == 0:
-        return class_object(LINE_CURVE, b"\x10", Slot("trim", trim, 8), ints(2))
+        return class_object(codes.LINE_CURVE, b"\x10", Slot("trim", trim, 8), ints(2))
     count = 2 * spans + 1
     knots = doubles(*np.repeat(np.linspace(-1, 1, spans + 1), 2))
     head = ints(2, 1, 3, count, 0, 0) + _EMPTY_BOX
     points = Slot("trim", trim, 3 * count)
     return class_object(
-        NURBS_CURVE, b"\x11", head, ints(count + 1), knots, ints(count), points, b"\0"
+        codes.NURBS_CURVE, b"\x11", head, ints(count + 1), knots, ints(count), points, b"\0"
     )
 
 
 def _surface(spans: int) -> Chunk:
     if spans == 0:
-        return class_object(PLANE_SURFACE, b"\x11", Slot("patch", 0, 24))
+        return class_object(codes.PLANE_SURFACE, b"\x11", Slot("patch", 0, 24))
     count = 2 * spans + 1
     head = ints(3, 1, 3, 3, count, count, 0, 0) + _EMPTY_BOX
     knots_u, knots_v = Slot("knots", 0, count + 1), Slot("knots", 1, count + 1)
     points = Slot("patch", 0, 4 * count * count)
     return class_object(
-        NURBS_SURFACE, b"\x10", head, ints(count + 1), knots_u, ints(count + 1), knots_v,
+        codes.NURBS_SURFACE, b"\x10", head, ints(count + 1), knots_u, ints(count + 1), knots_v,
         ints(count * count), points,
     )  # fmt: skip
 
@@ -234,20 +224,21 @@ def _brep(k: int, spans: int, face_mesh: tuple[Piece, ...]) -> Chunk:
     # domain, flags of the proxy, legacy tolerances
     uses = [
         (
-            ints(i, i) + doubles(-1, 1) + ints(i, i, (i + 1) % k, 0, BOUNDARY_TRIM, 0, 0)
+            ints(i, i) + doubles(-1, 1) + ints(i, i, (i + 1) % k, 0, codes.BOUNDARY_TRIM, 0, 0)
             + doubles(0, 0, -1, 1) + bytes(32) + doubles(0, 0),
         )
         for i in sides
     ]  # fmt: skip
     # index, trims, type, face
-    loop = ints(0, k, *sides, OUTER_LOOP, 0)
+    loop = ints(0, k, *sides, codes.OUTER_LOOP, 0)
     # index, loops, surface, reversed, material channel; then the face's uuid
     face = ints(0, 1, 0, 0, 0, 0) + bytes(16)
     return class_object(
-        BREP, b"\x33", table(0, trims), table(0, curves), table(0, [(one, _surface(spans))]),
-        table(0, vertices), table(0, edges), table(0, uses), table(0, [(loop,)]),
-        table(1, [(face,)]), Slot("box", 0, 6), Chunk(ANONYMOUS, face_mesh),
-        Chunk(ANONYMOUS, (b"\0",)), ints(0), Chunk(ANONYMOUS, (ints(1, 1), b"\0")),
+        codes.BREP, b"\x33", table(0, trims), table(0, curves),
+        table(0, [(one, _surface(spans))]), table(0, vertices), table(0, edges),
+        table(0, uses), table(0, [(loop,)]), table(1, [(face,)]), Slot("box", 0, 6),
+        Chunk(codes.ANONYMOUS, face_mesh), Chunk(codes.ANONYMOUS, (b"\0",)), ints(0),
+        Chunk(codes.ANONYMOUS, (ints(1, 1), b"\0")),
     )  # fmt: skip
 
 

@@ -6,17 +6,7 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from typing import NamedTuple
 
-from .stream_codes import (
-    ANONYMOUS,
-    CHUNK_HEADER,
-    CLASS,
-    CLASS_DATA,
-    CLASS_END,
-    CLASS_UUID,
-    CRC,
-    CRC_FLAG,
-    Checksum,
-)
+from . import stream_codes as codes
 
 
 class UnreadableError(Exception):
@@ -56,7 +46,7 @@ class StreamReader:
         self.data = data
         self.position = 0
         self.limit = len(data)
-        self.checksums: list[Checksum] = []
+        self.checksums: list[codes.Checksum] = []
         self.own: list[tuple[int, int]] = []
         self.begin = 0
         self.numbers: list[tuple[int, int]] = []
@@ -152,11 +142,11 @@ class StreamReader:
         None
             With the cursor at its body.
         """
-        start = self.take(CHUNK_HEADER.size)
-        found, length = CHUNK_HEADER.unpack_from(self.data, start)
+        start = self.take(codes.CHUNK_HEADER.size)
+        found, length = codes.CHUNK_HEADER.unpack_from(self.data, start)
         if found != typecode:
             raise UnreadableError(f"chunk {typecode:#x} expected at byte {start}")
-        tail = CRC.size if typecode & CRC_FLAG else 0
+        tail = codes.CRC.size if typecode & codes.CRC_FLAG else 0
         if not tail <= length <= self.limit - self.position:
             raise UnreadableError(f"the chunk at byte {start} reaches beyond its end")
         outer_limit, outer_own = self.limit, [*self.own, (self.begin, start)]
@@ -167,7 +157,7 @@ class StreamReader:
             raise UnreadableError(f"the chunk at byte {start} has bytes left over")
         if tail:
             ranges = (*self.own, (self.begin, self.position))
-            self.checksums.append(Checksum(self.position, ranges))
+            self.checksums.append(codes.Checksum(self.position, ranges))
         self.limit, self.own = outer_limit, outer_own
         self.take(tail)
         self.begin = self.position
@@ -182,12 +172,12 @@ class StreamReader:
         bytes
             Id of its class.
         """
-        with self.chunk(CLASS):
-            with self.chunk(CLASS_UUID):
+        with self.chunk(codes.CLASS):
+            with self.chunk(codes.CLASS_UUID):
                 start = self.take(16)
-            with self.chunk(CLASS_DATA):
+            with self.chunk(codes.CLASS_DATA):
                 yield self.data[start : start + 16]
-            self.expect(CHUNK_HEADER.pack(CLASS_END, 0), "the end of an object")
+            self.expect(codes.CHUNK_HEADER.pack(codes.CLASS_END, 0), "the end of an object")
 
     @contextmanager
     def table(self, minor: int = 0) -> Generator[int]:
@@ -204,7 +194,7 @@ class StreamReader:
         int
             Number of records.
         """
-        with self.chunk(ANONYMOUS):
+        with self.chunk(codes.ANONYMOUS):
             version = self.data[self.take(1)]
             if version not in range(16, 17 + minor):
                 raise UnreadableError(f"a table of unknown version before {self.position}")
@@ -229,17 +219,18 @@ class StreamReader:
             raise UnreadableError(f"the buffer at byte {begin} does not hold {size} bytes")
         if size == 0:
             return BufferPlace(self.position, self.position, is_deflated=False)
-        place = self.take(CRC.size)
+        place = self.take(codes.CRC.size)
         method = self.data[self.take(1)]
         if method == 0:
             start = self.take(size)
-            self.checksums.append(Checksum(place, ((start, self.position),)))
+            self.checksums.append(codes.Checksum(place, ((start, self.position),)))
             return BufferPlace(start, self.position, is_deflated=False)
-        with self.chunk(ANONYMOUS):
+        with self.chunk(codes.ANONYMOUS):
             start = self.take(self.limit - self.position)
             found = BufferPlace(start, self.position, is_deflated=True)
         content = inflated(self.data, found)
-        if len(content) != size or CRC.unpack_from(self.data, place)[0] != zlib.crc32(content):
+        (checksum,) = codes.CRC.unpack_from(self.data, place)
+        if len(content) != size or checksum != zlib.crc32(content):
             raise UnreadableError(f"the buffer at byte {begin} does not inflate to its content")
         return found
 

@@ -13,17 +13,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from .stream_codes import (
-    ANONYMOUS,
-    CHUNK_HEADER,
-    CLASS,
-    CLASS_DATA,
-    CLASS_END,
-    CLASS_UUID,
-    CRC,
-    CRC_FLAG,
-    Checksum,
-)
+from . import stream_codes as codes
 
 
 class Slot(NamedTuple):
@@ -56,7 +46,7 @@ class _Template(NamedTuple):
 
     data: bytes
     slots: tuple[tuple[Slot, int], ...]
-    checksums: tuple[Checksum, ...]
+    checksums: tuple[codes.Checksum, ...]
 
 
 def _assemble(piece: Piece) -> _Template:
@@ -67,16 +57,18 @@ def _assemble(piece: Piece) -> _Template:
         return _Template(bytes(size), ((piece, 0),), ())
     if isinstance(piece, PlainBuffer):
         inner = _assemble(piece.content)
-        head = 4 + CRC.size + 1
-        data = ints(len(inner.data)) + bytes(CRC.size + 1) + inner.data
-        return _Template(data, ((piece.content, head),), (Checksum(4, ((head, len(data)),)),))
+        head = 4 + codes.CRC.size + 1
+        data = ints(len(inner.data)) + bytes(codes.CRC.size + 1) + inner.data
+        return _Template(
+            data, ((piece.content, head),), (codes.Checksum(4, ((head, len(data)),)),)
+        )
     return _assemble_chunk(piece)
 
 
 def _assemble_chunk(chunk: Chunk) -> _Template:
-    data = bytearray(CHUNK_HEADER.size)
+    data = bytearray(codes.CHUNK_HEADER.size)
     slots: list[tuple[Slot, int]] = []
-    checksums: list[Checksum] = []
+    checksums: list[codes.Checksum] = []
     own: list[tuple[int, int]] = []
     for piece in chunk.body:
         inner, here = _assemble(piece), len(data)
@@ -85,16 +77,16 @@ def _assemble_chunk(chunk: Chunk) -> _Template:
         data += inner.data
         if not isinstance(piece, Chunk):
             own.append((here, len(data)))
-    if chunk.typecode & CRC_FLAG:
-        checksums.append(Checksum(len(data), tuple(own)))
-        data += bytes(CRC.size)
-    CHUNK_HEADER.pack_into(data, 0, chunk.typecode, len(data) - CHUNK_HEADER.size)
+    if chunk.typecode & codes.CRC_FLAG:
+        checksums.append(codes.Checksum(len(data), tuple(own)))
+        data += bytes(codes.CRC.size)
+    codes.CHUNK_HEADER.pack_into(data, 0, chunk.typecode, len(data) - codes.CHUNK_HEADER.size)
     return _Template(bytes(data), tuple(slots), tuple(checksums))
 
 
-def _shifted(checksum: Checksum, by: int) -> Checksum:
+def _shifted(checksum: codes.Checksum, by: int) -> codes.Checksum:
     ranges = tuple((start + by, stop + by) for start, stop in checksum.ranges)
-    return Checksum(checksum.place + by, ranges)
+    return codes.Checksum(checksum.place + by, ranges)
 
 
 def fill(piece: Piece, numbers: Mapping[str, NDArray[Any]]) -> Iterator[bytes]:
@@ -124,7 +116,7 @@ def fill(piece: Piece, numbers: Mapping[str, NDArray[Any]]) -> Iterator[bytes]:
         stream = bytearray(row.tobytes())
         with memoryview(stream) as view:
             for checksum in template.checksums:
-                CRC.pack_into(stream, checksum.place, checksum.compute(view))
+                codes.CRC.pack_into(stream, checksum.place, checksum.compute(view))
         yield bytes(stream)
 
 
@@ -192,9 +184,9 @@ def class_object(uuid: bytes, *body: Piece) -> Chunk:
     Chunk
         The object.
     """
-    name = Chunk(CLASS_UUID, (uuid,))
-    end = CHUNK_HEADER.pack(CLASS_END, 0)
-    return Chunk(CLASS, (name, Chunk(CLASS_DATA, body), end))
+    name = Chunk(codes.CLASS_UUID, (uuid,))
+    end = codes.CHUNK_HEADER.pack(codes.CLASS_END, 0)
+    return Chunk(codes.CLASS, (name, Chunk(codes.CLASS_DATA, body), end))
 
 
 def table(minor: int, records: Sequence[tuple[Piece, ...]]) -> Chunk:
@@ -213,4 +205,4 @@ def table(minor: int, records: Sequence[tuple[Piece, ...]]) -> Chunk:
         An anonymous chunk.
     """
     pieces = (piece for record in records for piece in record)
-    return Chunk(ANONYMOUS, (bytes([16 + minor]), ints(len(records)), *pieces))
+    return Chunk(codes.ANONYMOUS, (bytes([16 + minor]), ints(len(records)), *pieces))

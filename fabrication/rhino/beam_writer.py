@@ -31,7 +31,7 @@ from ..opennurbs.render_meshes import (
     extrusions_with_meshes,
     gather_meshes,
 )
-from .model import RhinoModel, Untyped, add_layer, add_surface_layer, object_attributes
+from .model import RhinoModel, Untyped, add_layer, object_attributes
 
 
 def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: bool) -> None:
@@ -50,7 +50,7 @@ def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: boo
     render_meshes : bool
         Whether the extrusions carry triangles for viewers that cannot mesh them.
     """
-    place = add_surface_layer(model, "Beams", BEAM)
+    place = add_layer(model, "Beams", BEAM, has_material=True)
     solids, texts = _beam_extrusions(model.library, beams), _beam_text(beams, units)
     if render_meshes and solids:
         error = MESH_TOLERANCE * float(beam_lengths(beams).min()) / 2
@@ -66,7 +66,7 @@ def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: boo
         model.file.Objects.AddCurve(line, object_attributes(model, name, "axis", place))
     cylinders = node_cylinders(beams)
     if cylinders.n_nodes:
-        place = add_surface_layer(model, "Nodes", NODE)
+        place = add_layer(model, "Nodes", NODE, has_material=True)
         solids = _cylinder_extrusions(model.library, cylinders)
         if render_meshes:
             error = MESH_TOLERANCE * cylinders.radius

@@ -16,7 +16,7 @@ from ..opennurbs.brep_writer import brep_streams
 from ..opennurbs.render_meshes import MESH_TOLERANCE, panel_meshes
 from ..opennurbs.stream_codes import ANONYMOUS
 from ..opennurbs.stream_writer import Chunk, class_object, doubles, encode, ints
-from .model import RhinoModel, Untyped, add_surface_layer, object_attributes, object_id
+from .model import RhinoModel, Untyped, add_layer, object_attributes, object_id
 
 _INSTANCE_DEFINITION = UUID("26f8bff6-2618-417f-a158-153d64a94989").bytes_le
 
@@ -114,7 +114,7 @@ def add_mould_blocks(model: RhinoModel, panels: Panels, *, render_meshes: bool) 
         Moulds that are left out, with their reasons.
     """
     # They lie under the panels: they are there to be switched on.
-    place = add_surface_layer(model, "Moulds", UNLABELLED, visible=False)
+    place = add_layer(model, "Moulds", UNLABELLED, has_material=True, visible=False)
     found = mould_caps(panels)
     meshes = panel_meshes(found.caps, MESH_TOLERANCE) if render_meshes else None
     streams = brep_streams(found.caps, meshes)

@@ -164,10 +164,11 @@ def add_layer(
     color: Color,
     parent: ModelLayer | None = None,
     *,
+    has_material: bool = False,
     visible: bool = True,
 ) -> ModelLayer:
     """
-    Add a layer of lines or points.
+    Add a layer.
 
     Parameters
     ----------
@@ -176,6 +177,8 @@ def add_layer(
     color : Color
     parent : ModelLayer, optional
         The layer that it lies under.
+    has_material : bool
+        Whether there is a material of its colour, for surfaces.
     visible : bool
         Whether it is switched on.
 
@@ -192,41 +195,15 @@ def add_layer(
     layer.Visible = visible
     if parent:
         layer.ParentLayerId = file.Layers[parent.layer].Id
-    return ModelLayer(file.Layers.Add(layer))
-
-
-def add_surface_layer(
-    model: RhinoModel,
-    name: str,
-    color: Color,
-    parent: ModelLayer | None = None,
-    *,
-    visible: bool = True,
-) -> ModelLayer:
-    """
-    Add a layer and a material of its colour.
-
-    Parameters
-    ----------
-    model : RhinoModel
-    name : str
-    color : Color
-    parent : ModelLayer, optional
-    visible : bool
-        See `add_layer`.
-
-    Returns
-    -------
-    ModelLayer
-        Where objects go.
-    """
+    place = ModelLayer(file.Layers.Add(layer))
+    if not has_material:
+        return place
     material = model.library.Material()
     material.Id = object_id(name, "material")
     material.Name = name
     material.DiffuseColor = (*color, 255)
-    index: int = model.file.Materials.Add(material)
-    place = add_layer(model, name, color, parent, visible=visible)
-    model.file.Layers[place.layer].RenderMaterialIndex = index
+    index: int = file.Materials.Add(material)
+    file.Layers[place.layer].RenderMaterialIndex = index
     return place._replace(material=index)
 
 

@@ -31,7 +31,6 @@ from .model import (
     Untyped,
     add_group,
     add_layer,
-    add_surface_layer,
     model_tolerance,
     object_attributes,
     object_id,
@@ -139,12 +138,12 @@ class _Mould(NamedTuple):
 
 def _add_moulds(model: RhinoModel, panels: Panels) -> dict[int, _Mould]:
     """Layers and groups of the moulds by label, under the layer of panels without, -1."""
-    root = add_surface_layer(model, "Panels", UNLABELLED)
+    root = add_layer(model, "Panels", UNLABELLED, has_material=True)
     moulds = {-1: _Mould(root, None)}
     count = int(panels.labels.max(initial=-1)) + 1
     for label in range(count):
         name, color = mould_name(label, count), mould_color(label, count)
-        place = add_surface_layer(model, name, color, root)
+        place = add_layer(model, name, color, root, has_material=True)
         moulds[label] = _Mould(place, add_group(model, name))
     return moulds
 

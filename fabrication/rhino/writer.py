@@ -22,7 +22,7 @@ from .beam_writer import add_beams
 from .mesh_writer import to_rhino_mesh
 from .model import (
     RhinoModel,
-    add_surface_layer,
+    add_layer,
     add_views,
     count_objects,
     encode_model,
@@ -180,6 +180,6 @@ def _add_reference(model: RhinoModel, mesh: Mesh) -> list[str]:
     except InputError as error:
         return [f"the reference is left out: {error}"]
     # It would flicker through the panels: it is there to be switched on.
-    place = add_surface_layer(model, "Reference", UNLABELLED, visible=False)
+    place = add_layer(model, "Reference", UNLABELLED, has_material=True, visible=False)
     model.file.Objects.AddMesh(rhino_mesh, object_attributes(model, "Reference", "mesh", place))
     return []

@@ -34,18 +34,8 @@ from ...kernel.arrays import FloatArray, dot, norm
 from ...kernel.beams.beams import Beams, scale_beams
 from ...kernel.beams.end_edges import CutEdges
 from ...kernel.spheres.arcs import circle_axes
+from . import opencascade_parts as occ
 from .beam_geometry import LEVELS, BeamGeometry, beam_geometry
-from .opencascade_parts import (
-    BUILDER,
-    arc_curves,
-    make_edge,
-    make_face,
-    make_solid,
-    make_spline,
-    make_vertex,
-    placement,
-    quintic_poles,
-)
 
 _SPAN = 0.05
 """Longest span, in radians, of a spline for an ellipse in the parameters of a cylinder."""
@@ -114,7 +104,7 @@ def beam_shapes(beams: Beams, scale: float = 1.0) -> list[TopoDS_Shape]:
         block = _block(solids, beam)
         faces = _plane_faces(solids, beam, block)
         faces += [_long_face(solids, beam, block, k) for k in (0, 1)]
-        shapes.append(make_solid(faces).Located(placement(place)))
+        shapes.append(occ.make_solid(faces).Located(occ.placement(place)))
     return shapes
 
 
@@ -138,7 +128,7 @@ def _sides(numbers: BeamGeometry, level: int) -> _Sides:
     for k, (arcs, circles) in enumerate(
         zip(numbers.arcs[level], numbers.circles[level], strict=True)
     ):
-        found, spans = arc_curves(arcs, circles)
+        found, spans = occ.arc_curves(arcs, circles)
         curves.append(found)
         lengths.append(spans)
         x, _ = circle_axes(arcs, circles)
@@ -181,7 +171,7 @@ def _cut_parameters(
         ]
     )
     flat = nodes.reshape(3, -1, count + 1, 2)
-    poles = quintic_poles(flat, lengths.reshape(-1) / count)
+    poles = occ.quintic_poles(flat, lengths.reshape(-1) / count)
     return angles, poles.reshape(*lengths.shape, -1, 2)
 
 
@@ -192,13 +182,13 @@ def _block(solids: _Solids, beam: int) -> _Block:
     points = solids.numbers.corners[beam].tolist()
     levels = [sorted({level for step in ends for level in step}) for ends in steps]
     vertices = {
-        (end, k, level): make_vertex(points[end][k][level], tolerance)
+        (end, k, level): occ.make_vertex(points[end][k][level], tolerance)
         for end in (0, 1)
         for k in (0, 1)
         for level in levels[end]
     }
     arcs = {
-        (k, level): make_edge(
+        (k, level): occ.make_edge(
             solids.sides[level].curves[k][beam], vertices[0, k, level], vertices[1, k, level],
             solids.sides[level].lengths[k][beam], tolerance,
         )
@@ -229,7 +219,7 @@ def _line(
 ) -> TopoDS_Edge:
     change = [b - a for a, b in zip(*points, strict=True)]
     curve = Geom_Line(gp_Pnt(*points[0]), gp_Dir(*change))
-    return make_edge(curve, *ends, math.hypot(*change), tolerance)
+    return occ.make_edge(curve, *ends, math.hypot(*change), tolerance)
 
 
 def _upright(
@@ -253,7 +243,7 @@ def _upright(
     radius = float(solids.numbers.radii[beam, k])
     curve = Geom_Ellipse(gp_Elips(axes, max(float(cuts.radii[spot]), radius), radius))
     length, first = float(cuts.lengths[spot]), float(cuts.firsts[spot])
-    return make_edge(curve, *ends, length, tolerance, first)
+    return occ.make_edge(curve, *ends, length, tolerance, first)
 
 
 def _plane_faces(solids: _Solids, beam: int, block: _Block) -> list[TopoDS_Shape]:
@@ -282,7 +272,7 @@ def _plane_faces(solids: _Solids, beam: int, block: _Block) -> list[TopoDS_Shape
                 (corners[end, 0, low], outward, down, ring if end else _backwards(ring))
             )
     return [
-        make_face(_plane(point, normal, along), ring, tolerance)
+        occ.make_face(_plane(point, normal, along), ring, tolerance)
         for point, normal, along, ring in rings
     ]
 
@@ -307,14 +297,14 @@ def _long_face(solids: _Solids, beam: int, block: _Block, k: int) -> TopoDS_Shap
         normal = -np.array(x) if k == 0 else np.array(x)
         point = solids.numbers.corners[beam, 0, k, 0]
         surface = _plane(point, normal, np.array(z))
-        return make_face(surface, outwards if k == 0 else _backwards(outwards), tolerance)
+        return occ.make_face(surface, outwards if k == 0 else _backwards(outwards), tolerance)
     axes = gp_Ax3(gp_Pnt(*solids.numbers.centers[beam, k].tolist()), gp_Dir(*z), gp_Dir(*x))
     surface = Geom_CylindricalSurface(axes, 1 / curvature)
     is_dome = bool(solids.numbers.is_dome[beam, k])
     ring = outwards if is_dome else _backwards(outwards)
-    face = make_face(surface, ring, tolerance)
+    face = occ.make_face(surface, ring, tolerance)
     for edge, curve in _parameter_curves(solids, beam, block, k):
-        BUILDER.UpdateEdge(edge, curve, face, tolerance)
+        occ.BUILDER.UpdateEdge(edge, curve, face, tolerance)
     return face if is_dome == (k == 0) else face.Reversed()
 
 
@@ -335,7 +325,7 @@ def _parameter_curves(
             edge = block.uprights[end, k, step]
             knots, poles = (values[beam, end, k] for values in solids.parameters[step])
             if not solids.numbers.cuts[step].is_line[beam, end, k]:
-                yield edge, make_spline(knots.tolist(), poles.tolist())
+                yield edge, occ.make_spline(knots.tolist(), poles.tolist())
                 continue
             relative = (
                 solids.numbers.corners[beam, end, k, list(step)]

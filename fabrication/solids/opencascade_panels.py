@@ -35,17 +35,7 @@ from ...kernel.arrays import FloatArray, IntArray, norm
 from ...kernel.panels.panels import Panels, inner_panel_arcs, panel_arcs
 from ...kernel.spheres.arcs import ArcCircles, Arcs, arc_circles, circle_axes
 from ...kernel.spheres.rows import center_radius
-from .opencascade_parts import (
-    BUILDER,
-    arc_curves,
-    make_edge,
-    make_face,
-    make_solid,
-    make_spline,
-    make_vertex,
-    placement,
-    quintic_poles,
-)
+from . import opencascade_parts as occ
 from .panel_geometry import CONFUSION, panel_tolerances, panels_in_place, surface_frames
 
 
@@ -95,13 +85,13 @@ def panel_shapes(panels: Panels, scale: float = 1.0) -> list[TopoDS_Shape]:
         walls = _walls(panels, outer, inner, tolerances)
         bounds = panels.offsets.tolist()
         shapes = [
-            make_solid([face, inner_face.Reversed(), *walls[first:last]])
+            occ.make_solid([face, inner_face.Reversed(), *walls[first:last]])
             for face, inner_face, first, last in zip(
                 outer.faces, inner.faces, bounds, bounds[1:], strict=False
             )
         ]
     places = panels.origins.tolist()
-    return [shape.Located(placement(x)) for shape, x in zip(shapes, places, strict=True)]
+    return [shape.Located(occ.placement(x)) for shape, x in zip(shapes, places, strict=True)]
 
 
 def _layer(panels: Panels, rows: FloatArray, arcs: Arcs, tolerances: FloatArray) -> _Layer:
@@ -110,14 +100,14 @@ def _layer(panels: Panels, rows: FloatArray, arcs: Arcs, tolerances: FloatArray)
     frames = surface_frames(rows, arcs, panels.offsets)
     circles = arc_circles(arcs)
     vertices = [
-        make_vertex(point, tolerance)
+        occ.make_vertex(point, tolerance)
         for point, tolerance in zip(arcs.starts.tolist(), corner_tolerances, strict=True)
     ]
     following: list[int] = panels.next_corners.tolist()
     ends = [vertices[corner] for corner in following]
-    curves, lengths = arc_curves(arcs, circles)
+    curves, lengths = occ.arc_curves(arcs, circles)
     edges = [
-        make_edge(*parts)
+        occ.make_edge(*parts)
         for parts in zip(curves, vertices, ends, lengths, corner_tolerances, strict=True)
     ]
     surfaces = _surfaces(rows, frames)
@@ -156,7 +146,7 @@ def _walls(
     corner_tolerances = tolerances[panels.corner_panels].tolist()
     rises = panels.corners - panels.inner_corners
     posts = [
-        make_edge(Geom_Line(gp_Pnt(*foot), gp_Dir(*rise)), bottom, top, height, tolerance)
+        occ.make_edge(Geom_Line(gp_Pnt(*foot), gp_Dir(*rise)), bottom, top, height, tolerance)
         for foot, rise, height, bottom, top, tolerance in zip(
             panels.inner_corners.tolist(), rises.tolist(), norm(rises).tolist(),
             inner.vertices, outer.vertices, corner_tolerances, strict=True,
@@ -172,7 +162,7 @@ def _walls(
     ):  # fmt: skip
         plane = Geom_Plane(gp_Ax3(gp_Pnt(*corner), gp_Dir(*normal), gp_Dir(*chord)))
         walls.append(
-            make_face(plane, (low, right, high.Reversed(), left.Reversed()), tolerance)
+            occ.make_face(plane, (low, right, high.Reversed(), left.Reversed()), tolerance)
         )
     return walls
 
@@ -187,10 +177,10 @@ def _patch(
 ) -> TopoDS_Shape:
     """Face along N; is_inward: N points to the centre, unlike the surface's own normal."""
     ring = [edge.Reversed() for edge in reversed(edges)] if is_inward else edges
-    face = make_face(surface, ring, tolerance)
+    face = occ.make_face(surface, ring, tolerance)
     for edge, curve in zip(edges, curves_2d, strict=True):
         if curve is not None:
-            BUILDER.UpdateEdge(edge, curve, face, tolerance)
+            occ.BUILDER.UpdateEdge(edge, curve, face, tolerance)
     return face.Reversed() if is_inward else face
 
 
@@ -217,11 +207,11 @@ def _parameter_curves(
     for count in np.unique(spans).tolist():
         ids = np.flatnonzero(spans == count)
         angles = sweeps[ids, None] * np.linspace(0, 1, count + 1)
-        poles = quintic_poles(_sphere_parameters(motion[ids], angles), sweeps[ids] / count)
+        poles = occ.quintic_poles(_sphere_parameters(motion[ids], angles), sweeps[ids] / count)
         for i, knots, points in zip(
             curved[ids].tolist(), angles.tolist(), poles.tolist(), strict=True
         ):
-            result[i] = make_spline(knots, points)
+            result[i] = occ.make_spline(knots, points)
     return result
 
 

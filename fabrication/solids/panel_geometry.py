@@ -135,7 +135,7 @@ def check_finite(kind: str, ids: Sequence[str], is_finite: BoolArray) -> None:
     InputError
         If a part is not finite.
     """
-    broken = [ids[i] for i in np.flatnonzero(~is_finite)]
+    broken = [ids[i] for i in np.flatnonzero(~is_finite).tolist()]
     if broken:
         raise InputError(f"{kind} {broken[0]} ({len(broken)} in all) is not finite")
 

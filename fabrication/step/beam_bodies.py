@@ -151,9 +151,9 @@ class _Batch:
     def _ends(self) -> list[FaceBatch]:
         faces: list[FaceBatch] = []
         for end in (0, 1):
-            down = self.geometry.beams.annuli.end_directions[self.ids, end]
+            down: FloatArray = self.geometry.beams.annuli.end_directions[self.ids, end]
             for low, high in self.steps[end]:
-                rise = self.points[:, end, 0, high] - self.points[:, end, 0, low]
+                rise: FloatArray = self.points[:, end, 0, high] - self.points[:, end, 0, low]
                 normals = (1.0 if end else -1.0) * unit(np.cross(rise, down))
                 ring: Ring = (
                     (self.uprights[end, 0, (low, high)], True), (self.lines[end, high], True),

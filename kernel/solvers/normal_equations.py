@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray, dot
+from ..tolerances import STEP_MODEL
 from .blocks import (
     JacobianPattern,
     Layout,
@@ -87,7 +88,9 @@ def linearization(
     )
 
 
-def damped_step(problem: Linearization, damping: float) -> DampedStep:
+def damped_step(
+    problem: Linearization, damping: float, share: float = STEP_MODEL
+) -> DampedStep:
     """
     Step that minimises ``|r + J x|² + μ σ |x|²``.
 
@@ -96,6 +99,8 @@ def damped_step(problem: Linearization, damping: float) -> DampedStep:
     problem : Linearization
     damping : float
         μ; the scale σ is the mean of the diagonal of ``JᵀJ``.
+    share : float
+        Gain of the model that a step may leave out, as in `truncated_step`.
 
     Returns
     -------
@@ -115,6 +120,7 @@ def damped_step(problem: Linearization, damping: float) -> DampedStep:
         lambda vector: inverse @ vector,
         right,
         int(min(MAX_PRODUCTS, budget)),
+        share,
     )
     if not is_settled and len(right) <= MAX_FACTORIZED:
         step = solve_definite(jacobian.T @ jacobian, shift, right)
