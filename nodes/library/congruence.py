@@ -95,12 +95,18 @@ def sphere_congruence(
     (V, 5) float array
         Rows (A, Bx, By, Bz, C), planes included. The curvatures are estimates: where 48 faces
         make a full turn they are off by about 2 %, with 96 by a quarter of that.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import sphere_congruence, torus_mesh
+    >>> sphere_congruence(torus_mesh(12, 6), "principal").shape
+    (72, 5)
     """
     spheres, is_fitted = congruence.sphere_congruence(mesh, kind, offset, which)
     if not is_fitted.all():
         warn(
-            f"{_share(~is_fitted)} of the vertices have too few neighbours to tell the "
-            "curvature and get their tangent plane: refine the mesh there"
+            f"{_share(~is_fitted)} of the vertices have too few neighbours to estimate the "
+            "curvature, and get their tangent plane: refine the mesh there"
         )
     return spheres
 
@@ -129,6 +135,14 @@ def envelope(
         infinite where one is at infinity, as for planes.
     is_real : (F,) bool array
         Whether the spheres of the face meet in two real points.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import envelope, tangent_spheres, torus_mesh, triangulate
+    >>> mesh = triangulate(torus_mesh(24, 12))
+    >>> found = envelope(mesh, tangent_spheres(mesh, 0.9))
+    >>> found.points_plus.shape, bool(found.is_real.all())
+    ((576, 3), True)
     """
     result = discrete_envelopes.envelope(mesh, spheres, order)
     if not result.is_real.all():

@@ -35,6 +35,14 @@ def inversion(center: Vector, radius: Annotated[float, Port(min=0)] = 1.0) -> Tr
     -------
     (5, 5) float array
         The transform, for `apply_mobius` and `compose`.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import apply_mobius, inversion
+    >>> apply_mobius([[2.0, 0.0, 0.0]], inversion([0.0, 0.0, 0.0], radius=2.0))
+    array([[2., 0., 0.]])
+    >>> apply_mobius([[4.0, 0.0, 0.0]], inversion([0.0, 0.0, 0.0], radius=2.0))
+    array([[1., 0., 0.]])
     """
     return mobius_group.inversion(center, radius)
 
@@ -62,6 +70,12 @@ def similarity(
     -------
     (5, 5) float array
         The transform, for `apply_mobius` and `compose`.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import apply_mobius, similarity
+    >>> apply_mobius([[1.0, 0.0, 0.0]], similarity(2.0, rotation=[0.0, 0.0, 90.0])).round(9)
+    array([[0., 2., 0.]])
     """
     if rotation is not None and np.shape(rotation) == (3,):
         rotation = mobius_group.rotation_about(np.radians(rotation))
@@ -152,6 +166,13 @@ def compose(transforms: list[Transform]) -> Transform:
     -------
     (5, 5) float array
         The transform.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import apply_mobius, compose, similarity
+    >>> twice = compose([similarity(scale=2.0), similarity(translation=[1.0, 0.0, 0.0])])
+    >>> apply_mobius([[1.0, 0.0, 0.0]], twice)
+    array([[3., 0., 0.]])
     """
     return mobius_group.compose(transforms)
 
@@ -167,13 +188,18 @@ def apply_mobius(geometry: Geometry, transform: Transform) -> Geometry:
         A sphere mesh, a mesh (its vertices are carried along), circles, arcs, points or rows of
         spheres.
     transform : (5, 5) float array
-        The transform.
 
     Returns
     -------
     SphereMesh, Mesh, Circles, Arcs, (N, 3) or (N, 5) float array
         The same kind, elements in the same order. Where the transform turns right into left,
         as every inversion does, faces run the other way round: outside stays outside.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import apply_mobius, inversion
+    >>> apply_mobius([[2.0, 0.0, 0.0]], inversion([0.0, 0.0, 0.0]))
+    array([[0.5, 0. , 0. ]])
     """
     if isinstance(geometry, SphereMesh):
         return map_sphere_mesh(geometry, transform)

@@ -32,12 +32,18 @@ def face_planes(mesh: Mesh) -> SphereMesh:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------
     SphereMesh
         Planes through the centroids of the faces.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import face_planes, intersection_angles, vase_mesh
+    >>> angles = intersection_angles(face_planes(vase_mesh(12, 6)))
+    >>> float(angles.mean().round(1))
+    24.9
     """
     return fit.face_planes(mesh)
 
@@ -50,7 +56,6 @@ def fit_spheres(mesh: Mesh, ring: Annotated[int, Port(min=0, max=10)] = 1) -> Sp
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     ring : int
         How many rings of faces around each face take part.
 
@@ -58,6 +63,13 @@ def fit_spheres(mesh: Mesh, ring: Annotated[int, Port(min=0, max=10)] = 1) -> Sp
     -------
     SphereMesh
         On circular faces spheres through the circle, else the best of all (Pratt's norm).
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import fit_spheres, vase_mesh, vertex_error
+    >>> sphere_mesh = fit_spheres(vase_mesh(12, 6))
+    >>> sphere_mesh.spheres.shape, bool((vertex_error(sphere_mesh) < 1e-12).all())
+    ((72, 5), True)
     """
     return fit.fit_spheres(mesh, ring)
 
@@ -76,6 +88,13 @@ def central_spheres(mesh: Mesh) -> SphereMesh:
     -------
     SphereMesh
         Discrete central spheres: a Möbius map of the mesh maps them along.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import central_spheres, intersection_angles, vase_mesh
+    >>> angles = intersection_angles(central_spheres(vase_mesh(12, 6)))
+    >>> float(angles.mean().round(1))
+    15.5
     """
     return central.central_spheres(mesh)
 
@@ -94,6 +113,13 @@ def smoothed_spheres(mesh: Mesh) -> SphereMesh:
     -------
     SphereMesh
         Spheres somewhat flatter than the central ones.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import intersection_angles, smoothed_spheres, vase_mesh
+    >>> angles = intersection_angles(smoothed_spheres(vase_mesh(12, 6)))
+    >>> float(angles.mean().round(1))
+    18.3
     """
     return smoothing.smoothed_spheres(mesh)
 
@@ -115,6 +141,13 @@ def principal_spheres(mesh: Mesh) -> PrincipalSpheres:
         along every strip of quads.
     second : SphereMesh
         Those across the other two sides.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import intersection_angles, principal_spheres, vase_mesh
+    >>> first, second = principal_spheres(vase_mesh(12, 6))
+    >>> [float(intersection_angles(kind).mean().round(1)) for kind in (first, second)]
+    [16.8, 14.6]
     """
     return PrincipalSpheres(*central.principal_spheres(mesh))
 
