@@ -8,7 +8,7 @@ import numpy as np
 from .arrays import BoolArray, FloatArray, IntArray
 from .errors import InputError
 from .meshes.mesh import Mesh, face_centroids
-from .optimization.pencil import pencil_angles
+from .optimization.angle_minimization import pencil_angles
 from .panels.cutting import edge_arcs
 from .sphere_meshes.fit import face_planes, fit_spheres
 from .sphere_meshes.sphere_mesh import SphereMesh, intersection_angles

@@ -73,6 +73,8 @@ LINEAR_SOLVE: Final = 1e-6
 """Relative residual to which the linear system of a Newton step is solved."""
 STEP_MODEL: Final = 0.01
 """A Gauss-Newton step is solved until its model would gain no more than this share."""
+RESTING_MODEL: Final = 1e-3
+"""The same in a flat valley, where what is left of a step would decide where a descent ends."""
 ROUNDED_DIRECTION: Final = 1e-28
 """A squared gradient below this share of the first is rounding."""
 
@@ -84,8 +86,6 @@ AT_BOUND: Final = 1e-9
 """Vertices this close to the bound of their displacement, relative to it, lie on it."""
 ENERGY_CHANGE: Final = 1e-6
 """A descent has converged when a step lowers the energy by less than this share."""
-RESTING_CHANGE: Final = 1e-9
-"""A descent in a flat valley is at rest when a step lowers the energy by less than this."""
 STAGE_CHANGE: Final = 1e-4
 """A descent that others follow may end at this relative change of the energy."""
 LEAST_ENERGY: Final = 1e-16

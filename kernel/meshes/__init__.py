@@ -8,6 +8,7 @@ curvature       Normals and principal curvatures at the vertices of a mesh.
 triangulation   Cutting polygons into triangles along short diagonals.
 subdivision     Finer meshes, by midpoints or smooth in the limit.
 remeshing       Isotropic remeshing of triangle meshes.
+surface_lines   Boundary and creases of a surface as curves, which edits keep to.
 triangle_edges  Triangles that are being edited, their edges and shapes.
 surface_lines   Boundary and creases of a surface as curves by arc length.
 triangle_edits  Splits, collapses and flips of edges, many at a time.

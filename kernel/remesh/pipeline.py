@@ -13,8 +13,8 @@ from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.minkowski import minkowski
 from ..spheres.rows import recenter, rescale
 from .field.congruence_mesh import CongruenceMesh, congruence_mesh
-from .field.conjugate import conjugate_field, form_roots
-from .field.directions import axis_angles, umbilic_share
+from .field.conjugate_directions import expected_axis_angles, umbilic_share
+from .field.conjugate_form import conjugate_field, form_roots
 from .field.frames import comb_frames
 from .field.jets import fit_jets
 from .field.smooth_surface import SmoothSurface, nearest_triangles
@@ -180,7 +180,7 @@ def remesh(
         n_slivers=built.n_slivers,
         n_digons=built.n_digons,
         n_covered=max(_boundary_count(mesh) - _boundary_count(built.mesh), 0),
-        axis_angles=axis_angles(surface, jets),
+        axis_angles=expected_axis_angles(surface, jets),
         curvatures=2 * surface.rows[:, 0] / surface.size,
         degree=fitted,
         surface=SmoothSurface(surface, heights),

@@ -42,7 +42,6 @@ def factorize_symmetric(matrix: SparseArray) -> Solver:
     Parameters
     ----------
     matrix : (n, n) sparse array
-        The matrix.
 
     Returns
     -------

@@ -5,13 +5,13 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from ...fabrication.mesh_files import reader, writer
-from ...kernel.arrays import FloatArray
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.surfaces import circular_nets as surfaces
 from ...kernel.surfaces import triangulated
 from ..graphs.node import node
 from ..graphs.ports import Port, ReadPath, WritePath
+from .arrays import VertexNormals
 
 Count = Annotated[int, Port(min=1, max=2000)]
 Length = Annotated[float, Port(min=0)]
@@ -21,7 +21,7 @@ class SampledSurface(NamedTuple):
     """A triangle mesh on a smooth surface, and the normals of that surface."""
 
     mesh: Mesh
-    normals: FloatArray
+    normals: VertexNormals
 
 
 @node

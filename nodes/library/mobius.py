@@ -4,7 +4,6 @@ from typing import Annotated, TypeVar
 
 import numpy as np
 
-from ...kernel.arrays import FloatArray
 from ...kernel.errors import InputError, name_ids
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.sphere_meshes.mobius import map_mesh, map_sphere_mesh
@@ -13,12 +12,13 @@ from ...kernel.spheres import mobius_group
 from ...kernel.spheres.mobius_images import map_points, map_spheres
 from ..graphs.node import node
 from ..graphs.ports import Port
+from .arrays import Matrix, Points, Spheres, Transform, Vector
 
-Geometry = TypeVar("Geometry", SphereMesh, Mesh, FloatArray)
+Geometry = TypeVar("Geometry", SphereMesh, Mesh, Points | Spheres)
 
 
 @node
-def inversion(center: FloatArray, radius: Annotated[float, Port(min=0)] = 1.0) -> FloatArray:
+def inversion(center: Vector, radius: Annotated[float, Port(min=0)] = 1.0) -> Transform:
     """
     Inversion in a sphere: turns the model inside out about a point.
 
@@ -40,9 +40,9 @@ def inversion(center: FloatArray, radius: Annotated[float, Port(min=0)] = 1.0) -
 @node
 def similarity(
     scale: Annotated[float, Port(min=0)] = 1.0,
-    rotation: FloatArray | None = None,
-    translation: FloatArray | None = None,
-) -> FloatArray:
+    rotation: Vector | Matrix | None = None,
+    translation: Vector | None = None,
+) -> Transform:
     """
     Scaling, then rotation, both about the origin, then translation.
 
@@ -67,7 +67,7 @@ def similarity(
 
 
 @node
-def compose(transforms: list[FloatArray]) -> FloatArray:
+def compose(transforms: list[Transform]) -> Transform:
     """
     One transform that does what several do one after another.
 
@@ -85,7 +85,7 @@ def compose(transforms: list[FloatArray]) -> FloatArray:
 
 
 @node
-def apply_mobius(geometry: Geometry, transform: FloatArray) -> Geometry:
+def apply_mobius(geometry: Geometry, transform: Transform) -> Geometry:
     """
     Carry geometry through a transform; the angles between spheres stay as they are.
 

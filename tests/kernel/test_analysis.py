@@ -12,7 +12,7 @@ from spheremesh.kernel.analysis import (
 from spheremesh.kernel.arrays import norm
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import face_normals, mean_edge_length
-from spheremesh.kernel.optimization.pencil import minimize_angles, pencil_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles, pencil_angles
 from spheremesh.kernel.panels.cutting import edge_arcs, edge_gaps
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.sphere_meshes.planarity_circularity import circularity, planarity

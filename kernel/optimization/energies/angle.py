@@ -16,7 +16,6 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
 
     Returns
     -------
@@ -36,7 +35,6 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
     setting : Setting
         What stays fixed; edge weights w and target angle α.
     unknowns : Unknowns
-        Spheres.
 
     Returns
     -------
@@ -60,9 +58,7 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     unknowns : Unknowns
-        Spheres.
 
     Returns
     -------

@@ -8,7 +8,7 @@ from ...arrays import BoolArray, ComplexArray, FloatArray, IntArray, dot, norm, 
 from ...meshes.topology import Topology, previous_corners
 from ...meshes.vertex_fans import VertexFans
 from .congruence_mesh import CongruenceMesh
-from .conjugate import form_roots
+from .conjugate_form import form_roots
 from .smoothing import transport
 
 
@@ -49,7 +49,6 @@ def fan_signs(fans: VertexFans, signs: FloatArray) -> FloatArray:
     Parameters
     ----------
     fans : VertexFans
-        The order of the corners.
     signs : (H,) float array
         1 or -1 for every corner.
 
@@ -78,9 +77,7 @@ def comb_frames(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     fans : VertexFans
-        Corners around its vertices.
     trace : (V,) float array
         Means of the forms.
     deviator : (V,) complex array

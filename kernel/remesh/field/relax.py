@@ -88,7 +88,6 @@ def relax_congruence(
     Parameters
     ----------
     mesh : Mesh
-        Triangles.
     spheres : (V, 5) array_like of float
         Real rows of the spheres at the vertices, planes included, near the surface there.
     complex_share : callable
@@ -174,7 +173,6 @@ def axis_angle(mesh: Mesh, spheres: FloatArray) -> float:
     Parameters
     ----------
     mesh : Mesh
-        Triangles.
     spheres : (V, 5) float array
         Rows of the spheres at the vertices.
 

@@ -56,9 +56,7 @@ def next_on_boundary(surface: CongruenceMesh, fans: VertexFans) -> IntArray:
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     fans : Fans
-        Corners around its vertices.
 
     Returns
     -------
@@ -77,7 +75,6 @@ def boundary_corners(surface: CongruenceMesh, following: IntArray) -> BoolArray:
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     following : (H,) int array
         The next half-edge along the boundary, or -1.
 
@@ -109,13 +106,9 @@ def align_boundary(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     fans : Fans
-        Corners around its vertices.
     frames : CombedFrames
-        The directions.
     seams : Seams
-        How the faces are tied.
     edge_length : float
         Length of a unit step, in mean edges.
 

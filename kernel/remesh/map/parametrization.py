@@ -19,7 +19,7 @@ from ..field.frames import CombedFrames
 from .boundary_alignment import Alignment, align_boundary, no_alignment
 from .coordinate import Coordinate, eliminate, solve_coordinate
 from .injectivity import ChartGradients, untangle
-from .integers import ContradictionError, IntegerSolutions, integer_solutions
+from .integer_rounding import ContradictionError, IntegerSolutions, integer_solutions
 from .seams import Seams
 from .separation import singular_differences
 
@@ -66,13 +66,9 @@ def parametrize(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     fans : Fans
-        Corners around its vertices.
     frames : CombedFrames
-        The directions.
     seams : Seams
-        How the faces are tied.
     edge_length : float
         Length of a unit step, in mean edges.
 
@@ -139,9 +135,7 @@ def chart_gradients(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     frames : CombedFrames
-        The directions.
     edge_length : float
         Length of a unit step, in mean edges.
 

@@ -56,9 +56,7 @@ def find_seams(surface: CongruenceMesh, fans: VertexFans, frames: CombedFrames) 
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     fans : Fans
-        Corners around its vertices.
     frames : CombedFrames
         Signs across edges, seams and singular vertices.
 

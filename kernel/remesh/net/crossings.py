@@ -95,9 +95,7 @@ def corner_coordinates(
     Parameters
     ----------
     fans : Fans
-        Corners around the vertices.
     charts : ChartGradients
-        The map.
     values : (V, 2) float array
         Coordinates of the vertices.
 
@@ -122,7 +120,6 @@ def edge_crossings(surface: CongruenceMesh, corners: FloatArray) -> EdgeCrossing
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     corners : (H, 2) float array
         Coordinates of the corners, none on a line.
 
@@ -163,13 +160,11 @@ def face_segments(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     corners : (H, 2) float array
         Coordinates of the corners, none on a line.
     signs : (H,) float array
         Sign between the charts on both sides of each half-edge.
     crossings : EdgeCrossings
-        The crossings.
 
     Returns
     -------

@@ -69,13 +69,10 @@ def extract_net(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     fans : Fans
-        Corners around its vertices.
     frames : CombedFrames
         Signs between the charts of neighbouring faces.
     mapped : Parametrization
-        The map.
 
     Returns
     -------

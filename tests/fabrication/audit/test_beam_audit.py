@@ -14,7 +14,7 @@ from spheremesh.kernel.beams.beams import Beams, scale_beams
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.beams.drilling import drill_beams
 from spheremesh.kernel.beams.facts import beam_facts
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.parts.findings import Finding, findings_report
 from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres

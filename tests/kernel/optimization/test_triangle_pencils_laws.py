@@ -7,7 +7,7 @@ import pytest
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, unit
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.sphere_meshes.mobius import map_sphere_mesh
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles, vertex_error

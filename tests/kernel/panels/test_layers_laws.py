@@ -7,7 +7,7 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels, thickness_report
 from spheremesh.kernel.panels.layers import Layer, Side, panel_layers
 from spheremesh.kernel.panels.panels import (

@@ -14,8 +14,8 @@ from spheremesh.kernel.meshes.mesh import (
     local_corners,
     mean_edge_length,
 )
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.optimization.clustering import cluster_radii
-from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.panels.cutting import (
     EdgeMode,
     cut_panels,

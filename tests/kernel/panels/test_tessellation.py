@@ -4,7 +4,7 @@ import pytest
 from spheremesh.kernel.arrays import dot, norm, sum_by
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import Mesh
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.panels import Panels, panel_areas, panel_volumes
 from spheremesh.kernel.panels.tessellation import (

@@ -17,12 +17,12 @@ from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import face_centroids, face_normals, mean_edge_length
 from spheremesh.kernel.meshes.vertex_fans import VertexFans, vertex_fans
 from spheremesh.kernel.remesh.field.congruence_mesh import CongruenceMesh, congruence_mesh
-from spheremesh.kernel.remesh.field.conjugate import conjugate_field
+from spheremesh.kernel.remesh.field.conjugate_form import conjugate_field
 from spheremesh.kernel.remesh.field.frames import CombedFrames, comb_frames
 from spheremesh.kernel.remesh.field.jets import fit_jets
 from spheremesh.kernel.remesh.field.smoothing import smooth_forms
 from spheremesh.kernel.remesh.map.injectivity import distortion
-from spheremesh.kernel.remesh.map.integers import (
+from spheremesh.kernel.remesh.map.integer_rounding import (
     ContradictionError,
     Quadratic,
     integer_solutions,

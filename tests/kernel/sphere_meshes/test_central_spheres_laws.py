@@ -11,7 +11,7 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, IntArray, dot, norm
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import face_centroids, face_normals, mean_edge_length
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.panels.cutting import edge_gaps
 from spheremesh.kernel.sphere_meshes.central_spheres import (
     bisectors,

@@ -11,7 +11,7 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, IntArray, dot, norm, unit
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import face_normals, local_corners, mean_edge_length
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.sphere_meshes.mobius import map_sphere_mesh

@@ -12,7 +12,7 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, IntArray, dot, norm
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.spheres.arcs import arc_points

@@ -12,7 +12,7 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, IntArray, dot, norm, unit
 from spheremesh.kernel.congruences.discrete_envelopes import mirror_points
 from spheremesh.kernel.meshes.mesh import face_centroids, mean_edge_length
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres

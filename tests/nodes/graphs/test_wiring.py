@@ -2,7 +2,8 @@
 
 import os
 import typing
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, TypeVar, TypeVarTuple
 
@@ -12,7 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 import spheremesh as sm
 from spheremesh.nodes import GraphError, Port, node
-from spheremesh.nodes.graphs.ports import accepts, convert, fits, type_name
+from spheremesh.nodes.graphs.annotations import ArrayFacts, type_name
+from spheremesh.nodes.graphs.kinds import accepts, convert, fits
 
 
 class Shape:
@@ -25,6 +27,30 @@ class Shape:
 
 class Round(Shape):
     """A kind of shape."""
+
+
+@dataclass(frozen=True)
+class Report(Mapping[str, Any]):
+    """A record that reads like a dictionary."""
+
+    count: int
+
+    def __getitem__(self, key: str) -> Any:  # noqa: ANN401
+        return getattr(self, key)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(("count",))
+
+    def __len__(self) -> int:
+        return 1
+
+
+class CutReport(Report):
+    """Of a cut."""
+
+
+class AngleReport(Report):
+    """Of angles."""
 
 
 class Fit(NamedTuple):
@@ -219,6 +245,13 @@ def test_paths_and_lists_take_the_form_that_the_function_expects() -> None:
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Texts = NDArray[np.str_]
+Weights = Annotated[Floats, ArrayFacts("weights of edges", ("E",)), Port(unit="deg")]
+Labels = Annotated[Ints, ArrayFacts("labels of faces", ("F",))]
+Spheres = Annotated[Floats, ArrayFacts("spheres of vertices", ("V", 5))]
+Rows = Annotated[Floats, ArrayFacts("rows", ("N", 5))]
+Transform = Annotated[Floats, ArrayFacts("transform", (5, 5))]
+Either = TypeVar("Either", Shape, Spheres)
 
 FIT = [
     (int, float),
@@ -246,6 +279,22 @@ FIT = [
     (float | None, float),
     (Annotated[int, Port(min=1)], float),
     (Callable[[int], int], Callable[[int], int]),
+    (CutReport, CutReport | None),
+    (CutReport, Report),
+    (CutReport, CutReport | AngleReport),
+    (CutReport, Mapping[str, Any]),
+    (Texts, NDArray[Any]),
+    (Weights, Weights | None),
+    (Weights, Floats),
+    (Floats, Weights),
+    (list[float], Weights),
+    (Ints, Weights),
+    (Spheres, Rows),
+    (Rows, Spheres),
+    (Spheres, float | Spheres),
+    (list[Transform], list[Transform]),
+    (Spheres, Either),
+    (Either, Spheres),
 ]
 MISFIT = [
     (float, int),
@@ -265,6 +314,22 @@ MISFIT = [
     (Sequence[int], Mapping[str, int]),
     (Mapping[str, Any], Shape),
     (Literal["c"], Literal["a", "b"]),
+    (CutReport, AngleReport | None),
+    (Report, CutReport),
+    (Mapping[str, Any], CutReport),
+    (CutReport, Floats),
+    (list[CutReport], list[AngleReport]),
+    (float, Floats),
+    (Texts, Floats),
+    (Floats, Texts),
+    (Spheres, Weights),
+    (Weights, Spheres | None),
+    (Weights, Labels),
+    (Transform, Spheres),
+    (Transform, Rows),
+    (Rows, Weights),
+    (list[Spheres], list[Transform]),
+    (Weights, Either),
 ]
 
 
@@ -286,6 +351,9 @@ def test_types_that_do_not_fit(source: Any, target: Any) -> None:  # noqa: ANN40
         (bool, [True, np.bool_(0)], [1, 0.0, "True"]),
         (str, ["a", Path("a")], [1, b"a"]),
         (Floats, [np.zeros(2), [1, 2], [[1.5], (2,)]], [1.0, "abc", ["a"], [None], {}]),
+        (Weights | None, [None, [1, 2], [], np.ones(3)], [1.0, [[1]], np.ones((3, 1)), "a"]),
+        (Spheres, [np.ones((2, 5)), [[1, 2, 3, 4, 5]]], [np.ones(5), [[1, 2], [3]], [[1]]]),
+        (list[Transform], [[], [np.eye(5)]], [np.eye(5), [np.eye(4)]]),
         (ArrayLike, [np.zeros(2), [1, 2], 1.5], [None, {1}, object()]),
         (Sequence[int], [[1], (1, 2), np.arange(2)], ["ab", [1.5], 3]),
         (Literal[1, "a"], [1, "a"], [True, 2, "b"]),
@@ -326,4 +394,8 @@ def test_type_statements_are_what_they_stand_for() -> None:
     assert fits(floats, floats | None)
     assert not fits(Shape, floats)
     assert not fits(floats, length)
-    assert convert(Port(type=floats | None), [1, 2]).dtype == np.float64
+    assert convert(floats | None, [1, 2]).dtype == np.float64
+    weights = Annotated[floats, ArrayFacts("weights of edges", ("E",))]
+    assert type_name(weights) == "weights of edges (E,)"
+    assert fits(weights, Weights)
+    assert not fits(Spheres, weights)

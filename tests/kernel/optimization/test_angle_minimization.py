@@ -11,7 +11,7 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, IntArray
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import face_centroids, mean_edge_length
-from spheremesh.kernel.optimization.pencil import (
+from spheremesh.kernel.optimization.angle_minimization import (
     PencilCoupling,
     angle_density,
     couple_pencils,

@@ -142,7 +142,6 @@ def form_roots(
     trace : (...) float array
         Means of the forms.
     deviator : (...) complex array
-        Deviators.
     least_angle : float
         Roots that meet at less, or are complex, are moved apart to this angle (radians).
 

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
 from spheremesh.kernel.meshes.mesh import local_corners
-from spheremesh.kernel.optimization.pencil import minimize_angles
-from spheremesh.kernel.remesh.planar.turned_neighbors import turn_apart
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
+from spheremesh.kernel.remesh.planar.landing import turn_apart
 from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles
 from spheremesh.kernel.spheres.incidence import evaluate

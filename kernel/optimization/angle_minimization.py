@@ -26,7 +26,7 @@ from ..spheres.circles import Circles, circle_pencils, face_circles, pencil_sphe
 from ..spheres.minkowski import minkowski
 from ..tolerances import ANGLE_STEP, DAMPING, ENERGY_ROUNDING
 
-_MAX_ITERATIONS = 1000
+MAX_NEWTON_STEPS = 1000
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,6 @@ def couple_pencils(mesh: Mesh, circles: Circles, weights: FloatArray) -> PencilC
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     circles : Circles
         Circle of each face, in the coordinates local to the face.
     weights : (E,) float array
@@ -278,7 +277,6 @@ def pencil_angles(sphere_mesh: SphereMesh, circles: Circles) -> FloatArray:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        Spheres.
     circles : Circles
         Circle of each face, local to the face.
 
@@ -301,7 +299,6 @@ def check_angle_options(
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     target : float
         Target angle, in radians.
     edge_weights : (E,) array_like of float, optional
@@ -351,7 +348,7 @@ def _minimize(coupling: PencilCoupling, density: EdgeEnergy, start: FloatArray) 
     pattern = symmetric_pattern(coupling.faces, len(start))
     energies = [_energy(coupling, density, start)]
     angles, damping, largest, converged = start, DAMPING, np.inf, False
-    while not converged and len(energies) <= _MAX_ITERATIONS and damping < 1 / DAMPING:
+    while not converged and len(energies) <= MAX_NEWTON_STEPS and damping < 1 / DAMPING:
         gradient, diagonal, mixed = _derivatives(coupling, density, angles)
         accepted = False
         while not accepted and damping < 1 / DAMPING:

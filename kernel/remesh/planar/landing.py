@@ -1,5 +1,5 @@
 """
-Neighbours on all but the same sphere, turned apart so that a beam knows its plane.
+Landing: nodes that are nearly planar, as those of an optimised support, made so in place.
 
 The plane of the circle of two spheres is as exact as they are, divided by their angle. Nodes
 cannot be made free of torsion through neighbours that meet at a millionth: to turn the plane
@@ -10,12 +10,58 @@ sees, they tell their plane, and the others follow.
 import numpy as np
 
 from ...arrays import BoolArray, FloatArray, IntArray, dot, sum_by, unit
-from ...meshes.mesh import Mesh, local_corners
-from ...sphere_meshes.sphere_mesh import SphereMesh, intersection_angles
+from ...meshes.mesh import Mesh, local_corners, mean_edge_length
+from ...sphere_meshes.sphere_mesh import SphereMesh, intersection_angles, vertex_error
 from ...spheres.minkowski import minkowski
 from ...spheres.rows import recenter
-from ...support.node_axes import arc_planes
-from ...tolerances import ALIKE_NEIGHBORS, PARALLEL_PLANES
+from ...support.node_axes import arc_planes, support_structure
+from ...tolerances import (
+    ALIKE_NEIGHBORS,
+    NODE_LANDED,
+    NODE_ON_SPHERES,
+    NODE_ROUNDED,
+    PARALLEL_PLANES,
+)
+from .conditions import must_be_planar
+from .planarize import Planarization, is_kept, planarize
+
+
+def planarize_near(sphere_mesh: SphereMesh, farthest: float) -> tuple[Planarization, bool]:
+    """
+    Make nodes planar if that moves them by little.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        A mesh whose nodes are nearly planar, as an optimised support structure.
+    farthest : float
+        How far nodes may move, in mean edges.
+
+    Returns
+    -------
+    result : Planarization
+        The planarised mesh.
+    is_near : bool
+        Whether its beams meet, none of its nodes moved farther, and it stayed a net.
+
+    Notes
+    -----
+    Where neighbours meet nearly smoothly, the plane of their circle is far less exact than they
+    are. So the descent goes on to rounding, as near as it gets; and neighbours that are all but
+    one sphere are turned apart before (`turn_apart`). Spheres so large that they are built as
+    planes can share points far off, and their beams share nothing: beams are the judge.
+    """
+    result = planarize(turn_apart(sphere_mesh), exact=NODE_ROUNDED)
+    found = result.sphere_mesh
+    gap = vertex_error(found).max() / mean_edge_length(found.mesh)
+    torsion = support_structure(found).torsion[must_be_planar(found.mesh)]
+    is_near = (
+        torsion.max(initial=0.0) <= NODE_LANDED
+        and gap <= NODE_ON_SPHERES
+        and result.shifts.max(initial=0.0) <= farthest
+        and is_kept(sphere_mesh.mesh, found.mesh)
+    )
+    return result, bool(is_near)
 
 
 def turn_apart(sphere_mesh: SphereMesh) -> SphereMesh:
@@ -25,7 +71,6 @@ def turn_apart(sphere_mesh: SphereMesh) -> SphereMesh:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
 
     Returns
     -------

@@ -10,9 +10,9 @@ from ...meshes.mesh import Mesh
 from ...meshes.vertex_fans import vertex_fans
 from ...tolerances import UMBILIC
 from .congruence_mesh import CongruenceMesh, congruence_mesh
-from .conjugate import UndeterminedError, anisotropy, conjugate_field, form_roots
+from .conjugate_form import UndeterminedError, anisotropy, conjugate_field, form_roots
 from .frames import comb_frames
-from .jets import CongruenceJets, fit_jets, node_axes
+from .jets import CongruenceJets, expected_node_axes, fit_jets
 from .smoothing import orient_forms
 
 
@@ -107,8 +107,8 @@ def conjugate_directions(
     singular = np.flatnonzero(indices)
     return ConjugateDirections(
         directions, is_real, float(areas[~is_real].sum() / areas.sum()),
-        umbilic_share(surface, jets), singular, indices[singular], axis_angles(surface, jets),
-        2 * surface.rows[:, 0] / surface.size, fitted,
+        umbilic_share(surface, jets), singular, indices[singular],
+        expected_axis_angles(surface, jets), 2 * surface.rows[:, 0] / surface.size, fitted,
     )  # fmt: skip
 
 
@@ -146,9 +146,7 @@ def umbilic_share(surface: CongruenceMesh, jets: CongruenceJets) -> float:
     Parameters
     ----------
     surface : CongruenceMesh
-        The congruence.
     jets : CongruenceJets
-        Its derivatives.
 
     Returns
     -------
@@ -159,22 +157,20 @@ def umbilic_share(surface: CongruenceMesh, jets: CongruenceJets) -> float:
     return float(areas[anisotropy(jets) < UMBILIC].sum() / areas.sum())
 
 
-def axis_angles(surface: CongruenceMesh, jets: CongruenceJets) -> FloatArray:
+def expected_axis_angles(surface: CongruenceMesh, jets: CongruenceJets) -> FloatArray:
     """
     Angles between the normals of a surface and the node axes of a net on it.
 
     Parameters
     ----------
     surface : CongruenceMesh
-        The congruence.
     jets : CongruenceJets
-        Its derivatives.
 
     Returns
     -------
     (V,) float array
         Radians, at most π / 2; NaN where the congruence fixes no axis.
     """
-    axes, normals = node_axes(jets), surface.vertex_frames[:, 2]
+    axes, normals = expected_node_axes(jets), surface.vertex_frames[:, 2]
     angles = np.arctan2(norm(np.cross(axes, normals)), np.abs(dot(axes, normals)))
     return np.where(norm(axes) > 0, angles, np.nan)

@@ -1,5 +1,5 @@
 """
-Least squares for planar nodes: unknowns, residuals and their derivatives.
+The conditions of planar nodes: unknowns, residuals and their derivatives, and where nodes lie.
 
 Seen from its node, a sphere through the node is a row ``(A, N, 0)``: half its curvature and its
 normal there. The spheres around a node span a subspace of dimension 3 where their ``(a A, N)``
@@ -13,19 +13,20 @@ point and the normal m. Lengths are in mean edges. Every residual belongs to a c
 a node.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from ...arrays import BoolArray, FloatArray, IntArray, dot, sum_by
+from ...arrays import BoolArray, FloatArray, dot, norm, sum_by, unit
 from ...meshes.mesh import Mesh, local_corners, mean_edge_length
 from ...sphere_meshes.sphere_mesh import SphereMesh
 from ...spheres.incidence import evaluate, normals
 from ...spheres.minkowski import minkowski
 from ...spheres.rows import rescale
-from ...tolerances import FLATTEST, NODE_EXACT
-from .node_sites import Site, anywhere
+from ...tolerances import FLATTEST, LINE_CORNER, NODE_EXACT
+from ..field.smooth_surface import SmoothSurface, surface_heights
 
 FACE, POINT, NODE = 5, 3, 7
 """Unknowns of a face, of the point of a node, and of a node."""
@@ -34,8 +35,44 @@ ALWAYS_PLANAR = 3
 """Spheres of a node on the boundary that have a common axis whatever they are."""
 
 
+class Misses(NamedTuple):
+    """
+    How far nodes are from where they shall be.
+
+    Attributes
+    ----------
+    lengths : (V, k) float array
+        Distances, in mean edges.
+    slopes : (V, k, 3) float array
+        Their gradients.
+    """
+
+    lengths: FloatArray
+    slopes: FloatArray
+
+
+Site: TypeAlias = Callable[[FloatArray], Misses]
+"""From shifts (V, 3) of the nodes, in mean edges, to what they miss."""
+
+
+def anywhere(shifts: FloatArray) -> Misses:
+    """
+    Let nodes be where they like: a `Site`.
+
+    Parameters
+    ----------
+    shifts : (V, 3) float array
+
+    Returns
+    -------
+    Misses
+        None, of shape (V, 0).
+    """
+    return Misses(np.zeros((len(shifts), 0)), np.zeros((len(shifts), 0, 3)))
+
+
 @dataclass(frozen=True)
-class Net:
+class NetState:
     """
     Values of the unknowns.
 
@@ -63,7 +100,7 @@ class PlanarSystem:
     ----------
     mesh : Mesh
         The mesh at the start; its corners and their faces are the incidences.
-    start : Net
+    start : NetState
         The net at the start.
     corners : (H, 3) float array
         Corners at the start, local to their face.
@@ -79,7 +116,7 @@ class PlanarSystem:
     """
 
     mesh: Mesh
-    start: Net
+    start: NetState
     corners: FloatArray
     is_planar: BoolArray
     scales: FloatArray
@@ -89,7 +126,7 @@ class PlanarSystem:
 
 class Residuals(NamedTuple):
     """
-    Residuals of a net.
+    How far a net is from planar nodes.
 
     Attributes
     ----------
@@ -133,7 +170,6 @@ def planar_system(sphere_mesh: SphereMesh) -> PlanarSystem:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The start.
 
     Returns
     -------
@@ -154,9 +190,10 @@ def planar_system(sphere_mesh: SphereMesh) -> PlanarSystem:
     scales = np.array([1 / curvature, 1.0, 1.0, 1.0, 1.0])
     seen = rows[topology.corner_faces]
     arrows = np.concatenate([scales[0] * seen[:, :1], normals(seen, corners)], axis=1)
-    gram = sum_blocks(mesh.corners, arrows[:, :, None] * arrows[:, None], mesh.n_vertices)
+    products = (arrows[:, :, None] * arrows[:, None]).reshape(-1, 16)
+    gram = sum_by(mesh.corners, products, mesh.n_vertices).reshape(-1, 4, 4)
     common = np.linalg.eigh(gram)[1][..., 0] * is_planar[:, None]
-    start = Net(rows, np.zeros((mesh.n_vertices, 3)), common)
+    start = NetState(rows, np.zeros((mesh.n_vertices, 3)), common)
     return PlanarSystem(mesh, start, corners, is_planar, scales)
 
 
@@ -167,7 +204,6 @@ def must_be_planar(mesh: Mesh) -> BoolArray:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------
@@ -179,16 +215,14 @@ def must_be_planar(mesh: Mesh) -> BoolArray:
     return ~mesh.topology.is_boundary_vertex | has_many
 
 
-def residuals(system: PlanarSystem, net: Net) -> Residuals:
+def planar_residuals(system: PlanarSystem, net: NetState) -> Residuals:
     """
     How far a net is from planar nodes.
 
     Parameters
     ----------
     system : PlanarSystem
-        The problem.
-    net : Net
-        The net.
+    net : NetState
 
     Returns
     -------
@@ -206,16 +240,14 @@ def residuals(system: PlanarSystem, net: Net) -> Residuals:
     )
 
 
-def energies(system: PlanarSystem, net: Net) -> FloatArray:
+def energies(system: PlanarSystem, net: NetState) -> FloatArray:
     """
     Sums of the squared residuals.
 
     Parameters
     ----------
     system : PlanarSystem
-        The problem.
-    net : Net
-        The net.
+    net : NetState
 
     Returns
     -------
@@ -223,41 +255,38 @@ def energies(system: PlanarSystem, net: Net) -> FloatArray:
         One for each kind of residual. All are zero if no residual is above `exact`: on
         closed nets the constraints are nearly dependent, and the last digits come slowly.
     """
-    miss = residuals(system, net)
+    miss = planar_residuals(system, net)
     is_exact = all((np.abs(r) <= system.exact).all() for r in miss)
     return np.array([0.0 if is_exact else (r**2).sum() for r in miss])
 
 
-def move(net: Net, step: FloatArray) -> Net:
+def move(net: NetState, step: FloatArray) -> NetState:
     """
-    A net moved along a step.
+    Move a net along a step.
 
     Parameters
     ----------
-    net : Net
-        The net.
+    net : NetState
     step : (5 F + 7 V,) float array
         Changes of the rows, then of the shift and the normal of each node.
 
     Returns
     -------
-    Net
-        The moved net.
+    NetState
+        Moved.
     """
     rows, shifts, common = split_step(step, len(net.rows))
-    return Net(net.rows + rows, net.shifts + shifts, net.normals + common)
+    return NetState(net.rows + rows, net.shifts + shifts, net.normals + common)
 
 
-def corner_jacobian(system: PlanarSystem, net: Net) -> CornerJacobian:
+def corner_jacobian(system: PlanarSystem, net: NetState) -> CornerJacobian:
     """
     Derivatives of incidence and planarity.
 
     Parameters
     ----------
     system : PlanarSystem
-        The problem.
-    net : Net
-        The net.
+    net : NetState
 
     Returns
     -------
@@ -281,7 +310,9 @@ def corner_jacobian(system: PlanarSystem, net: Net) -> CornerJacobian:
     return CornerJacobian(by_face, by_node)
 
 
-def _at_corners(system: PlanarSystem, net: Net) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _at_corners(
+    system: PlanarSystem, net: NetState
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Row, point and normal at each corner, in the coordinates of its face."""
     nodes = system.mesh.corners
     rows = net.rows[system.mesh.topology.corner_faces]
@@ -295,39 +326,81 @@ def split_step(step: FloatArray, n_faces: int) -> tuple[FloatArray, FloatArray, 
     Parameters
     ----------
     step : (5 F + 7 V,) float array
-        The step.
     n_faces : int
-        Number F of faces.
 
     Returns
     -------
-    rows : (F, 5) float array
-        Changes of the rows.
-    shifts : (V, 3) float array
-        Changes of the shifts.
-    normals : (V, 4) float array
-        Changes of the normals.
+    rows, shifts, normals : (F, 5), (V, 3) and (V, 4) float arrays
+        Their changes.
     """
     nodes = step[FACE * n_faces :].reshape(-1, NODE)
     return step[: FACE * n_faces].reshape(-1, FACE), nodes[:, :POINT], nodes[:, POINT:]
 
 
-def sum_blocks(ids: IntArray, blocks: FloatArray, size: int) -> FloatArray:
+def on_surface(surface: SmoothSurface, mesh: Mesh, weights: FloatArray) -> Site:
     """
-    Sum of the blocks that share an id.
+    Keep nodes on a smooth surface, and those of the boundary on its boundary.
 
     Parameters
     ----------
-    ids : (m,) int array
-        Group of each block, in ``[0, size)``.
-    blocks : (m, n, n) float array
-        Blocks to add up.
-    size : int
-        Number of groups.
+    surface : SmoothSurface
+    mesh : Mesh
+        The net at the start, in model coordinates; its boundary lies on that of the surface.
+    weights : (V,) float array
+        How much the height of each node counts; 0 where it does not.
 
     Returns
     -------
-    (size, n, n) float array
-        Sums; zero for a group without blocks.
+    Site
+        Height over the surface; for nodes of the boundary the distance from its tangent at the
+        start, for those at a corner that from the corner.
     """
-    return sum_by(ids, blocks.reshape(len(blocks), -1), size).reshape(size, *blocks.shape[1:])
+    size = mean_edge_length(mesh)
+    unit_length = surface.mesh.size
+    points, step = (mesh.vertices - surface.mesh.origin) / unit_length, size / unit_length
+    _, upward = surface_heights(surface, points)
+    held = _held_directions(mesh, upward)
+
+    def _misses(shifts: FloatArray) -> Misses:
+        heights, gradients = surface_heights(surface, points + step * shifts)
+        heights, gradients = heights * weights, gradients * weights[:, None]
+        across = np.einsum("vki,vi->vk", held, shifts)
+        lengths = np.concatenate([heights[:, None] / step, across], axis=1)
+        return Misses(lengths, np.concatenate([gradients[:, None], held], axis=1))
+
+    return _misses
+
+
+def node_distances(surface: SmoothSurface, mesh: Mesh) -> FloatArray:
+    """
+    Distances of the nodes of a net from a smooth surface.
+
+    Parameters
+    ----------
+    surface : SmoothSurface
+    mesh : Mesh
+        The net, in model coordinates.
+
+    Returns
+    -------
+    (V,) float array
+        In mean edges of the net.
+    """
+    points = (mesh.vertices - surface.mesh.origin) / surface.mesh.size
+    heights, _ = surface_heights(surface, points)
+    return np.abs(heights) * surface.mesh.size / mean_edge_length(mesh)
+
+
+def _held_directions(mesh: Mesh, upward: FloatArray) -> FloatArray:
+    """Tangents (V, 2, 3) along which nodes stay: across the boundary, at corners both."""
+    topology = mesh.topology
+    leaving = np.flatnonzero(topology.twins < 0)
+    tails, heads = mesh.corners[leaving], mesh.corners[topology.next_corners[leaving]]
+    sides = unit(mesh.vertices[heads] - mesh.vertices[tails])
+    ahead, behind = np.zeros((2, mesh.n_vertices, 3))
+    ahead[tails], behind[heads] = sides, sides
+    along = unit(ahead + behind)
+    along = unit(along - dot(along, upward)[:, None] * upward)
+    is_corner = norm(ahead - behind) > 2 * np.sin(LINE_CORNER / 2)
+    across = np.cross(upward, along)
+    return np.stack([across, along * is_corner[:, None]], axis=1)

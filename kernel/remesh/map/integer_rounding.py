@@ -106,7 +106,6 @@ def relaxed_minimum(function: Quadratic, solutions: IntegerSolutions) -> FloatAr
     Parameters
     ----------
     function : Quadratic
-        The function.
     solutions : IntegerSolutions
         The equations that n satisfies.
 
@@ -128,7 +127,6 @@ def round_minimum(function: Quadratic, solutions: IntegerSolutions, n_first: int
     Parameters
     ----------
     function : Quadratic
-        The function.
     solutions : IntegerSolutions
         Which n are allowed.
     n_first : int
