@@ -31,7 +31,7 @@ from ..units import millimeters_per
 # What comes from ezdxf is partly untyped.
 _Untyped: TypeAlias = Any
 
-LAYERS: Final = {"CUT": 1, "ENGRAVE": 3, "DRILL": 5, "SHEET": 8}
+BEAM_LAYERS: Final = {"CUT": 1, "ENGRAVE": 3, "DRILL": 5, "SHEET": 8}
 """Layers of a drawing and their colours, by AutoCAD's index."""
 
 _MILLIMETERS = 4
@@ -115,7 +115,7 @@ def write_dxf(
     corners = _sheet_corners(sizes, sheets, oversize, sheet, spacing)
     shifts = places - boxes[:, 0] + corners[sheets, 0]
     with fixed_ezdxf() as library:
-        document = millimeter_drawing(library, LAYERS)
+        document = millimeter_drawing(library, BEAM_LAYERS)
         space = document.modelspace()
         for low, high in corners.tolist():
             ring = [low, [high[0], low[1]], high, [low[0], high[1]]]
@@ -181,7 +181,6 @@ def text_width(text: str) -> float:
     Parameters
     ----------
     text : str
-        The text.
 
     Returns
     -------

@@ -15,8 +15,9 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray, dot, unit
+from ...kernel.panels.facts import panel_bulges
 from ...kernel.panels.mould_blanks import PanelCaps, panel_caps
-from ...kernel.panels.panels import Panels, inner_panel_arcs, panel_arcs, scale_panels
+from ...kernel.panels.panels import Panels, boundaries, scale_panels
 from ...kernel.parts.colors import mould_name
 from ...kernel.spheres.arcs import Arcs, arc_points
 from ..files import check_suffix, replacing
@@ -24,7 +25,7 @@ from ..model import Model, Written, check_parts
 from ..units import millimeters_per
 from .beams import fixed_ezdxf, millimeter_drawing, text_width
 
-LAYERS: Final = {"OUTER": 7, "INNER": 8, "BLANK": 5, "TEXT": 3}
+MOULD_LAYERS: Final = {"OUTER": 7, "INNER": 8, "BLANK": 5, "TEXT": 3}
 """Layers and their colours in DXF: outer and inner outlines, rims of blanks, labels."""
 
 STROKES: Final = {"OUTER": "#000000", "INNER": "#808080", "BLANK": "#2060c0"}
@@ -33,7 +34,7 @@ STROKES: Final = {"OUTER": "#000000", "INNER": "#808080", "BLANK": "#2060c0"}
 CHORD_MM: Final = 0.1
 """How far the drawn outlines stand off the arcs."""
 
-MAX_STEPS: Final = 128
+_MOST_STEPS: Final = 128
 
 _DECLARATION: Final = "<?xml version='1.0' encoding='utf-8'?>\n"
 
@@ -127,9 +128,7 @@ def layout_moulds(panels: Panels, units: str = "m") -> Drawing:
     Parameters
     ----------
     panels : Panels
-        P panels.
     units : str
-        Model units: mm, cm, m, in or ft.
 
     Returns
     -------
@@ -141,9 +140,10 @@ def layout_moulds(panels: Panels, units: str = "m") -> Drawing:
     """
     made = scale_panels(panels, millimeters_per(units))
     caps = panel_caps(made)
-    views = [("OUTER", _outlines(made, panel_arcs(made), caps))]
-    if made.thickness > 0:
-        views.append(("INNER", _outlines(made, inner_panel_arcs(made), caps)))
+    views = [
+        (layer, _outlines(made, arcs, caps))
+        for layer, (_, arcs) in zip(("OUTER", "INNER"), boundaries(made), strict=False)
+    ]
     labels = np.unique(made.labels)
     drawing = Drawing([], [], [], 0.0, 0.0)
     count = int(labels.max(initial=-1)) + 1
@@ -176,11 +176,12 @@ def _cells(
     members: IntArray,
 ) -> list[_Cell]:
     largest = float(caps.radii[members].max())
+    bulges = panel_bulges(made)
     is_mould = made.labels[members[0]] >= 0
     return [
         (
             made.ids[i],
-            _remark(made, caps, i),
+            f"{2 * caps.radii[i]:.1f} x {abs(caps.sagittas[i]):.1f} {bulges[i]}",
             largest if is_mould else float(caps.radii[i]),
             [(layer, outlines[i]) for layer, outlines in views],
         )
@@ -188,19 +189,12 @@ def _cells(
     ]
 
 
-def _remark(made: Panels, caps: PanelCaps, panel: int) -> str:
-    """Size of the panel's own cap, and to which side it bulges."""
-    curvature = made.design_spheres[panel, 0]
-    bulge = "flat" if curvature == 0 else "out" if curvature < 0 else "in"
-    return f"{2 * caps.radii[panel]:.1f} x {abs(caps.sagittas[panel]):.1f} {bulge}"
-
-
 def _outlines(made: Panels, arcs: Arcs, caps: PanelCaps) -> list[FloatArray]:
     """Outline (n, 2) of each panel about the middle of its cap, seen against the axis."""
     owners, first = made.corner_panels, made.offsets[:-1]
     # An arc cut into n chords stands off them by its sagitta over n².
     sagittas = np.maximum.reduceat(np.abs(arcs.sagittas), first)
-    steps = np.clip(np.ceil(np.sqrt(sagittas / CHORD_MM)), 1, MAX_STEPS).astype(np.int64)
+    steps = np.clip(np.ceil(np.sqrt(sagittas / CHORD_MM)), 1, _MOST_STEPS).astype(np.int64)
     along = arcs.ends[first] - arcs.starts[first]
     along = unit(along - dot(along, caps.axes)[:, None] * caps.axes)
     frames = np.stack([along, np.cross(caps.axes, along)], 1)
@@ -246,7 +240,7 @@ def _dxf(drawing: Drawing) -> str:
     with fixed_ezdxf() as library:
         from ezdxf.enums import TextEntityAlignment
 
-        document = millimeter_drawing(library, LAYERS)
+        document = millimeter_drawing(library, MOULD_LAYERS)
         model = document.modelspace()
         for layer, points in drawing.outlines:
             model.add_lwpolyline(points.tolist(), close=True, dxfattribs={"layer": layer})

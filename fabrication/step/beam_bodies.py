@@ -12,7 +12,7 @@ from itertools import product
 import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray, unit
-from ...kernel.beams.end_edges import CutEdges
+from ...kernel.beams.end_edges import EndEdges
 from ...kernel.spheres.arcs import ArcCircles, Arcs, circle_axes
 from ..solids.beam_numbers import LEVELS, BeamNumbers
 from .bodies import Body, EdgeBatch, FaceBatch, Ring, bodies
@@ -63,7 +63,7 @@ def _arc_numbers(arcs: Arcs, circles: ArcCircles) -> FloatArray:
 
 
 def _cut_numbers(numbers: BeamNumbers, k: int, levels: _Levels) -> FloatArray:
-    cuts: CutEdges = numbers.cuts[levels]
+    cuts: EndEdges = numbers.cuts[levels]
     minor = np.broadcast_to(numbers.radii[:, None, k], cuts.radii[:, :, k].shape)
     major = np.maximum(cuts.radii[:, :, k], minor)
     axes = [values[:, :, k] for values in (cuts.centers, cuts.normals, cuts.majors)]

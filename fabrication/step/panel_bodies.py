@@ -9,7 +9,7 @@ turned so that the panel lies away from the seam and the poles.
 import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray, unit
-from ...kernel.panels.panels import Panels, inner_panel_arcs, panel_arcs
+from ...kernel.panels.panels import Panels, panel_arcs
 from ...kernel.spheres.arcs import Arcs, arc_circles, circle_axes
 from ...kernel.spheres.rows import center_radius
 from ..solids.panel_numbers import surface_frames
@@ -38,7 +38,7 @@ def panel_bodies(panels: Panels) -> list[Body]:
     outer = _Layer(panels, panels.spheres, panel_arcs(panels))
     inner = None
     if panels.thickness > 0:
-        inner = _Layer(panels, panels.inner_spheres, inner_panel_arcs(panels))
+        inner = _Layer(panels, panels.inner_spheres, panel_arcs(panels, "inner"))
     for ids in _alike(panels, outer, inner):
         made = _surfaces(outer, ids) if inner is None else _solids(panels, outer, inner, ids)
         result.update(zip(ids.tolist(), made, strict=True))

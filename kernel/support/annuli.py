@@ -127,7 +127,6 @@ def annulus_arcs(annuli: Annuli) -> tuple[Arcs, Arcs]:
     Parameters
     ----------
     annuli : Annuli
-        B annuli.
 
     Returns
     -------
@@ -149,7 +148,6 @@ def corner_mismatch(annuli: Annuli) -> FloatArray:
     Parameters
     ----------
     annuli : Annuli
-        B annuli.
 
     Returns
     -------
@@ -168,14 +166,13 @@ def corner_mismatch(annuli: Annuli) -> FloatArray:
     return norm(points - means[groups].reshape(-1, 2, 3)).max(axis=1).reshape(-1, 2)
 
 
-def axis_angles(annuli: Annuli) -> FloatArray:
+def twist_angles(annuli: Annuli) -> FloatArray:
     """
     Angles by which the planes of the annuli miss the node axes: 0 where a node has no torsion.
 
     Parameters
     ----------
     annuli : Annuli
-        B annuli.
 
     Returns
     -------
@@ -193,7 +190,6 @@ def end_depths(annuli: Annuli) -> FloatArray:
     Parameters
     ----------
     annuli : Annuli
-        B annuli.
 
     Returns
     -------
@@ -210,7 +206,6 @@ def mean_end_depth(annuli: Annuli) -> float:
     Parameters
     ----------
     annuli : Annuli
-        B annuli.
 
     Returns
     -------

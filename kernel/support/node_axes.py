@@ -139,7 +139,6 @@ def support_structure(sphere_mesh: SphereMesh) -> SupportStructure:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
 
     Returns
     -------
@@ -292,7 +291,6 @@ def support_report(sphere_mesh: SphereMesh, structure: SupportStructure) -> dict
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     structure : SupportStructure
         Its nodes.
 

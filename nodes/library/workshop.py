@@ -5,8 +5,9 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from ...fabrication.audit import beams as beam_audit
-from ...fabrication.audit import panels as panel_audit
+from ...fabrication.audit.report import audit_model
+from ...fabrication.audit.subjects import AuditLimits
+from ...fabrication.model import Model
 from ...kernel.analysis import angle_summary
 from ...kernel.arrays import IntArray
 from ...kernel.beams.beams import Beams
@@ -14,7 +15,7 @@ from ...kernel.meshes.mesh import mean_edge_length
 from ...kernel.panels import congruent
 from ...kernel.panels import mould_blanks as blanks
 from ...kernel.panels.panels import Panels
-from ...kernel.parts.findings import Finding, findings_report, refusals
+from ...kernel.parts.findings import Finding, findings_report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ...kernel.tolerances import SAME_PANEL
 from ..graphs.node import node, warn
@@ -165,7 +166,7 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     report : mapping
         ``counts`` by code, ``errors`` and ``notes``.
     """
-    limits = panel_audit.AuditLimits(
+    limits = AuditLimits(
         corner_deg=min_corner,
         edge_mm=min_edge,
         wall_tilt_deg=max_wall_tilt,
@@ -174,16 +175,13 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
         twist_deg=max_twist,
         beam_mm=float("inf") if max_length is None else max_length,
     )
-    findings = refusals(
+    rejected = [
         part
         for report in (cut, annuli_report, beams_report)
         for part in (report or {}).get("rejected", ())
-    )
-    if panels is not None:
-        findings += panel_audit.audit_panels(panels, units, limits=limits)
-    if beams is not None:
-        findings += beam_audit.audit_beams(beams, units, limits=limits)
-    return Audit(tuple(findings), findings_report(findings))
+    ]
+    findings = audit_model(Model(panels, beams, units), limits, rejected)
+    return Audit(findings, findings_report(findings))
 
 
 @node

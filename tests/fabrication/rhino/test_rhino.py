@@ -256,7 +256,7 @@ def one_is_off(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_an_inexact_brep_is_left_out_by_name(panels: Panels, tmp_path: Path) -> None:
     file = write_3dm(Model(panels), tmp_path / "model.3dm")
     (refused,) = file.rejected
-    assert (refused.id, refused.face_id) == (panels.ids[17], 17)
+    assert (refused.id, refused.element_id) == (panels.ids[17], 17)
     assert "a trim leaves its edge" in refused.reason
     model = rhino3dm.File3dm.Read(str(file.path))
     names = [item.Attributes.Name for item in on_layer(model, "Panels")]
