@@ -1,5 +1,10 @@
-# Everything from a fresh clone: make demo, make test. Needs Python >= 3.11, make and git.
-PYTHON ?= python3
+# Everything from a fresh clone: make demo, make test. Needs Python 3.11 to 3.14, make and git.
+# The first that runs (a shim may be there and not run) and can make an environment is taken.
+# 3.14 comes late: what we need has wheels for it, but we do not test there. 3.15 has no rhino3dm.
+PYTHONS := python3.13 python3.12 python3.11 python3.14 python3
+USABLE := import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info < (3, 15))
+PYTHON ?= $(shell for each in $(PYTHONS); do \
+  if $$each -c '$(USABLE)' >/dev/null 2>&1; then echo $$each; break; fi; done)
 BIN := .venv/bin
 PACKAGES := kernel nodes fabrication viewer interfaces
 # The editable install links files, so it is made anew when the list of files or pyproject.toml changes.
@@ -20,7 +25,7 @@ test: lint
 lint: system
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/pyright
+	$(BIN)/pyright --pythonpath $(BIN)/python
 	$(BIN)/lint-imports
 	$(BIN)/numpydoc lint $$(git ls-files $(addsuffix /*.py,$(PACKAGES)))
 	$(BIN)/vulture
@@ -33,8 +38,9 @@ bench: system
 install: $(INSTALLED)
 
 $(INSTALLED):
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "spheremesh needs Python 3.11 or newer: make PYTHON=python3.12 ...")'
 	@echo 'installing spheremesh and what it needs into .venv'
+	@test -x $(BIN)/python || $(or $(PYTHON),false) -c '$(USABLE)' || { \
+	  echo 'spheremesh needs Python 3.11 to 3.14 with venv (in Debian and Ubuntu the package python3-venv): make PYTHON=python3.12 ...' >&2; exit 1; }
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	@$(BIN)/python -m pip install -qq --upgrade pip setuptools
 	@$(BIN)/python -m pip install -qq -e . --group dev

@@ -25,7 +25,7 @@ from OCP.GProp import GProp_GProps
 from OCP.TopoDS import TopoDS_Shape
 
 from spheremesh import Mesh, SphereMesh
-from spheremesh.fabrication.solids.beam_shapes import beam_shapes
+from spheremesh.fabrication.solids.opencascade_beams import beam_shapes
 from spheremesh.kernel.beams.beams import beam_volumes
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.support.annuli import corner_mismatch

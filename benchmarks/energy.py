@@ -13,6 +13,7 @@ import time
 import numpy as np
 
 from spheremesh.kernel.arrays import FloatArray
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.optimization.energies.freedom import Freedom, moved, vertex_freedom
 from spheremesh.kernel.optimization.energies.minimize import (
     EnergyProblem,
@@ -27,7 +28,6 @@ from spheremesh.kernel.optimization.energies.setting import (
     first_unknowns,
 )
 from spheremesh.kernel.optimization.energies.table import EnergyWeights
-from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.solvers.blocks import jacobian_matrix
 from spheremesh.kernel.sphere_meshes.fit import fit_spheres
 from spheremesh.nodes import roof_mesh

@@ -19,7 +19,7 @@ from spheremesh.kernel.arrays import dot, norm, unit
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.meshes.remeshing import even_share
-from spheremesh.kernel.sphere_meshes.mobius_maps import map_sphere_mesh, map_spheres
+from spheremesh.kernel.sphere_meshes.mobius import map_sphere_mesh
 from spheremesh.kernel.sphere_meshes.model_change import (
     SIGNS,
     Branch,
@@ -31,8 +31,16 @@ from spheremesh.kernel.sphere_meshes.model_change import (
 )
 from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
 from spheremesh.kernel.sphere_meshes.support_type import support_type
-from spheremesh.kernel.spheres.mobius import compose, inversion, rotation_about, similarity
-from spheremesh.kernel.spheres.rows import evaluate, minkowski, recenter
+from spheremesh.kernel.spheres.incidence import evaluate
+from spheremesh.kernel.spheres.minkowski import minkowski
+from spheremesh.kernel.spheres.mobius_group import (
+    compose,
+    inversion,
+    rotation_about,
+    similarity,
+)
+from spheremesh.kernel.spheres.mobius_images import map_spheres
+from spheremesh.kernel.spheres.rows import recenter
 from spheremesh.nodes import (
     enneper_mesh,
     fit_spheres,

@@ -16,10 +16,11 @@ from scipy.interpolate import CubicSpline
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
-from spheremesh.kernel.congruences.smooth import sphere_congruence, touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import sphere_congruence, touching_spheres
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.remesh.field.relax import CongruenceQuality, relax_congruence
-from spheremesh.kernel.remesh.planar.planarize import axis_angles, measure_nodes, planarize
+from spheremesh.kernel.remesh.planar.nodes import measure_nodes, node_axis_angles
+from spheremesh.kernel.remesh.planar.planarize import planarize
 from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
 
 Surface = Callable[[FloatArray, FloatArray], FloatArray]
@@ -168,7 +169,7 @@ def planarization() -> None:
                 vertex_error(net).max() / mean_edge_length(net.mesh)
                 for net in (start, run.sphere_mesh)
             ]
-            angles = np.degrees(axis_angles(run.sphere_mesh, after)[after.is_inner])
+            angles = np.degrees(node_axis_angles(run.sphere_mesh, after)[after.is_inner])
             print(
                 f"{name:22s}{start.mesh.n_vertices:5d} nodes  "
                 f"planarity {before.planarity.max():.0e} -> {after.planarity.max():.0e}  "

@@ -16,15 +16,15 @@ from scipy.spatial import KDTree
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, IntArray, norm, unit
-from spheremesh.kernel.congruences.smooth import touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import touching_spheres
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.tessellation import tessellate
-from spheremesh.kernel.remesh.field.conjugate import form_roots, split_form
-from spheremesh.kernel.remesh.field.directions import conjugate_directions
+from spheremesh.kernel.remesh.field.conjugate_directions import conjugate_directions
+from spheremesh.kernel.remesh.field.conjugate_form import form_roots, split_form
 from spheremesh.kernel.remesh.pipeline import Remeshing, remesh
-from spheremesh.kernel.remesh.planar.held_nets import planarize_held
-from spheremesh.kernel.remesh.planar.planarize import axis_angles, measure_nodes
+from spheremesh.kernel.remesh.planar.nodes import measure_nodes, node_axis_angles
+from spheremesh.kernel.remesh.planar.planarize import planarize_held
 from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
 from spheremesh.kernel.surfaces.triangulated import (
     SHAPES,
@@ -278,7 +278,7 @@ def regular() -> None:
         run, is_held = planarize_held(done.sphere_mesh, done.surface)
         net, nodes = run.sphere_mesh, measure_nodes(run.sphere_mesh)
         mean = mean_edge_length(net.mesh)
-        angles = np.degrees(axis_angles(net, nodes)[nodes.is_inner])
+        angles = np.degrees(node_axis_angles(net, nodes)[nodes.is_inner])
         away = norm(net.mesh.vertices - feet(shape, net.mesh.vertices)) / mean
         print(f"{shape:10s}radius {offset}  {net_figures(done)}")
         print(

@@ -21,7 +21,7 @@ Figures = dict[str, float]
 
 def optimise(n_span: int, n_length: int) -> Figures:
     """Net, start and angle minimisation of a roof."""
-    from spheremesh.kernel.optimization.pencil import minimize_angles
+    from spheremesh.kernel.optimization.angle_minimization import minimize_angles
     from spheremesh.kernel.sphere_meshes.fit import fit_spheres
     from spheremesh.nodes import roof_mesh
 

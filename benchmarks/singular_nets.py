@@ -18,7 +18,7 @@ import numpy as np
 from remeshing import Surface, singular_surfaces
 
 from spheremesh import SphereMesh
-from spheremesh.kernel.congruences.smooth import touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import touching_spheres
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.nodes import annulus_support, beams, evolve_spheres, p4_remesh, panels
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from spheremesh import Mesh
 from spheremesh.kernel.meshes.mesh import mean_edge_length
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.nodes import (
     apply_mobius,
     central_spheres,

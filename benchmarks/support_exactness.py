@@ -30,8 +30,8 @@ from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from spheremesh import SphereMesh
 from spheremesh.fabrication.model import Model
-from spheremesh.fabrication.solids.beam_shapes import beam_shapes
-from spheremesh.fabrication.solids.panel_shapes import panel_shapes
+from spheremesh.fabrication.solids.opencascade_beams import beam_shapes
+from spheremesh.fabrication.solids.opencascade_panels import panel_shapes
 from spheremesh.fabrication.step.check import check_part21
 from spheremesh.fabrication.step.writer import write_step
 from spheremesh.interfaces.panel import PanelOptions, panel_graph
@@ -45,7 +45,7 @@ from spheremesh.kernel.panels.panels import (
     panel_arcs,
     panel_areas,
 )
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.spheres.arcs import (
     Arcs,
     arc_lengths,

@@ -38,7 +38,6 @@ def check_suffix(path: str | os.PathLike[str], *suffixes: str) -> None:
     Parameters
     ----------
     path : path
-        File to write.
     *suffixes : str
         What its name may end in, in lower case.
 
@@ -58,7 +57,6 @@ def check_target(path: str | os.PathLike[str]) -> None:
     Parameters
     ----------
     path : path
-        File to write.
 
     Raises
     ------
@@ -90,7 +88,6 @@ def replacing(path: str | os.PathLike[str]) -> Generator[Path]:
     Parameters
     ----------
     path : path
-        File to write.
 
     Yields
     ------
@@ -116,14 +113,15 @@ def replacing(path: str | os.PathLike[str]) -> Generator[Path]:
     temporary = Path(name)
     try:
         yield temporary
-        temporary.chmod(0o666 & ~_umask())
-        with temporary.open("rb") as written:
+        with temporary.open("r+b") as written:  # Windows refuses fsync if only for reading
             os.fsync(written.fileno())
+        temporary.chmod(0o666 & ~_umask())
         temporary.replace(target)
     except OSError as error:
         raise _unwritable(target, error) from error
     finally:
-        temporary.unlink(missing_ok=True)
+        with suppress(OSError):  # Windows keeps what a program holds: the next one tidies up
+            temporary.unlink(missing_ok=True)
     _tidy(target.parent, prefix, suffix)
 
 

@@ -49,7 +49,7 @@ def to_mesh(polygons: Polygons) -> Mesh:
     Returns
     -------
     Mesh
-        The mesh.
+        Validated.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def join_polygons(parts: Sequence[Polygons]) -> Polygons:
     Parameters
     ----------
     parts : sequence of Polygons
-        At least one list.
+        At least one.
 
     Returns
     -------

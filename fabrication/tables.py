@@ -25,7 +25,6 @@ def finite_or_none(value: np.float64) -> float | None:
     Parameters
     ----------
     value : float64
-        The number.
 
     Returns
     -------
@@ -45,7 +44,6 @@ def write_csv(rows: Iterable[Mapping[str, Any]], path: Path) -> None:
         Rows of the same columns. Lists are separated by blanks, lists of lists by semicolons;
         what is None is an empty cell, or a dash in a list.
     path : Path
-        The file.
     """
     with path.open("w", encoding="utf-8-sig", newline="") as file:
         writer: csv.DictWriter[str] | None = None

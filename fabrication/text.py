@@ -1,14 +1,15 @@
 """Text files of numbers: lines, words, and errors that name the line."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..kernel.arrays import FloatArray, IntArray
 from ..kernel.errors import InputError
 from ..kernel.meshes.mesh import Mesh
+from .polygons import Polygons
 
 
 def decode(data: bytes) -> str:
@@ -60,7 +61,6 @@ def face_words(mesh: Mesh, first: int) -> list[str]:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     first : int
         Number of the first vertex.
 
@@ -80,7 +80,6 @@ def to_count(word: str) -> int:
     Parameters
     ----------
     word : str
-        The word.
 
     Returns
     -------
@@ -125,35 +124,93 @@ def to_floats(words: Sequence[str], lines: Sequence[int], per_line: int) -> Floa
         raise InputError(_not_a_number(lines[index // per_line], words[index])) from None
 
 
-def to_integers(words: Sequence[str], lines: ArrayLike, counts: ArrayLike) -> IntArray:
-    """
-    Words of a text file as integers.
-
-    Parameters
-    ----------
-    words : sequence of str
-        Integers as written.
-    lines : (F,) array_like of int
-        Line of each group of words.
-    counts : (F,) array_like of int
-        Number of words in each group.
-
-    Returns
-    -------
-    (N,) int array
-        The integers.
-
-    Raises
-    ------
-    InputError
-        If a word is not an integer; the message names its line.
-    """
+def _to_integers(words: Sequence[str], lines: Sequence[int], counts: Sequence[int]) -> IntArray:
+    """Words as integers, so many from each line."""
     try:
         return np.array(list(map(int, words)), np.int64)
     except (ValueError, OverflowError):
         index = next(i for i, word in enumerate(words) if not _is_number(word, np.int64))
-        line = int(np.repeat(np.asarray(lines), np.asarray(counts))[index])
+        line = int(np.repeat(lines, counts)[index])
         raise InputError(_not_a_number(line, words[index])) from None
+
+
+@dataclass
+class TextPolygons:
+    """
+    Polygons as the lines of a text file give them, one after the other.
+
+    Attributes
+    ----------
+    coordinates : list of str
+        Three words for each vertex.
+    vertex_lines, face_lines : list of int
+        Lines of the file.
+    corner_words : list of str
+        Vertex numbers of all faces.
+    degrees : list of int
+        Number of corners of each face.
+    """
+
+    coordinates: list[str] = field(default_factory=list[str])
+    vertex_lines: list[int] = field(default_factory=list[int])
+    corner_words: list[str] = field(default_factory=list[str])
+    degrees: list[int] = field(default_factory=list[int])
+    face_lines: list[int] = field(default_factory=list[int])
+
+    def add_vertex(self, line: int, words: list[str]) -> None:
+        """
+        Add a vertex.
+
+        Parameters
+        ----------
+        line : int
+        words : list of str
+            Coordinates; more than three are left out.
+
+        Raises
+        ------
+        InputError
+            If there are fewer.
+        """
+        if len(words) < 3:
+            raise InputError(f"line {line}: a vertex needs three coordinates")
+        self.coordinates += words[:3]
+        self.vertex_lines.append(line)
+
+    def add_face(self, line: int, words: list[str]) -> None:
+        """
+        Add a face.
+
+        Parameters
+        ----------
+        line : int
+        words : list of str
+        """
+        self.corner_words += words
+        self.degrees.append(len(words))
+        self.face_lines.append(line)
+
+    def polygons(self) -> Polygons:
+        """
+        The polygons, once all lines are read.
+
+        Returns
+        -------
+        Polygons
+            With vertex numbers as they are written.
+
+        Raises
+        ------
+        InputError
+            If a word is not a number; the message names its line.
+        """
+        return Polygons(
+            to_floats(self.coordinates, self.vertex_lines, 3),
+            _to_integers(self.corner_words, self.face_lines, self.degrees),
+            np.array(self.degrees, np.int64),
+            self.vertex_lines,
+            self.face_lines,
+        )
 
 
 def _is_number(word: str, kind: type[float | np.int64]) -> bool:

@@ -13,7 +13,6 @@ def fan_triangles(mesh: Mesh) -> tuple[IntArray, IntArray]:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------

@@ -13,7 +13,7 @@ import sys
 import textwrap
 import warnings
 from collections.abc import Generator, Mapping
-from contextlib import chdir, contextmanager
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
 
@@ -165,9 +165,8 @@ def _run_targets(
     from ..fabrication.files import replacing_all
 
     names = targets or tuple(step.name for step in graph.ends)
-    here = Path.cwd()
-    with replacing_all(out) as staging, chdir(staging):
-        results = graph.run(*names, on_step=progress, read_from=here)
+    with replacing_all(out) as staging:
+        results = graph.run(*names, on_step=progress, write_to=staging)
     values = (results,) if len(names) == 1 else results
     for messages in graph.messages.values():
         for text in messages:
@@ -224,7 +223,8 @@ def _errors() -> Generator[None]:
         # An OSError is the disk's or the system's: full, too many files, a broken pipe.
         if not isinstance(cause, SpheremeshError | GraphError | OSError):
             raise
-        message = " ".join(str(cause).split())
+        text = error.reason if isinstance(error, NodeError) else str(error)
+        message = " ".join(text.split())
         click.echo(f"spheremesh: {message}", err=True)
         if isinstance(cause, MissingLibraryError):
             sys.exit(MISSING_LIBRARY)
@@ -328,7 +328,8 @@ def _print_node(node: "Node") -> None:
 
 def _port_facts(port: "Port") -> str:
     """Type, unit, range and default of a port, in one line."""
-    from ..nodes.graphs.ports import REQUIRED, type_name
+    from ..nodes.graphs.annotations import type_name
+    from ..nodes.graphs.ports import REQUIRED
 
     facts = [f"{type_name(port.type)} in {port.unit}" if port.unit else type_name(port.type)]
     if port.min is not None:

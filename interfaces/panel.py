@@ -3,8 +3,8 @@
 import json
 import time
 from collections.abc import Callable, Mapping
-from contextlib import chdir
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -91,7 +91,7 @@ def panel_graph(options: PanelOptions) -> Graph:
         optimum, panels, audit, report, step, rhino, table, list and picture; with a number of
         moulds also moulds, blanks, mould_drawing and mould_picture, with a support landing
         (without moulds or a tolerance), nodes, annuli, beams, drawing and beam_table. Its
-        writers write into the working directory.
+        writers write relative to the folder of the run.
 
     Raises
     ------
@@ -244,20 +244,17 @@ def run_job(
     """
     began = time.perf_counter()
     clock = _StepClock(progress)
-    here = Path.cwd()
     with replacing_all(folder) as staging:
-        with chdir(staging):
-            _refuse_nothing(
-                graph.run("panels.report", on_step=clock.note, read_from=here), "panels"
-            )
-            _refuse_unfinished(graph.run("optimum.report", read_from=here))
-            if "annuli" in graph.steps:
-                annuli = graph.run("annuli.report", on_step=clock.note, read_from=here)
-                _refuse_nothing({**annuli, "written": annuli["made"]}, "beams")
-            found = graph.run("report", on_step=clock.note, read_from=here)
-            if found["support"]:
-                _refuse_nothing(found["beams"], "beams")
-            graph.run(*graph.ends, on_step=clock.note, read_from=here)
+        run = partial(graph.run, on_step=clock.note, write_to=staging)
+        _refuse_nothing(run("panels.report"), "panels")
+        _refuse_unfinished(run("optimum.report", on_step=None))
+        if "annuli" in graph.steps:
+            annuli = run("annuli.report")
+            _refuse_nothing({**annuli, "written": annuli["made"]}, "beams")
+        found = run("report")
+        if found["support"]:
+            _refuse_nothing(found["beams"], "beams")
+        run(*graph.ends)
         graph.save(staging / "graph.json")
         source = graph.steps["mesh"]
         path = str(source.inputs.get("path", source.node.name))

@@ -8,13 +8,13 @@ import numpy as np
 from .arrays import BoolArray, FloatArray, IntArray
 from .errors import InputError
 from .meshes.mesh import Mesh, face_centroids
-from .optimization.pencil import pencil_angles
+from .optimization.angle_minimization import pencil_angles
 from .panels.cutting import edge_arcs
 from .sphere_meshes.fit import face_planes, fit_spheres
 from .sphere_meshes.sphere_mesh import SphereMesh, intersection_angles
 from .spheres.arcs import arc_points
 from .spheres.circles import face_circles
-from .spheres.rows import project
+from .spheres.incidence import project
 
 
 def angle_summary(sphere_mesh: SphereMesh) -> dict[str, float]:
@@ -24,7 +24,6 @@ def angle_summary(sphere_mesh: SphereMesh) -> dict[str, float]:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
 
     Returns
     -------
@@ -44,7 +43,6 @@ def spiky_faces(sphere_mesh: SphereMesh) -> BoolArray:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
 
     Returns
     -------
@@ -91,7 +89,6 @@ def angle_histogram(sphere_mesh: SphereMesh, n_bins: int = 20) -> AngleHistogram
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     n_bins : int
         Number of bins, from 0 to the largest angle of either kind.
 
@@ -129,7 +126,6 @@ def deviation(sphere_mesh: SphereMesh, reference: Mesh) -> FloatArray:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     reference : Mesh
         The surface to compare with; its polygons count as fans of triangles.
 

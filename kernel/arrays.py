@@ -36,7 +36,6 @@ def norm(a: FloatArray) -> FloatArray:
     Parameters
     ----------
     a : (..., n) float array
-        Vectors.
 
     Returns
     -------
@@ -53,7 +52,6 @@ def unit(a: FloatArray) -> FloatArray:
     Parameters
     ----------
     a : (..., n) float array
-        Vectors.
 
     Returns
     -------
@@ -75,7 +73,6 @@ def sum_by(ids: IntArray, values: FloatArray, size: int) -> FloatArray:
     values : (n,) or (n, m) float array
         Rows to add up.
     size : int
-        Number of groups.
 
     Returns
     -------
@@ -97,7 +94,6 @@ def batches_by_count(ids: IntArray, size: int) -> Iterator[tuple[IntArray, IntAr
     ids : (m,) int array
         Group of each row, in ``[0, size)``.
     size : int
-        Number of groups.
 
     Yields
     ------

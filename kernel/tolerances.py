@@ -1,238 +1,203 @@
 """
-The only home of small numbers.
+The only home of small numbers, by the room that uses them.
 
 Every value is relative: to the mean edge of a mesh, to the size of a panel, to the magnitude
-of the terms that cancel. None is a length in a unit.
+of the terms that cancel. None is a length in a unit. What a number means stands below it.
 """
 
 from typing import Final
 
+# Shared by several rooms
+
 EPSILON: Final = 2.220446049250313e-16
 """Spacing of float64 at 1."""
-
 DEGENERATE: Final = 1e-10
 """A face of less than this area, relative to its squared perimeter, has no plane."""
-
-PLANE_SAGITTA: Final = 1e-6
-"""A panel whose bulge is below this share of its size is built as a plane (1 µm per m)."""
-
 CIRCULAR: Final = 1e-6
 """Faces whose vertices lie this close to a common circle, in mean edges, are circular."""
-
 SAME_PLANE: Final = 1e-6
 """Two spheres that meet at a smaller angle (radians) define no usable circle plane."""
-
 CAP_ANGLE: Final = 1.3962634015954636
 """Half opening (80 degrees) beyond which a spherical cap is refused by CAD kernels."""
-
-ANGLE_STEP: Final = 1e-9
-"""An angle minimisation has converged when no unknown moves by more (radians)."""
-
 DAMPING: Final = 1e-12
 """Least damping of a Newton step; its inverse is the largest before a descent is given up."""
-
 ENERGY_ROUNDING: Final = 1e-13
 """Relative rounding of a sum of energies: a rise below it is no rise."""
-
-LINEAR_SOLVE: Final = 1e-6
-"""Relative residual to which the linear system of a Newton step is solved."""
-
-APEX_SOLVE: Final = 1e-13
-"""Relative residual to which the well conditioned system of smoothed apexes is solved."""
-
 PARALLEL_PLANES: Final = 1e-6
 """Cutting planes that meet at a smaller angle (radians) are in line."""
+SAME_CURVATURE: Final = 1e-9
+"""Curvatures that differ by less, relative to the sharpest, share a mould without a choice."""
+COMMON_VERTEX: Final = 1e-6
+"""Spheres this close to a vertex, in mean edges, pass through it."""
+LINE_CORNER: Final = 0.5235987755982988
+"""A boundary or crease that turns at a vertex by more (30 degrees) has a corner there."""
+NODE_ON_SPHERES: Final = 1e-6
+"""Nodes of a planarised mesh lie this close to their spheres, in mean edges."""
+SAME_PANEL: Final = 1e-6
+"""Panels are identical where a motion brings all corners this close, in sizes (1 µm per m)."""
+AXIS_SLACK: Final = 0.004363323129985824
+"""By how much (0.25 degrees) a node axis may pass the bound on its angle."""
+
+# Meshes
+
+SAME_LENGTH: Final = 1e-6
+"""Lengths that differ by a smaller share are equal, and an index decides."""
+CREASE: Final = 0.6981317007977318
+"""Triangles that meet at a larger angle (40 degrees) make a crease, not a curved surface."""
+
+# Spheres
 
 CROSSING: Final = 1e-9
 """How far from their ends, relative to the half chord, two arcs must meet to cross."""
+LORENTZ: Final = 1e-9
+"""How far a transform may miss the Lorentz group, relative to its squared size."""
+TRANSFORM_DIGITS: Final = 1e-6
+"""A transform whose rotation is rounded by more (radians) is refused."""
 
-SAME_CURVATURE: Final = 1e-9
-"""Curvatures that differ by less, relative to the sharpest, share a mould without a choice."""
+# Sphere meshes
 
-VERTEX_MISS: Final = 0.01
-"""Vertices farther from their sphere than this share of the mean edge are worth a warning."""
+APEX_SOLVE: Final = 1e-13
+"""Relative residual to which the well conditioned system of smoothed apexes is solved."""
+AT_INFINITY: Final = 1e-6
+"""Vertices this close, in mean edges, to the point sent to infinity have no usable image."""
+PLANAR: Final = 1e-6
+"""Faces whose vertices lie this close to a common plane, in mean edges, are planar."""
+SUPPORT_MISS: Final = 3e-4
+"""Spheres that miss orthogonality to a common sphere by more (as a cosine) have none."""
+NOISE_MARGIN: Final = 8.0
+"""How many times its estimated noise a number must exceed to differ from zero."""
 
-LITTLE_GAIN: Final = 0.05
-"""A relative gain of spheres over planes that is worth saying to be small."""
+# Solvers
+
+LINEAR_SOLVE: Final = 1e-6
+"""Relative residual to which the linear system of a Newton step is solved."""
+STEP_MODEL: Final = 0.01
+"""A Gauss-Newton step is solved until its model would gain no more than this share."""
+RESTING_MODEL: Final = 1e-3
+"""The same in a flat valley, where what is left of a step would decide where a descent ends."""
+ROUNDED_DIRECTION: Final = 1e-28
+"""A squared gradient below this share of the first is rounding."""
+
+# Optimization
+
+ANGLE_STEP: Final = 1e-9
+"""An angle minimisation has converged when no unknown moves by more (radians)."""
+AT_BOUND: Final = 1e-9
+"""Vertices this close to the bound of their displacement, relative to it, lie on it."""
+ENERGY_CHANGE: Final = 1e-6
+"""A descent has converged when a step lowers the energy by less than this share."""
+STAGE_CHANGE: Final = 1e-4
+"""A descent that others follow may end at this relative change of the energy."""
+LEAST_ENERGY: Final = 1e-16
+"""An energy as good as zero: no residual above 1e-8 of a mean edge is left."""
+
+# Panels
+
+PLANE_SAGITTA: Final = 1e-6
+"""A panel whose bulge is below this share of its size is built as a plane (1 µm per m)."""
+NEAR_CENTER: Final = 1e-3
+"""A layer of a panel needs more than this share of the radius of its sphere."""
+THIN: Final = 1e-6
+"""A panel whose thickness is below this share of its size is refused (1 µm per m)."""
+ENCLOSING: Final = 1e-12
+"""How far a point may stand out of a smallest enclosing cap, relative to its radius."""
+
+# Support
+
+NODE_TORSION: Final = 1.7453292519943296e-3
+"""Torsion (0.1 degrees) beyond which a node is not called free of torsion."""
+AXIS_LEAN: Final = 1.0471975511965976
+"""A node axis that leans more (60 degrees) from the normal carries no beams."""
+MIRROR_REACH: Final = 1e5
+"""Mirror points farther than this, in mean edges, count as being at infinity."""
+MIRROR_LEAST: Final = 1e-6
+"""Mirror points nearer than this, in mean edges, do not tell the direction of an axis."""
+BEAM_TILT: Final = 1.0471975511965976
+"""A beam whose plane tilts more (60 degrees) from the bisecting plane does not stand."""
+RIM_LEAN: Final = 0.3490658503988659
+"""Axes of the boundary may lean by this (20 degrees) to make the beams there flat."""
+RIM_CLOSED: Final = 1e-7
+"""Axes around a boundary that return this closely (radians), whatever the first is, fit."""
+
+# Hexagons
+
+STRAIGHT_CORNER: Final = 1e-9
+"""A corner that turns the wrong way by less (radians) is straight."""
+DUAL_EDGE: Final = 1e-9
+"""A dual edge shorter than this share of the edge that it crosses has no direction."""
+OFFSET_STEP: Final = 1e-6
+"""Growing offsets are at rest when none moves by more, relative to the least."""
+FAR_CORNER: Final = 0.6
+"""A corner farther from its triangle than this share of the longest side is worth a warning."""
+
+# Beams
+
+MITRE_LIMIT: Final = 2.356194490192345
+"""Half angle (135 degrees) between neighbouring beams beyond which ends are cut square."""
+STRAIGHT_RULING: Final = 1e-10
+"""A cut edge of a cylinder that bulges less, in thicknesses of the beam, is a straight line."""
+
+# Remesh
+
+NODE_EXACT: Final = 5e-10
+"""Residuals of a node below this, in mean edges and radians, count as zero."""
+NODE_ROUNDED: Final = 1e-14
+"""Residuals of a node below this are rounding alone."""
+FLATTEST: Final = 1e-3
+"""Curvature, in inverse mean edges, below which a sphere is as good as a plane."""
+BLEND_STEP: Final = 0.01
+"""How sharply the least blend that makes a congruence fit is found."""
+JET_RANK: Final = 1e-14
+"""How much it counts that the coefficients of a polynomial are small, relative to its fit."""
+LEAST_STIFFNESS: Final = 1e-3
+"""Least weight of an edge or a vertex in the smoothing of a field, relative to the ordinary."""
+UNDETERMINED: Final = 1e-9
+"""Conjugate forms below this, relative to the largest that their terms allow, are zero."""
+GAUGE_RANK: Final = 1e-9
+"""A singular value below this, relative to the largest, belongs to a freedom of the problem."""
+FOLD_SMOOTHING: Final = 1e-6
+"""How sharp the barrier against folded triangles is in the end, relative to their area."""
+FOLD_STEP: Final = 1e-3
+"""Unfolding ends when a round lowers the distortion by less than this share."""
+LATTICE_TIE: Final = 1e-7
+"""A vertex this close to a line of a map, in steps of the map, is moved off it."""
+ALIKE: Final = 1e-3
+"""Squared differences of neighbours below this, relative to the mean, count no smaller."""
+ON_SURFACE: Final = 1e-2
+"""Nodes this close to a surface, in mean edges of their net, lie on it."""
+ALIKE_NEIGHBORS: Final = 2e-4
+"""Spheres of neighbours that meet at a smaller angle (radians) are turned apart to it."""
+NODE_LANDED: Final = 1e-7
+"""Torsion (radians) of a node whose beams meet exactly, up to rounding."""
+UMBILIC: Final = 1e-3
+"""Second derivatives of spheres that vary less with the direction, relatively, tell none."""
+PLANAR_DAMPING: Final = 1e-11
+"""Least damping of a step towards planar nodes: with less, rounding is larger than the step."""
+
+# Fabrication
 
 COINCIDENT: Final = 1e-6
 """Vertices of separate meshes closer than this, in mean edges, are one (1 µm per m)."""
 EXACT_BREP: Final = 1e-12
 """How far the parts of a Brep may lie apart, relative to the radius of its sphere."""
-
-LORENTZ: Final = 1e-9
-"""How far a transform may miss the Lorentz group, relative to its squared size."""
-
-TRANSFORM_DIGITS: Final = 1e-6
-"""A transform whose rotation is rounded by more (radians) is refused."""
-
-AT_INFINITY: Final = 1e-6
-"""Vertices this close, in mean edges, to the point sent to infinity have no usable image."""
-
-STEP_MODEL: Final = 0.01
-"""A Gauss-Newton step is solved until its model would gain no more than this share."""
-
-ROUNDED_DIRECTION: Final = 1e-28
-"""A squared gradient below this share of the first is rounding."""
-
-AT_BOUND: Final = 1e-9
-"""Vertices this close to the bound of their displacement, relative to it, lie on it."""
-
-ENERGY_CHANGE: Final = 1e-6
-"""A descent has converged when a step lowers the energy by less than this share."""
-
-STAGE_CHANGE: Final = 1e-4
-"""A descent that others follow may end at this relative change of the energy."""
-
-LEAST_ENERGY: Final = 1e-16
-"""An energy as good as zero: no residual above 1e-8 of a mean edge is left."""
-
-COMMON_VERTEX: Final = 1e-6
-"""Spheres this close to a vertex, in mean edges, pass through it."""
-
-NODE_TORSION: Final = 1.7453292519943296e-3
-"""Torsion (0.1 degrees) beyond which a node is not called free of torsion."""
-
-AXIS_LEAN: Final = 1.0471975511965976
-"""A node axis that leans more (60 degrees) from the normal carries no beams."""
-
-MIRROR_REACH: Final = 1e5
-"""Mirror points farther than this, in mean edges, count as being at infinity."""
-
-MIRROR_LEAST: Final = 1e-6
-"""Mirror points nearer than this, in mean edges, do not tell the direction of an axis."""
-
-BEAM_TILT: Final = 1.0471975511965976
-"""A beam whose plane tilts more (60 degrees) from the bisecting plane does not stand."""
-
-MITRE_LIMIT: Final = 2.356194490192345
-"""Half angle (135 degrees) between neighbouring beams beyond which ends are cut square."""
-
-STRAIGHT_RULING: Final = 1e-10
-"""A cut edge of a cylinder that bulges less, in thicknesses of the beam, is a straight line."""
-
-NEAR_CENTER: Final = 1e-3
-"""A layer of a panel needs more than this share of the radius of its sphere."""
-
-THIN: Final = 1e-6
-"""A panel whose thickness is below this share of its size is refused (1 µm per m)."""
-
-ENCLOSING: Final = 1e-12
-"""How far a point may stand out of a smallest enclosing cap, relative to its radius."""
-
-PLANAR: Final = 1e-6
-"""Faces whose vertices lie this close to a common plane, in mean edges, are planar."""
-
-SUPPORT_MISS: Final = 3e-4
-"""Spheres that miss orthogonality to a common sphere by more (as a cosine) have none."""
-
-NOISE_MARGIN: Final = 8.0
-"""How many times its estimated noise a number must exceed to differ from zero."""
-
-SAME_LENGTH: Final = 1e-6
-"""Diagonals whose lengths differ by a smaller share are equally short."""
-
-CREASE: Final = 0.6981317007977318
-"""Triangles that meet at a larger angle (40 degrees) make a crease, not a curved surface."""
-
-LINE_CORNER: Final = 0.5235987755982988
-"""A boundary or crease that turns at a vertex by more (30 degrees) has a corner there."""
-
-MOSTLY_EVEN: Final = 0.95
-"""Share of edges of nearly the length asked for below which remeshing warns."""
-
-NODE_EXACT: Final = 5e-10
-"""Residuals of a node below this, in mean edges and radians, count as zero."""
-
-NODE_ROUNDED: Final = 1e-14
-"""Residuals of a node below this are rounding alone."""
-
-TORSION_FREE: Final = 1e-8
-"""Fourth singular value of the spheres around a node, relative to the first, that is none."""
-
-NODE_ON_SPHERES: Final = 1e-6
-"""Nodes of a planarised mesh lie this close to their spheres, in mean edges."""
-
-FLATTEST: Final = 1e-3
-"""Curvature, in inverse mean edges, below which a sphere is as good as a plane."""
-
-BLEND_STEP: Final = 0.01
-"""How sharply the least blend that makes a congruence fit is found."""
-
 SINGLE_EPSILON: Final = 1.1920928955078125e-07
 """Spacing of float32 at 1."""
-
-SAME_PANEL: Final = 1e-6
-"""Panels are identical where a motion brings all corners this close, in sizes (1 µm per m)."""
-
 EDGE_MISS: Final = 0.01
 """A trimmed face whose edges lie farther off its surface, in edge lengths, is refused."""
-
 CLOSED: Final = 1e-6
 """A surface whose ends lie this close, relative to its size, is closed there."""
-
-STRAIGHT_CORNER: Final = 1e-9
-"""A corner that turns the wrong way by less (radians) is straight."""
-
-DUAL_EDGE: Final = 1e-9
-"""A dual edge shorter than this share of the edge that it crosses has no direction."""
-
-AXIS_SLACK: Final = 0.004363323129985824
-"""By how much (0.25 degrees) a node axis may pass the bound on its angle."""
-
-OFFSET_STEP: Final = 1e-6
-"""Growing offsets are at rest when none moves by more, relative to the least."""
-
-FAR_CORNER: Final = 0.6
-"""A corner farther from its triangle than this share of the longest side is worth a warning."""
-
-JET_RANK: Final = 1e-14
-"""How much it counts that the coefficients of a polynomial are small, relative to its fit."""
-
-LEAST_STIFFNESS: Final = 1e-3
-"""Least weight of an edge or a vertex in the smoothing of a field, relative to the ordinary."""
-
-UNDETERMINED: Final = 1e-9
-"""Conjugate forms below this, relative to the largest that their terms allow, are zero."""
-
-GAUGE_RANK: Final = 1e-9
-"""A singular value below this, relative to the largest, belongs to a freedom of the problem."""
-
-FOLD_SMOOTHING: Final = 1e-6
-"""How sharp the barrier against folded triangles is in the end, relative to their area."""
-
-FOLD_STEP: Final = 1e-3
-"""Unfolding ends when a round lowers the distortion by less than this share."""
-
-LATTICE_TIE: Final = 1e-7
-"""A vertex this close to a line of a map, in steps of the map, is moved off it."""
-
 OVERLAP: Final = 1e-6
 """Beams that run into each other by less, in thicknesses, touch (rounding of mitres)."""
-
 SINGLE_IS_ENOUGH: Final = 0.01
 """Share of the error of a triangulation that rounding its points to float32 may add."""
 
-ALIKE: Final = 1e-3
-"""Squared differences of neighbours below this, relative to the mean, count no smaller."""
+# Warnings of nodes
 
-ON_SURFACE: Final = 1e-2
-"""Nodes this close to a surface, in mean edges of their net, lie on it."""
-
-RIM_LEAN: Final = 0.3490658503988659
-"""Axes of the boundary may lean by this (20 degrees) to make the beams there flat."""
-
-ALIKE_NEIGHBORS: Final = 2e-4
-"""Spheres of neighbours that meet at a smaller angle (radians) are turned apart to it."""
-
-NODE_LANDED: Final = 1e-7
-"""Torsion (radians) of a node whose beams meet exactly, up to rounding."""
-
-RIM_CLOSED: Final = 1e-7
-"""Axes around a boundary that return this closely (radians), whatever the first is, fit."""
-
-UMBILIC: Final = 1e-3
-"""Second derivatives of spheres that vary less with the direction, relatively, tell none."""
-
-PLANAR_DAMPING: Final = 1e-11
-"""Least damping of a step towards planar nodes: with less, rounding is larger than the step."""
+VERTEX_MISS: Final = 0.01
+"""Vertices farther from their sphere than this share of the mean edge are worth a warning."""
+LITTLE_GAIN: Final = 0.05
+"""A relative gain of spheres over planes that is worth saying to be small."""
+MOSTLY_EVEN: Final = 0.95
+"""Share of edges of nearly the length asked for below which remeshing warns."""
+TORSION_FREE: Final = 1e-8
+"""Fourth singular value of the spheres around a node, relative to the first, that is none."""

@@ -120,7 +120,6 @@ def project_points(camera: Camera, points: FloatArray) -> FloatArray:
     Parameters
     ----------
     camera : Camera
-        The camera.
     points : (N, 3) float array
         Points in front of it.
 
@@ -149,7 +148,6 @@ def pixel_rays(camera: Camera, x: FloatArray, y: FloatArray) -> FloatArray:
     Parameters
     ----------
     camera : Camera
-        The camera.
     x, y : (n,) float array
         Pixels to the right and downwards.
 

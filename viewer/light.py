@@ -50,9 +50,7 @@ def depth_map(
     Parameters
     ----------
     points : (N, 3) float array
-        Points.
     triangles : (T, 3) int array
-        Triangles.
     direction : (3,) float array
         Towards the light.
     size : int
@@ -80,7 +78,6 @@ def light_reaches(light: DepthMap, points: FloatArray, softness: float = 0.0) ->
     Parameters
     ----------
     light : DepthMap
-        The light.
     points : (N, 3) float array
         Points, lifted from their surface towards the light by about a pixel.
     softness : float
@@ -119,7 +116,6 @@ def sky_maps(points: FloatArray, triangles: IntArray) -> list[DepthMap]:
     Parameters
     ----------
     points : (N, 3) float array
-        Points.
     triangles : (T, 3) int array
         Triangles; coarse ones will do.
 
@@ -143,11 +139,8 @@ def sky_openness(sky: list[DepthMap], points: FloatArray, normals: FloatArray) -
     Parameters
     ----------
     sky : list of DepthMap
-        The sky.
     points : (N, 3) float array
-        Points.
     normals : (N, 3) float array
-        Unit normals.
 
     Returns
     -------

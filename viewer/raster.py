@@ -14,8 +14,8 @@ import numpy as np
 
 from ..kernel.arrays import FloatArray, IntArray
 
-BATCH = 1 << 21
-"""Pixels in work at a time."""
+_BATCH = 1 << 21
+"""What bounds the memory that is used."""
 
 _DEPTH_STEPS = 2**31 - 1
 
@@ -48,7 +48,6 @@ def affine_over_triangles(
     points : (N, 3) float array
         Pixels to the right and downwards, and anything.
     triangles : (T, 3) int array
-        Triangles.
     values : (T, 3) float array
         Value at each corner.
 
@@ -112,7 +111,6 @@ def close_hairlines(picture: DepthPicture) -> DepthPicture:
     Parameters
     ----------
     picture : DepthPicture
-        The picture.
 
     Returns
     -------
@@ -140,8 +138,8 @@ def _pixels(
     counts = np.clip(np.ceil(y.max(axis=1)), 0, height).astype(np.int64) - first
     counts[(x.max(axis=1) < 0) | (x.min(axis=1) > width)] = 0
     sides = _Sides.of(x, y)
-    load = np.cumsum(counts * (np.minimum(np.ptp(x, axis=1), width) / 2 + 4))
-    starts = np.searchsorted(load, np.arange(0, float(load[-1]) if len(load) else 0, BATCH))
+    load = np.cumsum(counts * (np.minimum(x.max(axis=1) - x.min(axis=1), width) / 2 + 4))
+    starts = np.searchsorted(load, np.arange(0, float(load[-1]) if len(load) else 0, _BATCH))
     for begin, end in pairwise([*starts.tolist(), len(triangles)]):
         chosen: IntArray = np.arange(int(begin), int(end))
         owner, step = _expand(chosen, counts[chosen])

@@ -36,8 +36,8 @@ Shading = Literal["studio", "zebra"]
 SUPERSAMPLING = 2
 """Samples of a pixel along each side."""
 
-BATCH = 1 << 15
-"""Samples shaded at a time: what stays in the processor's cache."""
+_BATCH = 1 << 15
+"""As many are shaded as stay in the processor's cache."""
 
 MAX_SIDE = 8000
 
@@ -68,7 +68,6 @@ def render_image(
     Parameters
     ----------
     panels : Panels
-        The panels.
     color_by : {"mould", "radius", "none"}
         What the colours stand for: the mould; the curvature (red where a panel curves
         outwards, blue where inwards, pale where flat); nothing.
@@ -203,14 +202,14 @@ def _take(scene: Scene, camera: Camera, colors: FloatArray, shading: Shading) ->
     found, nearness = picture.triangles.ravel(), picture.nearness.ravel()
     seen = np.flatnonzero(found >= 0)
     tones = np.empty((len(seen), 3))
-    for begin in range(0, len(seen), BATCH):
-        samples = seen[begin : begin + BATCH]
+    for begin in range(0, len(seen), _BATCH):
+        samples = seen[begin : begin + _BATCH]
         sight = look(scene, camera, samples, found[samples], nearness[samples])
         light = _light_on(sight, lamps, shares)
         if shading == "zebra":
-            tones[begin : begin + BATCH] = _zebra(sight, camera, light)
+            tones[begin : begin + _BATCH] = _zebra(sight, camera, light)
         else:
-            tones[begin : begin + BATCH] = _studio(sight, colors[sight.panels], light)
+            tones[begin : begin + _BATCH] = _studio(sight, colors[sight.panels], light)
     return _develop(_ground_picture(scene, camera, lamps), camera, seen, tones)
 
 

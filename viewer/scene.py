@@ -8,7 +8,7 @@ from ..kernel.arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..kernel.errors import InputError
 from ..kernel.panels.panels import Panels
 from ..kernel.panels.tessellation import PanelTriangles, surface_rows, tessellate
-from ..kernel.spheres.rows import evaluate, normals
+from ..kernel.spheres.incidence import evaluate, normals
 from .camera import Camera, pixel_rays
 
 JOINT_WIDTH = 0.01
@@ -55,7 +55,6 @@ def make_scene(panels: Panels) -> Scene:
     Parameters
     ----------
     panels : Panels
-        The panels.
 
     Returns
     -------
@@ -126,15 +125,12 @@ def look(
     Parameters
     ----------
     scene : Scene
-        The scene.
     camera : Camera
-        The camera.
     samples : (n,) int array
         Samples of the picture, counted row by row.
     found : (n,) int array
         Triangles that are seen there.
     nearness : (n,) float array
-        Their nearness.
 
     Returns
     -------

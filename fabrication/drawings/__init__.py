@@ -1,7 +1,7 @@
 """
-Flat drawings in millimetres: beams for cutting, moulds with their blanks.
+Flat drawings in millimetres.
 
-beams   Cutting drawings of beams as DXF: exact contours, nested on sheets, in millimetres.
-moulds  Drawings of moulds: every panel in its blank, seen along the axis of the blank, in
-        millimetres.
+beams   Cutting drawings of beams as DXF: exact contours, nested on sheets.
+dxf     DXF documents in millimetres, without dates and random identifiers.
+moulds  Drawings of moulds as DXF or SVG: every panel in its blank, seen along its axis.
 """

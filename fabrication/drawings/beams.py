@@ -9,12 +9,9 @@ the outlines of the sheets.
 import io
 import math
 import os
-from collections.abc import Generator, Mapping
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, TypeAlias
-from unicodedata import east_asian_width
 
 import numpy as np
 
@@ -22,28 +19,24 @@ from ...kernel.arrays import FloatArray, norm
 from ...kernel.beams.beams import Beams, DrillMarks, scale_beams
 from ...kernel.beams.contours import Contours, beam_contours, contour_boxes, shelves
 from ...kernel.beams.drilling import mark_centers
-from ...kernel.errors import InputError, MissingLibraryError
+from ...kernel.errors import InputError
 from ...kernel.support.node_axes import node_name
 from ..files import check_suffix, replacing
 from ..model import Model, Written, check_parts
 from ..units import millimeters_per
+from .dxf import fixed_ezdxf, millimeter_drawing, text_width
 
 # What comes from ezdxf is partly untyped.
 _Untyped: TypeAlias = Any
 
-BEAM_LAYERS: Final = {"CUT": 1, "ENGRAVE": 3, "DRILL": 5, "SHEET": 8}
+_LAYERS: Final = {"CUT": 1, "ENGRAVE": 3, "DRILL": 5, "SHEET": 8}
 """Layers of a drawing and their colours, by AutoCAD's index."""
-
-_MILLIMETERS = 4
-"""Code of the unit in a DXF file."""
 
 _LABEL = 25.0
 """Largest height of a label, in millimetres."""
 
 _LABEL_SHARE = 0.35
-_LETTER = 0.9
-"""Labels are at most this share of the width of their beam; letters are this wide, and twice
-as wide in the scripts of East Asia."""
+"""Labels are at most this share of the width of their beam."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +72,6 @@ def write_dxf(
     path : path
         File to write. It is replaced when the new one is complete.
     options : SheetOptions
-        The sheets.
 
     Returns
     -------
@@ -115,7 +107,7 @@ def write_dxf(
     corners = _sheet_corners(sizes, sheets, oversize, sheet, spacing)
     shifts = places - boxes[:, 0] + corners[sheets, 0]
     with fixed_ezdxf() as library:
-        document = millimeter_drawing(library, BEAM_LAYERS)
+        document = millimeter_drawing(library, _LAYERS)
         space = document.modelspace()
         for low, high in corners.tolist():
             ring = [low, [high[0], low[1]], high, [low[0], high[1]]]
@@ -148,47 +140,6 @@ def _sheet_corners(
     heights = np.concatenate([[0.0], np.cumsum(extents[:-1, 1] + gap)])
     low = np.stack([np.zeros_like(heights), heights], 1)
     return np.stack([low, low + extents], 1)
-
-
-def millimeter_drawing(library: _Untyped, layers: Mapping[str, int]) -> _Untyped:
-    """
-    An empty drawing in millimetres.
-
-    Parameters
-    ----------
-    library : module
-        What `fixed_ezdxf` gives.
-    layers : mapping of str to int
-        Layers and their colours, by AutoCAD's index.
-
-    Returns
-    -------
-    ezdxf.document.Drawing
-        The drawing.
-    """
-    document = library.new("R2010")
-    document.units = _MILLIMETERS
-    document.header["$MEASUREMENT"] = 1
-    for name, color in layers.items():
-        document.layers.add(name, color=color)
-    return document
-
-
-def text_width(text: str) -> float:
-    """
-    Width of a line of text, on the safe side.
-
-    Parameters
-    ----------
-    text : str
-
-    Returns
-    -------
-    float
-        In heights of its capitals.
-    """
-    wide = sum(east_asian_width(letter) in "WF" for letter in text)
-    return _LETTER * (len(text) + wide)
 
 
 def _add_contours(space: _Untyped, contours: Contours, shifts: FloatArray) -> None:
@@ -247,32 +198,3 @@ def _add_marks(space: _Untyped, beams: Beams, marks: DrillMarks, shifts: FloatAr
     centers = (mark_centers(beams, marks) + shifts[:, None])[marks.fits]
     for center in centers.reshape(-1, 2).tolist():
         space.add_circle(center, marks.diameter / 2, dxfattribs={"layer": "DRILL"})
-
-
-@contextmanager
-def fixed_ezdxf() -> Generator[_Untyped]:
-    """
-    Import ezdxf, without time and random identifiers in what it writes.
-
-    Yields
-    ------
-    module
-        The library.
-
-    Raises
-    ------
-    MissingLibraryError
-        If it is missing.
-    """
-    try:
-        import ezdxf
-    except ImportError as error:
-        raise MissingLibraryError(f"DXF needs ezdxf: {error}; install ezdxf") from error
-    library: _Untyped = ezdxf
-    options = library.options
-    before = options.write_fixed_meta_data_for_testing
-    options.write_fixed_meta_data_for_testing = True
-    try:
-        yield library
-    finally:
-        options.write_fixed_meta_data_for_testing = before

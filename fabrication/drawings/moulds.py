@@ -23,18 +23,18 @@ from ...kernel.spheres.arcs import Arcs, arc_points
 from ..files import check_suffix, replacing
 from ..model import Model, Written, check_parts
 from ..units import millimeters_per
-from .beams import fixed_ezdxf, millimeter_drawing, text_width
+from .dxf import fixed_ezdxf, millimeter_drawing, text_width
 
-MOULD_LAYERS: Final = {"OUTER": 7, "INNER": 8, "BLANK": 5, "TEXT": 3}
+_LAYERS: Final = {"OUTER": 7, "INNER": 8, "BLANK": 5, "TEXT": 3}
 """Layers and their colours in DXF: outer and inner outlines, rims of blanks, labels."""
 
-STROKES: Final = {"OUTER": "#000000", "INNER": "#808080", "BLANK": "#2060c0"}
+_STROKES: Final = {"OUTER": "#000000", "INNER": "#808080", "BLANK": "#2060c0"}
 """Colours of the lines in SVG."""
 
-CHORD_MM: Final = 0.1
+_CHORD_MM: Final = 0.1
 """How far the drawn outlines stand off the arcs."""
 
-_MOST_STEPS: Final = 128
+_MAX_STEPS: Final = 128
 
 _DECLARATION: Final = "<?xml version='1.0' encoding='utf-8'?>\n"
 
@@ -47,7 +47,6 @@ class Label:
     Attributes
     ----------
     text : str
-        The text.
     at : tuple of float
         Where its baseline begins (or its middle is), in mm.
     height : float
@@ -74,7 +73,6 @@ class Drawing:
     rims : list of tuple of float
         Centre x, y and radius of each blank.
     labels : list of Label
-        The texts.
     width, height : float
         Size: x from 0 to the width, y from minus the height to 0.
     """
@@ -194,7 +192,7 @@ def _outlines(made: Panels, arcs: Arcs, caps: PanelCaps) -> list[FloatArray]:
     owners, first = made.corner_panels, made.offsets[:-1]
     # An arc cut into n chords stands off them by its sagitta over n².
     sagittas = np.maximum.reduceat(np.abs(arcs.sagittas), first)
-    steps = np.clip(np.ceil(np.sqrt(sagittas / CHORD_MM)), 1, _MOST_STEPS).astype(np.int64)
+    steps = np.clip(np.ceil(np.sqrt(sagittas / _CHORD_MM)), 1, _MAX_STEPS).astype(np.int64)
     along = arcs.ends[first] - arcs.starts[first]
     along = unit(along - dot(along, caps.axes)[:, None] * caps.axes)
     frames = np.stack([along, np.cross(caps.axes, along)], 1)
@@ -240,7 +238,7 @@ def _dxf(drawing: Drawing) -> str:
     with fixed_ezdxf() as library:
         from ezdxf.enums import TextEntityAlignment
 
-        document = millimeter_drawing(library, MOULD_LAYERS)
+        document = millimeter_drawing(library, _LAYERS)
         model = document.modelspace()
         for layer, points in drawing.outlines:
             model.add_lwpolyline(points.tolist(), close=True, dxfattribs={"layer": layer})
@@ -270,7 +268,7 @@ def _svg(drawing: Drawing) -> str:
     line = {"fill": "none", "stroke-width": "1", "vector-effect": "non-scaling-stroke"}
     groups = {
         layer: ElementTree.SubElement(root, "g", {"id": layer, "stroke": color})
-        for layer, color in STROKES.items()
+        for layer, color in _STROKES.items()
     }
     groups["TEXT"] = ElementTree.SubElement(
         root, "g", {"id": "TEXT", "font-family": "sans-serif"}

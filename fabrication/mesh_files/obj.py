@@ -1,13 +1,14 @@
 """Wavefront OBJ: polygons of any degree, groups and objects, vertices counted from 1."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 
 from ...kernel.errors import InputError
 from ...kernel.meshes.mesh import Mesh
 from ..polygons import Polygons, drop_unused
-from ..text import decode, face_words, numbered_words, to_floats, to_integers
+from ..text import TextPolygons, decode, face_words, numbered_words
 
 
 def read_obj(data: bytes, layer: str = "") -> Polygons:
@@ -33,11 +34,7 @@ def read_obj(data: bytes, layer: str = "") -> Polygons:
         If a line cannot be read or no group or object matches; the message names the line,
         or the groups and objects that there are.
     """
-    coordinates: list[str] = []
-    vertex_lines: list[int] = []
-    corner_words: list[str] = []
-    degrees: list[int] = []
-    face_lines: list[int] = []
+    found = TextPolygons()
     vertices_before: list[int] = []
     names = {"g": "", "o": ""}
     all_names: list[str] = []
@@ -45,34 +42,25 @@ def read_obj(data: bytes, layer: str = "") -> Polygons:
     for number, words in numbered_words(_join_continued(decode(data))):
         keyword = words[0]
         if keyword == "v":
-            if len(words) < 4:
-                raise InputError(f"line {number}: a vertex needs three coordinates")
-            coordinates += words[1:4]
-            vertex_lines.append(number)
+            found.add_vertex(number, words[1:])
         elif keyword == "f" and is_selected:
-            corner_words += words[1:]
-            degrees.append(len(words) - 1)
-            face_lines.append(number)
-            vertices_before.append(len(vertex_lines))
+            # The vertex of corners written as vertex/texture/normal.
+            found.add_face(number, [word.partition("/")[0] for word in words[1:]])
+            vertices_before.append(len(found.vertex_lines))
         elif keyword in names:
             names[keyword] = " ".join(words[1:])
             all_names.append(names[keyword])
             is_selected = any(_has_prefix(name, layer) for name in names.values())
-    if layer and not degrees:
+    if layer and not found.degrees:
         raise InputError(
             f"no face is in a group or object whose name starts with {layer!r}; the file names "
             + (", ".join(map(repr, dict.fromkeys(filter(None, all_names)))) or "none")
         )
-    written = to_integers(_vertex_words(corner_words), face_lines, degrees)
+    polygons = found.polygons()
     # Negative numbers count back from the last vertex before the face.
-    before = np.repeat(np.array(vertices_before, np.int64), degrees)
-    polygons = Polygons(
-        to_floats(coordinates, vertex_lines, 3),
-        np.where(written < 0, before + written, written - 1),
-        np.array(degrees, np.int64),
-        vertex_lines,
-        face_lines,
-    )
+    before = np.repeat(np.array(vertices_before, np.int64), found.degrees)
+    written = polygons.corners
+    polygons = replace(polygons, corners=np.where(written < 0, before + written, written - 1))
     return drop_unused(polygons) if layer else polygons
 
 
@@ -92,13 +80,6 @@ def _has_prefix(name: str, prefix: str) -> bool:
     return any(each.startswith(prefix) for each in (name, *name.split()))
 
 
-def _vertex_words(corner_words: list[str]) -> list[str]:
-    """The vertex of corners written as vertex/texture/normal."""
-    if any("/" in word for word in corner_words):
-        return [word.partition("/")[0] for word in corner_words]
-    return corner_words
-
-
 def format_obj(mesh: Mesh) -> bytes:
     """
     A mesh as an OBJ file.
@@ -106,7 +87,6 @@ def format_obj(mesh: Mesh) -> bytes:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------

@@ -4,12 +4,10 @@ import re
 from collections.abc import Iterator
 from itertools import islice
 
-import numpy as np
-
 from ...kernel.errors import InputError
 from ...kernel.meshes.mesh import Mesh
 from ..polygons import Polygons
-from ..text import decode, face_words, numbered_words, to_count, to_floats, to_integers
+from ..text import TextPolygons, decode, face_words, numbered_words, to_count
 
 _KEYWORD = re.compile(r"(ST)?C?N?OFF")
 """Texture coordinates, colours and normals follow the point on its line and are ignored."""
@@ -37,16 +35,9 @@ def read_off(data: bytes) -> Polygons:
     """
     rows = numbered_words(decode(data))
     n_vertices, n_faces = _read_counts(rows)
-    coordinates: list[str] = []
-    vertex_lines: list[int] = []
+    found = TextPolygons()
     for number, words in islice(rows, n_vertices):
-        if len(words) < 3:
-            raise InputError(f"line {number}: a vertex needs three coordinates")
-        coordinates += words[:3]
-        vertex_lines.append(number)
-    corner_words: list[str] = []
-    degrees: list[int] = []
-    face_lines: list[int] = []
+        found.add_vertex(number, words)
     for number, words in islice(rows, n_faces):
         degree = to_count(words[0])
         if not 0 <= degree < len(words):
@@ -54,22 +45,15 @@ def read_off(data: bytes) -> Polygons:
                 f"line {number}: a face is its number of corners and so many vertices, not "
                 f"{' '.join(words)!r}; export the mesh again"
             )
-        corner_words += words[1 : 1 + degree]
-        degrees.append(degree)
-        face_lines.append(number)
+        found.add_face(number, words[1 : 1 + degree])
+    vertex_lines, face_lines = found.vertex_lines, found.face_lines
     if len(vertex_lines) + len(face_lines) < n_vertices + n_faces:
         raise InputError(
             f"line {[1, *vertex_lines, *face_lines][-1]}: the file ends after "
             f"{len(vertex_lines)} of {n_vertices} vertices and {len(face_lines)} of {n_faces} "
             "faces; export the mesh again"
         )
-    return Polygons(
-        to_floats(coordinates, vertex_lines, 3),
-        to_integers(corner_words, face_lines, degrees),
-        np.array(degrees, np.int64),
-        vertex_lines,
-        face_lines,
-    )
+    return found.polygons()
 
 
 def _read_counts(rows: Iterator[tuple[int, list[str]]]) -> tuple[int, int]:
@@ -97,7 +81,6 @@ def format_off(mesh: Mesh) -> bytes:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------

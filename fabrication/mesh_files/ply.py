@@ -12,7 +12,7 @@ from ...kernel.arrays import IntArray
 from ...kernel.errors import InputError
 from ...kernel.meshes.mesh import Mesh
 from ..polygons import Polygons
-from ..text import decode, numbered_words, to_count, to_floats, to_integers
+from ..text import TextPolygons, decode, numbered_words, to_count
 
 _AGAIN = "export the mesh again"
 _ORDERS: Final = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
@@ -122,36 +122,22 @@ def _coordinate_columns(element: _Element) -> list[int]:
 
 def _read_ascii(body: bytes, header: _Header) -> Polygons:
     rows = numbered_words(decode(body), header.n_lines + 1)
-    coordinates: list[str] = []
-    corner_words: list[str] = []
-    degrees: list[int] = []
-    lines: dict[str, list[int]] = {"vertex": [], "face": []}
+    found = TextPolygons()
     last = header.n_lines
     for element in header.elements:
         columns = _coordinate_columns(element) if element.name == "vertex" else []
         n_read = 0
         for n_read, (last, words) in enumerate(islice(rows, element.count), 1):  # noqa: B007
             if element.name == "vertex":
-                if len(words) <= max(columns):
-                    raise InputError(f"line {last}: a vertex needs three coordinates")
-                coordinates += [words[column] for column in columns]
+                found.add_vertex(last, [words[i] for i in columns if i < len(words)])
             elif element.name == "face":
-                corners = _ascii_corners(last, words, element)
-                corner_words += corners
-                degrees.append(len(corners))
-            lines.setdefault(element.name, []).append(last)
+                found.add_face(last, _ascii_corners(last, words, element))
         if n_read < element.count:
             raise InputError(
                 f"line {last}: the file ends after {n_read} of {element.count} rows of element "
                 f"{element.name}; {_AGAIN}"
             )
-    return Polygons(
-        to_floats(coordinates, lines["vertex"], 3),
-        to_integers(corner_words, lines["face"], degrees),
-        np.array(degrees, np.int64),
-        lines["vertex"],
-        lines["face"],
-    )
+    return found.polygons()
 
 
 def _ascii_corners(number: int, words: list[str], element: _Element) -> list[str]:
@@ -254,7 +240,6 @@ def format_ply(mesh: Mesh) -> bytes:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------

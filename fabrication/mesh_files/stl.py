@@ -91,7 +91,6 @@ def format_stl(mesh: Mesh) -> bytes:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------

@@ -2,7 +2,7 @@
 Judges one-faced Breps from their bytes alone, before they reach a file.
 
 openNURBS calls a Brep valid whose vertex is off by a thousandth, whose surface is shifted or
-whose loop runs backwards. Here the stream (layout: `fabrication.opennurbs`) is parsed afresh,
+whose loop runs backwards. Here the stream (layout: `brep_writer`) is parsed afresh,
 with its checksums, and trims, edges, vertices and sphere are evaluated and compared.
 
 Streams of the same layout are judged together: the first is parsed, the others must equal it in
@@ -16,16 +16,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...kernel.arrays import BoolArray, FloatArray, IntArray, dot, norm
-from ...kernel.spheres.rows import minkowski, normals, signed_distance
+from ...kernel.spheres.incidence import normals, signed_distance
+from ...kernel.spheres.minkowski import minkowski
 from ...kernel.tolerances import EPSILON, EXACT_BREP
-from .brep_layout import BrepLayout, Curve, Side, Surface, parse_brep
-from .chunks import CRC, Checksum
-from .cursor import UnreadableError
-from .mesh_audit import mesh_defects, mesh_distances
-from .panel_breps import LINE_CURVE, PLANE_SURFACE
-
-_SAMPLES = 9
-"""Points per Bézier span of a trim and per edge, the ends included."""
+from .brep_evaluation import (
+    distances_to_edge,
+    edge_points,
+    stream_numbers,
+    surface_points,
+    trim_points,
+)
+from .brep_layout import BrepLayout, Side, Surface
+from .brep_reader import parse_brep
+from .render_mesh_audit import audit_render_meshes
+from .stream_codes import CRC, PLANE_SURFACE, Checksum
+from .stream_reader import UnreadableError
 
 _ROUNDING = 16
 """Spacings of float64, at the largest coordinate, that the parts of a Brep may differ by."""
@@ -79,14 +84,17 @@ class BrepErrors:
         Returns
         -------
         float
-            Distance, in model units.
+            In model units.
         """
-        return max(
-            self.trim_to_edge,
-            self.trim_to_vertex,
-            self.edge_to_vertex,
-            self.to_sphere,
-            self.mesh_to_sphere,
+        return max(distance for distance, _ in self._distances())
+
+    def _distances(self) -> tuple[tuple[float, str], ...]:
+        return (
+            (self.trim_to_edge, "a trim leaves its edge"),
+            (self.trim_to_vertex, "the loop is open at a vertex"),
+            (self.edge_to_vertex, "an edge does not end in its vertices"),
+            (self.to_sphere, "the surface is not the sphere of the panel"),
+            (self.mesh_to_sphere, "the render mesh leaves the sphere"),
         )
 
     def reason(self) -> str:
@@ -102,43 +110,12 @@ class BrepErrors:
         if self.defect:
             return self.defect
         allowed = EXACT_BREP * self.scale + self.rounding
-        for distance, text in (
-            (self.trim_to_edge, "a trim leaves its edge"),
-            (self.trim_to_vertex, "the loop is open at a vertex"),
-            (self.edge_to_vertex, "an edge does not end in its vertices"),
-            (self.to_sphere, "the surface is not the sphere of the panel"),
-            (self.mesh_to_sphere, "the render mesh leaves the sphere"),
-        ):
+        for distance, text in self._distances():
             if not distance <= allowed:
                 return f"{text}: {distance:.3g} where {allowed:.3g} is allowed"
         if not self.is_counter_clockwise:
             return "the loop runs clockwise"
         return "" if self.is_outward else "the face looks inwards"
-
-
-def verify_brep_bytes(
-    stream: bytes, sphere: FloatArray | None = None, origin: FloatArray | None = None
-) -> BrepErrors:
-    """
-    Errors of a Brep, measured from its bytes.
-
-    Parameters
-    ----------
-    stream : bytes
-        An `ON_Brep` of one face and one loop, as written by `brep_streams` or by openNURBS.
-    sphere : (5,) float array, optional
-        Unit row that the face must lie on; without it, the sphere is taken from the surface.
-    origin : (3,) float array, optional
-        Origin of the coordinates of `sphere`, in model coordinates.
-
-    Returns
-    -------
-    BrepErrors
-        The errors; a stream that cannot be read has a defect instead.
-    """
-    spheres = None if sphere is None else np.asarray(sphere)[None]
-    origins = None if origin is None else np.asarray(origin)[None]
-    return verify_breps([stream], spheres, origins)[0]
 
 
 def verify_breps(
@@ -147,21 +124,21 @@ def verify_breps(
     origins: FloatArray | None = None,
 ) -> list[BrepErrors]:
     """
-    Errors of many Breps; those of the same layout are measured together.
+    Errors of Breps, measured from their bytes; those of the same layout together.
 
     Parameters
     ----------
     streams : sequence of bytes
-        P streams, see `verify_brep_bytes`.
+        P `ON_Brep` of one face and one loop, as written by `brep_streams` or by openNURBS.
     spheres : (P, 5) float array, optional
-        Unit rows that the faces must lie on.
+        Unit rows that the faces must lie on; without them, spheres are taken from the surfaces.
     origins : (P, 3) float array, optional
         Origins of the coordinates of the rows; the model's own by default.
 
     Returns
     -------
     list of BrepErrors
-        P records.
+        P records; a stream that cannot be read has a defect and no errors.
     """
     result = [BrepErrors()] * len(streams)
     if origins is None:
@@ -205,8 +182,8 @@ def _measure(
         distances = _distances(samples, rows, origins)
         on_meshes = np.zeros(len(streams))
         if layout.mesh is not None:
-            on_meshes = mesh_distances(streams, layout.mesh, rows, origins)
-            for defect, is_bad in mesh_defects(streams, layout.mesh, rows, origins):
+            on_meshes, found = audit_render_meshes(streams, layout.mesh, rows, origins)
+            for defect, is_bad in found:
                 for i in np.flatnonzero(is_bad):
                     defects[i] = defects[i] or defect
         distances = np.column_stack([distances, on_meshes])
@@ -227,16 +204,10 @@ def _measure(
 # Numbers
 
 
-def _numbers(streams: NDArray[np.uint8], place: int, count: int) -> FloatArray:
-    """Float64 numbers (n, count) that begin at a place of every stream."""
-    raw = np.ascontiguousarray(streams[:, place : place + 8 * count])
-    return raw.view("<f8").astype(np.float64)
-
-
 def _defects(streams: NDArray[np.uint8], layout: BrepLayout) -> list[str]:
     """Why streams cannot be measured; empty where they can."""
     found = [
-        ("a number is not finite", ~np.isfinite(_numbers(streams, *at)))
+        ("a number is not finite", ~np.isfinite(stream_numbers(streams, *at)))
         for at in layout.numbers
     ]
     found += [
@@ -266,13 +237,13 @@ def _checksum_defects(streams: NDArray[np.uint8], checksums: tuple[Checksum, ...
 def _side_defects(streams: NDArray[np.uint8], side: Side) -> list[tuple[str, BoolArray]]:
     found: list[tuple[str, BoolArray]] = []
     for curve, place in ((side.trim, side.trim_domain), (side.edge, side.edge_domain)):
-        domain = np.hstack([_numbers(streams, at, 1) for at in curve.domain])
-        found.append(("a curve is used in part", _numbers(streams, place, 2) != domain))
+        domain = np.hstack([stream_numbers(streams, at, 1) for at in curve.domain])
+        found.append(("a curve is used in part", stream_numbers(streams, place, 2) != domain))
         found.append(("a curve runs backwards", np.diff(domain) <= 0))
     trim = side.trim
     if trim.n_knots:
-        weights = _numbers(streams, trim.points, 3 * trim.n_points)[:, 2::3]
-        knots = _numbers(streams, trim.knots, trim.n_knots)
+        weights = stream_numbers(streams, trim.points, 3 * trim.n_points)[:, 2::3]
+        knots = stream_numbers(streams, trim.knots, trim.n_knots)
         found.append(("a trim is not made of Bézier spans", _off_bezier(knots)))
         found.append(("a weight is not positive", weights <= 0))
     return found
@@ -282,12 +253,12 @@ def _surface_defects(
     streams: NDArray[np.uint8], surface: Surface
 ) -> list[tuple[str, BoolArray]]:
     if surface.uuid == PLANE_SURFACE:
-        domains, extents = np.split(_numbers(streams, surface.knots[0], 8), 2, axis=1)
+        domains, extents = np.split(stream_numbers(streams, surface.knots[0], 8), 2, axis=1)
         return [("the extents of a plane are not its domains", domains != extents)]
     n_u, n_v = surface.n_points
-    weights = _numbers(streams, surface.points, 4 * n_u * n_v)[:, 3::4]
+    weights = stream_numbers(streams, surface.points, 4 * n_u * n_v)[:, 3::4]
     knots = [
-        _numbers(streams, place, count + 1)
+        stream_numbers(streams, place, count + 1)
         for place, count in zip(surface.knots, surface.n_points, strict=True)
     ]
     return [
@@ -326,11 +297,11 @@ class _Samples:
 
 def _samples(streams: NDArray[np.uint8], layout: BrepLayout) -> _Samples:
     sides = layout.sides
-    vertices = np.stack([_numbers(streams, side.start, 3) for side in sides], 1)
-    uv = [_trim_points(streams, side.trim) for side in sides]
-    trims = [_surface_points(streams, layout.surface, points) for points in uv]
+    vertices = np.stack([stream_numbers(streams, side.start, 3) for side in sides], 1)
+    uv = [trim_points(streams, side.trim) for side in sides]
+    trims = [surface_points(streams, layout.surface, points) for points in uv]
     off_edges = [
-        _distances_to_edge(streams, side.edge, points).max(1)
+        distances_to_edge(streams, side.edge, points).max(1)
         for side, points in zip(sides, trims, strict=True)
     ]
     outlines = np.concatenate([points[:, :-1] for points in uv], 1)
@@ -338,10 +309,10 @@ def _samples(streams: NDArray[np.uint8], layout: BrepLayout) -> _Samples:
     halfway = np.concatenate([center, (outlines + center) / 2], 1)
     return _Samples(
         vertices,
-        np.stack([_edge_points(streams, side.edge) for side in sides], 1),
+        np.stack([edge_points(streams, side.edge) for side in sides], 1),
         np.stack(trims, 1),
         np.stack(off_edges, 1),
-        _surface_points(streams, layout.surface, halfway),
+        surface_points(streams, layout.surface, halfway),
         outlines,
     )
 
@@ -394,93 +365,3 @@ def _signed_areas(outlines: FloatArray) -> FloatArray:
     spokes = outlines - outlines.mean(1, keepdims=True)
     following = np.roll(spokes, -1, 1)
     return (spokes[..., 0] * following[..., 1] - spokes[..., 1] * following[..., 0]).sum(1) / 2
-
-
-def _trim_points(streams: NDArray[np.uint8], curve: Curve) -> FloatArray:
-    """Points (n, q, 2) of a trim, ends included."""
-    if curve.uuid == LINE_CURVE:
-        return _between(_numbers(streams, curve.points, 6).reshape(-1, 2, 3)[..., :2])
-    points = _numbers(streams, curve.points, 3 * curve.n_points).reshape(-1, curve.n_points, 3)
-    basis = _bernstein(np.linspace(0, 1, _SAMPLES))
-    spans = [basis @ points[:, i : i + 3] for i in range(0, curve.n_points - 2, 2)]
-    joined = np.concatenate([spans[0], *(span[:, 1:] for span in spans[1:])], 1)
-    return joined[..., :2] / joined[..., 2:]
-
-
-def _between(ends: FloatArray) -> FloatArray:
-    """Points of segments (n, 2, d), (n, q, d)."""
-    share = np.linspace(0, 1, _SAMPLES)[:, None]
-    return ends[:, :1] * (1 - share) + ends[:, 1:] * share
-
-
-def _bernstein(t: FloatArray) -> FloatArray:
-    return np.stack([(1 - t) ** 2, 2 * t * (1 - t), t**2], -1)
-
-
-def _surface_points(streams: NDArray[np.uint8], surface: Surface, uv: FloatArray) -> FloatArray:
-    """Points (n, q, 3) of the surface; NaN outside its domain."""
-    if surface.uuid == PLANE_SURFACE:
-        plane = _numbers(streams, surface.points, 12)
-        domain = _numbers(streams, surface.knots[0], 4).reshape(-1, 2, 2)
-        points = plane[:, None, :3] + uv @ plane[:, 3:9].reshape(-1, 2, 3)
-        beyond = np.maximum(domain[:, None, :, 0] - uv, uv - domain[:, None, :, 1]).max(2)
-        return np.where(beyond[..., None] > 0, np.nan, points)
-    n_u, n_v = surface.n_points
-    net = _numbers(streams, surface.points, 4 * n_u * n_v).reshape(-1, n_u, n_v, 4)
-    along_u, along_v = (
-        _spline_basis(_numbers(streams, place, count + 1), uv[..., axis])
-        for axis, (place, count) in enumerate(zip(surface.knots, surface.n_points, strict=True))
-    )
-    points = np.einsum("nqi,nqj,nijd->nqd", along_u, along_v, net, optimize=True)
-    return points[..., :3] / points[..., 3:]
-
-
-def _spline_basis(knots: FloatArray, t: FloatArray) -> FloatArray:
-    """Quadratic basis functions over double knots (n, m + 1) at t (n, q): (n, q, m)."""
-    breaks = knots[:, ::2]
-    result = np.zeros((*t.shape, knots.shape[1] - 1))
-    is_open = (t >= breaks[:, :1]) & (t <= breaks[:, -1:])
-    result[~is_open] = np.nan
-    for span in range(breaks.shape[1] - 1):
-        low, high = breaks[:, span, None], breaks[:, span + 1, None]
-        here = is_open & (t <= high)
-        is_open = is_open & ~here
-        result[here, 2 * span : 2 * span + 3] = _bernstein((t - low) / (high - low))[here]
-    return result
-
-
-def _edge_points(streams: NDArray[np.uint8], curve: Curve) -> FloatArray:
-    """Points (n, q, 3) of an edge, ends included."""
-    if curve.uuid == LINE_CURVE:
-        return _between(_numbers(streams, curve.points, 6).reshape(-1, 2, 3))
-    circle = _numbers(streams, curve.points, 28)
-    return _circle_points(circle, _between(circle[:, 26:28, None])[..., 0])
-
-
-def _circle_points(circle: FloatArray, angles: FloatArray) -> FloatArray:
-    """Points of circles at angles (n, q), as `ON_ArcCurve` evaluates them."""
-    center, x_axis, y_axis = (circle[:, None, i : i + 3] for i in (0, 3, 6))
-    radius = circle[:, 16, None, None]
-    angles = angles[..., None]
-    return center + radius * (np.cos(angles) * x_axis + np.sin(angles) * y_axis)
-
-
-def _distances_to_edge(
-    streams: NDArray[np.uint8], curve: Curve, points: FloatArray
-) -> FloatArray:
-    """Distances of points (n, q, 3) from an edge, (n, q)."""
-    if curve.uuid == LINE_CURVE:
-        start, end = (
-            _numbers(streams, curve.points, 6).reshape(-1, 2, 1, 3).transpose(1, 0, 2, 3)
-        )
-        chord = end - start
-        share = np.clip(dot(points - start, chord) / dot(chord, chord), 0, 1)
-        return norm(points - start - share[..., None] * chord)
-    circle = _numbers(streams, curve.points, 28)
-    relative = points - circle[:, None, :3]
-    x, y = (dot(relative, circle[:, None, i : i + 3]) for i in (3, 6))
-    first, last = circle[:, 26, None], circle[:, 27, None]
-    middle, half = (first + last) / 2, (last - first) / 2
-    turn = (np.arctan2(y, x) - middle + np.pi) % (2 * np.pi) - np.pi
-    nearest = _circle_points(circle, middle + np.clip(turn, -half, half))
-    return norm(points - nearest)

@@ -23,24 +23,20 @@ from ...kernel.beams.triangles import BeamTriangles
 from ...kernel.panels.panels import Panels
 from ...kernel.panels.tessellation import tessellate
 from ...kernel.tolerances import SINGLE_EPSILON, SINGLE_IS_ENOUGH
-from .chunks import (
-    ANONYMOUS,
-    CHUNK_HEADER,
-    Buffer,
+from .stream_codes import ANONYMOUS, CHUNK_HEADER, MESH, MESH_VERSION
+from .stream_writer import (
     Chunk,
     Piece,
+    PlainBuffer,
     Slot,
-    assemble,
     class_object,
     doubles,
+    encode,
     fill,
     ints,
 )
 
-MESH: Final = bytes.fromhex("e4d4d74e47e9d311bfe50010830122f0")
-MESH_VERSION: Final = b"\x38"
-
-UNSET_DOMAINS: Final = doubles(*[-1.23432101234321e308] * 8) + bytes(16)
+_UNSET_DOMAINS = doubles(*[-1.23432101234321e308] * 8) + bytes(16)
 MESH_TOLERANCE: Final = 0.004
 """Largest distance of a render mesh from its surface, relative to the radius of the piece."""
 
@@ -89,14 +85,13 @@ def panel_meshes(panels: Panels, tolerance: float) -> RenderMeshes:
     Parameters
     ----------
     panels : Panels
-        P panels.
     tolerance : float
         Largest distance of a triangle from its sphere, relative to the radius of the panel.
 
     Returns
     -------
     RenderMeshes
-        The triangles.
+        A mesh per panel.
     """
     pieces = tessellate(panels, tolerance, solid=False)
     order = np.argsort(pieces.panels, kind="stable")
@@ -112,14 +107,9 @@ def panel_meshes(panels: Panels, tolerance: float) -> RenderMeshes:
     shapes = tuple(np.frombuffer(each, np.int64).reshape(-1, 3) for each in known)
     points = pieces.points + pieces.origin
     sizes = np.maximum.reduceat(norm(panels.corners), panels.offsets[:-1])
-    return RenderMeshes(
-        np.array(kinds, np.int64),
-        shapes,
-        np.array(starts, np.int64),
-        points,
-        pieces.normals,
-        _needs_doubles(points, tolerance * float(sizes.min(initial=np.inf))),
-    )
+    has_doubles = _needs_doubles(points, tolerance * float(sizes.min(initial=np.inf)))
+    ids, firsts = np.array(kinds, np.int64), np.array(starts, np.int64)
+    return RenderMeshes(ids, shapes, firsts, points, pieces.normals, has_doubles)
 
 
 def gather_meshes(groups: Sequence[BeamTriangles], error: float) -> RenderMeshes:
@@ -136,7 +126,7 @@ def gather_meshes(groups: Sequence[BeamTriangles], error: float) -> RenderMeshes
     Returns
     -------
     RenderMeshes
-        The triangles.
+        A mesh per piece.
     """
     n_pieces = sum(len(group.beams) for group in groups)
     kinds, starts = np.zeros((2, n_pieces), np.int64)
@@ -147,14 +137,10 @@ def gather_meshes(groups: Sequence[BeamTriangles], error: float) -> RenderMeshes
         starts[group.beams] = n_points + count * np.arange(n_beams)
         n_points += n_beams * count
     points = np.concatenate([group.points.reshape(-1, 3) for group in groups])
-    return RenderMeshes(
-        kinds,
-        tuple(group.triangles for group in groups),
-        starts,
-        points,
-        np.concatenate([group.normals.reshape(-1, 3) for group in groups]),
-        _needs_doubles(points, error),
-    )
+    normals = np.concatenate([group.normals.reshape(-1, 3) for group in groups])
+    triangles = tuple(group.triangles for group in groups)
+    has_doubles = _needs_doubles(points, error)
+    return RenderMeshes(kinds, triangles, starts, points, normals, has_doubles)
 
 
 def _needs_doubles(points: FloatArray, error: float) -> bool:
@@ -170,7 +156,6 @@ def mesh_numbers(meshes: RenderMeshes, members: IntArray) -> dict[str, FloatArra
     Parameters
     ----------
     meshes : RenderMeshes
-        The triangles.
     members : (n,) int array
         Pieces of one triangulation.
 
@@ -191,7 +176,6 @@ def mesh_object(meshes: RenderMeshes, kind: int) -> Chunk:
     Parameters
     ----------
     meshes : RenderMeshes
-        The triangles.
     kind : int
         Which of the triangulations; it uses all of its vertices.
 
@@ -204,18 +188,18 @@ def mesh_object(meshes: RenderMeshes, kind: int) -> Chunk:
     count = _n_points(triangles)
     size = 1 if count < 1 << 8 else 2 if count < 1 << 16 else 4
     faces = triangles[:, [0, 1, 2, 2]].astype(f"<u{size}").tobytes()
-    floats = (Buffer(Slot(name, 0, 3 * count, "<f4")) for name in ("points", "normals"))
+    floats = (PlainBuffer(Slot(name, 0, 3 * count, "<f4")) for name in ("points", "normals"))
     doubles_too: tuple[Piece, ...] = (b"\0",)
     if meshes.has_doubles:
-        precise = (ints(1, 0, count), Buffer(Slot("points", 0, 3 * count)))
+        precise = (ints(1, 0, count), PlainBuffer(Slot("points", 0, 3 * count)))
         doubles_too = (b"\1", Chunk(ANONYMOUS, precise))
     return class_object(
-        MESH, MESH_VERSION, ints(count, len(triangles)), UNSET_DOMAINS, _EMPTY_BOXES, ints(-1),
+        MESH, MESH_VERSION, ints(count, len(triangles)), _UNSET_DOMAINS, _EMPTY_BOXES, ints(-1),
         bytes(5), ints(size), faces, *floats,
         ints(0, 0, 0) + bytes(4 + 16) + ints(0),  # no textures, curvatures, colours, parameters
         Chunk(ANONYMOUS, (ints(1, 1) + bytes(16 + 4) + _IDENTITY + ints(0),)),
         bytes(3) + b"\0",  # manifold, oriented, solid: not known; no ngons
-        *doubles_too, UNSET_DOMAINS[:48],
+        *doubles_too, _UNSET_DOMAINS[:48],
     )  # fmt: skip
 
 
@@ -244,8 +228,7 @@ def _filled(meshes: RenderMeshes, wrap: Callable[[Chunk], Chunk]) -> list[bytes]
     result = [b""] * len(meshes.kinds)
     for kind in range(len(meshes.triangles)):
         members = np.flatnonzero(meshes.kinds == kind)
-        template = assemble(wrap(mesh_object(meshes, kind)))
-        filled = fill(template, mesh_numbers(meshes, members))
+        filled = fill(wrap(mesh_object(meshes, kind)), mesh_numbers(meshes, members))
         for piece, stream in zip(members, filled, strict=True):
             result[piece] = stream
     return result
@@ -268,7 +251,7 @@ def extrusions_with_meshes(extrusions: Sequence[bytes], meshes: RenderMeshes) ->
         The streams with their meshes.
     """
     caches = _filled(meshes, _cache)
-    (empty,) = fill(assemble(_cache()), {"": np.zeros((1, 0))})
+    empty = encode(_cache())
     result: list[bytes] = []
     for stream, cache in zip(extrusions, caches, strict=True):
         data = bytearray(stream)

@@ -1,13 +1,13 @@
 """
-Rhino .3dm files: the model that is written, and what is read.
+Rhino .3dm files: writing a model, and reading meshes and surfaces.
 
-beams     Beams for a Rhino model: capped extrusions of their flat contours, drilling marks,
-          and nodes.
-blocks    Block definitions of Rhino: one piece of geometry, set into the model many times.
-meshes    Meshes with ngons, and grids on surfaces, in Rhino .3dm files.
-model     A Rhino model under construction: layers, materials, groups, views, and ids.
-objects   Objects of a Rhino model where they stand, those inside blocks included.
-surfaces  Surfaces and polysurfaces of a Rhino file as grids of quads with exact positions.
-writer    Panels as a Rhino model: exact trimmed spheres, edges as arcs, and what a workshop
-          must know.
+beam_writer     Writes beams: capped extrusions of their contours, drilling marks, nodes.
+block_writer    Writes blocks: one piece of geometry, set into the model many times.
+mesh_writer     Writes meshes; faces with more than four corners are ngons.
+model           A model under construction: layers, materials, groups, views, ids.
+object_reader   Reads objects where they stand, those inside blocks included.
+panel_writer    Writes panels: exact trimmed spheres, edges as arcs, user text.
+reader          Reads a file: meshes with ngons, or grids on surfaces.
+surface_reader  Reads surfaces and polysurfaces as grids of quads with exact positions.
+writer          Writes a file of panels and beams.
 """

@@ -40,7 +40,7 @@ class RhinoModel(NamedTuple):
     decode: Callable[[bytes], Untyped]
 
 
-class Place(NamedTuple):
+class ModelLayer(NamedTuple):
     """Indices of a layer and of the material of its objects, if they have one."""
 
     layer: int
@@ -76,7 +76,7 @@ def new_model(units: str) -> RhinoModel:
     Returns
     -------
     RhinoModel
-        The model, with its units and tolerances.
+        With units and tolerances.
     """
     tolerance = model_tolerance(units)
     import rhino3dm
@@ -109,9 +109,8 @@ def encode_model(model: RhinoModel, version: int) -> bytes:
     Parameters
     ----------
     model : RhinoModel
-        The model.
     version : int
-        Version of Rhino.
+        Of Rhino.
 
     Returns
     -------
@@ -131,7 +130,6 @@ def count_objects(model: RhinoModel) -> dict[str, int]:
     Parameters
     ----------
     model : RhinoModel
-        The model.
 
     Returns
     -------
@@ -155,7 +153,7 @@ def object_id(name: str, role: str) -> UUID:
     Returns
     -------
     UUID
-        The id.
+        Of name and role alone.
     """
     return uuid5(_NAMESPACE, f"{name}/{role}")
 
@@ -164,29 +162,29 @@ def add_layer(
     model: RhinoModel,
     name: str,
     color: Color,
-    parent: Place | None = None,
+    parent: ModelLayer | None = None,
     *,
+    has_material: bool = False,
     visible: bool = True,
-) -> Place:
+) -> ModelLayer:
     """
-    Add a layer of lines or points.
+    Add a layer.
 
     Parameters
     ----------
     model : RhinoModel
-        The model.
     name : str
-        Name of the layer.
-    color : (int, int, int)
-        Its colour.
-    parent : Place, optional
+    color : Color
+    parent : ModelLayer, optional
         The layer that it lies under.
+    has_material : bool
+        Whether there is a material of its colour, for surfaces.
     visible : bool
         Whether it is switched on.
 
     Returns
     -------
-    Place
+    ModelLayer
         Where objects go.
     """
     file = model.file
@@ -197,45 +195,15 @@ def add_layer(
     layer.Visible = visible
     if parent:
         layer.ParentLayerId = file.Layers[parent.layer].Id
-    return Place(file.Layers.Add(layer))
-
-
-def add_surface_layer(
-    model: RhinoModel,
-    name: str,
-    color: Color,
-    parent: Place | None = None,
-    *,
-    visible: bool = True,
-) -> Place:
-    """
-    Add a layer and a material of its colour.
-
-    Parameters
-    ----------
-    model : RhinoModel
-        The model.
-    name : str
-        Name of the layer and of the material.
-    color : (int, int, int)
-        Their colour.
-    parent : Place, optional
-        The layer that it lies under.
-    visible : bool
-        Whether it is switched on.
-
-    Returns
-    -------
-    Place
-        Where objects go.
-    """
+    place = ModelLayer(file.Layers.Add(layer))
+    if not has_material:
+        return place
     material = model.library.Material()
     material.Id = object_id(name, "material")
     material.Name = name
     material.DiffuseColor = (*color, 255)
-    index: int = model.file.Materials.Add(material)
-    place = add_layer(model, name, color, parent, visible=visible)
-    model.file.Layers[place.layer].RenderMaterialIndex = index
+    index: int = file.Materials.Add(material)
+    file.Layers[place.layer].RenderMaterialIndex = index
     return place._replace(material=index)
 
 
@@ -246,9 +214,7 @@ def add_group(model: RhinoModel, name: str) -> int:
     Parameters
     ----------
     model : RhinoModel
-        The model.
     name : str
-        Name of the group.
 
     Returns
     -------
@@ -262,25 +228,24 @@ def add_group(model: RhinoModel, name: str) -> int:
     return len(model.file.Groups) - 1
 
 
-def object_attributes(model: RhinoModel, name: str, role: str, place: Place) -> Untyped:
+def object_attributes(model: RhinoModel, name: str, role: str, place: ModelLayer) -> Untyped:
     """
     Attributes with a stable id: the colour of the layer, and its material if it has one.
 
     Parameters
     ----------
     model : RhinoModel
-        The model.
     name : str
         Name of the object, such as the id of its panel.
     role : str
         What the object is; tells apart those of one name.
-    place : Place
+    place : ModelLayer
         Where it goes.
 
     Returns
     -------
     ObjectAttributes
-        The attributes.
+        For `File3dm.Objects.Add`.
     """
     attributes = model.library.ObjectAttributes()
     attributes.Id = object_id(name, role)
@@ -300,7 +265,6 @@ def add_views(model: RhinoModel, points: FloatArray) -> None:
     Parameters
     ----------
     model : RhinoModel
-        The model.
     points : (n, 3) float array
         At least one point, in model coordinates.
     """

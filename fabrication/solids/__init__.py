@@ -1,14 +1,10 @@
 """
-Panels and beams as solids of CadQuery and OpenCASCADE, and the numbers they are made of.
+Solids of panels and beams: their geometry in numbers, and as objects of CAD kernels.
 
-beam_numbers   What solids of beams are made of in numbers, for OpenCASCADE and for STEP files
-               alike.
-beam_shapes    Beams as solids of OpenCASCADE: planes, cylinders, lines, circles and ellipses,
-               all exact.
-panel_numbers  What shapes of panels are made of in numbers, for OpenCASCADE and for STEP
-               files alike.
-panel_shapes   Panels as shapes of the CAD kernel OpenCASCADE: spheres, planes, circles and
-               lines, all exact.
-shape_parts    Parts of OpenCASCADE shapes: vertices, edges, faces and solids, built directly
-               and shared.
+beam_geometry       Corners, faces, circles and cuts of beams, for OpenCASCADE and STEP alike.
+cadquery_assembly   Panels and beams as assemblies of CadQuery.
+opencascade_beams   Beams as solids of OpenCASCADE, all exact.
+opencascade_panels  Panels as faces or solids of OpenCASCADE, all exact.
+opencascade_parts   Vertices, edges, faces and solids of OpenCASCADE, built directly and shared.
+panel_geometry      Places, tolerances and axes of panels, for OpenCASCADE and STEP alike.
 """

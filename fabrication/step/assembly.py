@@ -16,7 +16,7 @@ from .values import numbers, real, references, string
 
 StepSchema = Literal["AP214IS", "AP242DIS"]
 
-UNITS: Final = {
+_UNITS: Final = {
     "mm": "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))",
     "cm": "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.CENTI.,.METRE.))",
     "m": "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.))",
@@ -114,9 +114,8 @@ class StepHeader:
     Attributes
     ----------
     schema : {"AP214IS", "AP242DIS"}
-        Application protocol.
     unit : str
-        Unit of length, one of `UNITS`.
+        Unit of length, ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
     millimeters : float
         Millimetres in that unit.
     tolerance : float
@@ -239,9 +238,9 @@ class _Assembler:
 
     def _declare_units(self, header: StepHeader) -> tuple[int, int, int]:
         """Numbers of the units of length, angle and solid angle."""
-        unit = UNITS[header.unit]
+        unit = _UNITS[header.unit]
         if not unit.startswith("("):
-            millimeter = self._add(UNITS["mm"])
+            millimeter = self._add(_UNITS["mm"])
             length = self._add(
                 f"LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE({real(header.millimeters)}),"
                 f"#{millimeter})"

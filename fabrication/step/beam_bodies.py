@@ -13,40 +13,43 @@ import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray, unit
 from ...kernel.beams.end_edges import EndEdges
-from ...kernel.spheres.arcs import ArcCircles, Arcs, circle_axes
-from ..solids.beam_numbers import LEVELS, BeamNumbers
-from .bodies import Body, EdgeBatch, FaceBatch, Ring, bodies
+from ..solids.beam_geometry import LEVELS, BeamGeometry
+from .bodies import (
+    Body,
+    EdgeBatch,
+    FaceBatch,
+    Ring,
+    bodies,
+    bodies_by_kind,
+    circle_numbers,
+)
 
 _Levels = tuple[int, int]
 
 
-def beam_bodies(numbers: BeamNumbers) -> list[Body]:
+def beam_bodies(geometry: BeamGeometry) -> list[Body]:
     """
     A closed solid per beam.
 
     Parameters
     ----------
-    numbers : BeamNumbers
-        B beams.
+    geometry : BeamGeometry
 
     Returns
     -------
     list of Body
         B solids, about the rounded origins of the beams.
     """
-    curves = _Curves(
-        {
-            (k, level): _arc_numbers(numbers.arcs[level][k], circles)
-            for level, pair in numbers.circles.items()
-            for k, circles in enumerate(pair)
-        },
-        {(k, levels): _cut_numbers(numbers, k, levels) for k in (0, 1) for levels in LEVELS},
-    )
-    result: dict[int, Body] = {}
-    for ids in _alike(numbers):
-        made = _Batch(numbers, curves, ids).solids()
-        result.update(zip(ids.tolist(), made, strict=True))
-    return [result[beam] for beam in range(numbers.beams.n_beams)]
+    circles = {
+        (k, level): circle_numbers(geometry.arcs[level][k], circles)
+        for level, pair in geometry.circles.items()
+        for k, circles in enumerate(pair)
+    }
+    ellipses = {
+        (k, levels): _cut_numbers(geometry, k, levels) for k in (0, 1) for levels in LEVELS
+    }
+    curves = _Curves(circles, ellipses)
+    return bodies_by_kind(_kinds(geometry), lambda ids: _Batch(geometry, curves, ids).solids())
 
 
 @dataclass(frozen=True)
@@ -57,40 +60,32 @@ class _Curves:
     ellipses: dict[tuple[int, _Levels], FloatArray]
 
 
-def _arc_numbers(arcs: Arcs, circles: ArcCircles) -> FloatArray:
-    x, _ = circle_axes(arcs, circles)
-    return np.column_stack([circles.centers, circles.axes, x, circles.radii])
-
-
-def _cut_numbers(numbers: BeamNumbers, k: int, levels: _Levels) -> FloatArray:
-    cuts: EndEdges = numbers.cuts[levels]
-    minor = np.broadcast_to(numbers.radii[:, None, k], cuts.radii[:, :, k].shape)
+def _cut_numbers(geometry: BeamGeometry, k: int, levels: _Levels) -> FloatArray:
+    cuts: EndEdges = geometry.cuts[levels]
+    minor = np.broadcast_to(geometry.radii[:, None, k], cuts.radii[:, :, k].shape)
     major = np.maximum(cuts.radii[:, :, k], minor)
     axes = [values[:, :, k] for values in (cuts.centers, cuts.normals, cuts.majors)]
     return np.concatenate([*axes, major[..., None], minor[..., None]], axis=-1)
 
 
-def _alike(numbers: BeamNumbers) -> list[IntArray]:
-    """Beams of the same kinds of ends, faces and edges."""
-    count = numbers.beams.n_beams
-    kinds = [numbers.beams.is_flat, np.isinf(numbers.radii), numbers.is_dome]
-    kinds += [np.isinf(circles.radii) for pair in numbers.circles.values() for circles in pair]
-    kinds += [cuts.is_line for cuts in numbers.cuts.values()]
-    keys = np.concatenate([kind.reshape(count, -1) for kind in kinds], axis=1)
-    _, groups = np.unique(keys, axis=0, return_inverse=True)
-    order = np.argsort(groups.ravel(), kind="stable")
-    return np.split(order, np.flatnonzero(np.diff(groups.ravel()[order])) + 1)
+def _kinds(geometry: BeamGeometry) -> FloatArray:
+    """The kinds of ends, faces and edges of each beam."""
+    kinds = [geometry.beams.is_flat, np.isinf(geometry.radii), geometry.is_dome]
+    kinds += [np.isinf(circles.radii) for pair in geometry.circles.values() for circles in pair]
+    kinds += [cuts.is_line for cuts in geometry.cuts.values()]
+    count = geometry.beams.n_beams
+    return np.concatenate([kind.reshape(count, -1) for kind in kinds], axis=1).astype(float)
 
 
 class _Batch:
     """Beams of one topology: corners and edges by number, as edges and faces refer to them."""
 
-    def __init__(self, numbers: BeamNumbers, curves: _Curves, ids: IntArray) -> None:
-        self.numbers, self.curves, self.ids = numbers, curves, ids
-        self.points = numbers.corners[ids]
+    def __init__(self, geometry: BeamGeometry, curves: _Curves, ids: IntArray) -> None:
+        self.geometry, self.curves, self.ids = geometry, curves, ids
+        self.points = geometry.corners[ids]
         self.steps = [
             [(0, 2)] if is_flat else [(0, 1), (1, 2)]
-            for is_flat in numbers.beams.is_flat[ids[0]].tolist()
+            for is_flat in geometry.beams.is_flat[ids[0]].tolist()
         ]
         corners = [
             (end, k, level)
@@ -128,20 +123,20 @@ class _Batch:
 
     def _arc(self, k: int, level: int) -> int:
         start, end = (0, k, level), (1, k, level)
-        if np.isinf(self.numbers.circles[level][k].radii[self.ids[0]]):
+        if np.isinf(self.geometry.circles[level][k].radii[self.ids[0]]):
             return self._line(start, end)
         circles = self.curves.circles[k, level][self.ids]
         return self._add(EdgeBatch(self.corners[start], self.corners[end], "CIRCLE", circles))
 
     def _upright(self, end: int, k: int, step: _Levels) -> int:
         low, high = (end, k, step[0]), (end, k, step[1])
-        if self.numbers.cuts[step].is_line[self.ids[0], end, k]:
+        if self.geometry.cuts[step].is_line[self.ids[0], end, k]:
             return self._line(low, high)
         ellipses = self.curves.ellipses[k, step][self.ids, end]
         return self._add(EdgeBatch(self.corners[low], self.corners[high], "ELLIPSE", ellipses))
 
     def _sides(self) -> list[FaceBatch]:
-        frames = self.numbers.beams.annuli.frames[self.ids]
+        frames = self.geometry.beams.annuli.frames[self.ids]
         faces: list[FaceBatch] = []
         for level, sense in ((0, -1.0), (2, 1.0)):
             axes = np.concatenate([sense * frames[:, 2], frames[:, 0]], axis=1)
@@ -156,10 +151,10 @@ class _Batch:
     def _ends(self) -> list[FaceBatch]:
         faces: list[FaceBatch] = []
         for end in (0, 1):
-            down = self.numbers.beams.annuli.end_directions[self.ids, end]
+            down: FloatArray = self.geometry.beams.annuli.end_directions[self.ids, end]
             for low, high in self.steps[end]:
-                rise = self.points[:, end, 0, high] - self.points[:, end, 0, low]
-                normals = (1.0 if end else -1.0) * _cross(rise, down)
+                rise: FloatArray = self.points[:, end, 0, high] - self.points[:, end, 0, low]
+                normals = (1.0 if end else -1.0) * unit(np.cross(rise, down))
                 ring: Ring = (
                     (self.uprights[end, 0, (low, high)], True), (self.lines[end, high], True),
                     (self.uprights[end, 1, (low, high)], False), (self.lines[end, low], False),
@@ -175,19 +170,15 @@ class _Batch:
         down = [(self.uprights[1, k, step], False) for step in reversed(self.steps[1])]
         ring = (*up, (self.arcs[k, 2], True), *down, (self.arcs[k, 0], False))
         ring = ring if k == 0 else _backwards(ring)
-        frames, radii = self.numbers.frames[self.ids, k], self.numbers.radii[self.ids, k]
+        frames, radii = self.geometry.frames[self.ids, k], self.geometry.radii[self.ids, k]
         if np.isinf(radii[0]):
             normals = -frames[:, 0] if k == 0 else frames[:, 0]
             axes = np.concatenate([normals, frames[:, 2]], axis=1)
             return FaceBatch("PLANE", axes, ring, corner=self.corners[0, k, 0])
-        centers = self.numbers.centers[self.ids, k]
+        centers = self.geometry.centers[self.ids, k]
         numbers = np.column_stack([centers, frames[:, 2], frames[:, 0], radii])
-        is_along = bool(self.numbers.is_dome[self.ids[0], k]) == (k == 0)
+        is_along = bool(self.geometry.is_dome[self.ids[0], k]) == (k == 0)
         return FaceBatch("CYLINDRICAL_SURFACE", numbers, ring, is_along)
-
-
-def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    return unit(np.cross(a, b))
 
 
 def _backwards(ring: Ring) -> Ring:

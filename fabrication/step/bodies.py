@@ -7,7 +7,7 @@ each body. All geometry is elementary: no curve is written in the parameters of 
 """
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final, Literal, TypeAlias
@@ -15,23 +15,11 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray, norm, unit
+from ...kernel.spheres.arcs import ArcCircles, Arcs, circle_axes
 from .values import real, references
 
 Ring: TypeAlias = tuple[tuple[int, bool], ...]
 """Edges of a closed chain, each with whether it is run from its start to its end."""
-
-CURVES: Final = {"LINE": 3, "CIRCLE": 10, "ELLIPSE": 11}
-"""
-Curves and how many numbers tell them: the unit direction of a line, which leaves its start;
-centre, unit axis, unit vector to parameter 0, and one or two radii, the larger first.
-"""
-
-SURFACES: Final = {"PLANE": 6, "SPHERICAL_SURFACE": 10, "CYLINDRICAL_SURFACE": 10}
-"""
-Surfaces and how many numbers tell them: unit normal and x axis of a plane, which passes through
-a corner; origin, unit z and x axes, and the radius. Normals point away from centres and axes.
-"""
-
 
 _SENSES: Final = {True: ".T.", False: ".F."}
 
@@ -45,10 +33,11 @@ class EdgeBatch:
     ----------
     start, end : int
         Its corners.
-    kind : str
-        One of `CURVES`; circles and ellipses run counter-clockwise about their axes.
+    kind : {"LINE", "CIRCLE", "ELLIPSE"}
+        Circles and ellipses run counter-clockwise about their axes.
     numbers : (m, n) float array
-        What tells the curves.
+        The unit direction of a line, which leaves its start; or centre, unit axis, unit vector
+        to parameter 0, and one or two radii, the larger first.
     """
 
     start: int
@@ -64,10 +53,11 @@ class FaceBatch:
 
     Attributes
     ----------
-    kind : str
-        One of `SURFACES`.
+    kind : {"PLANE", "SPHERICAL_SURFACE", "CYLINDRICAL_SURFACE"}
+        Normals point away from centres and axes.
     numbers : (m, n) float array
-        What tells the surfaces.
+        Unit normal and x axis of a plane, which passes through a corner; or origin, unit z and
+        x axes, and the radius.
     ring : tuple of (int, bool)
         Its edges, counter-clockwise about its normal.
     is_along : bool
@@ -114,7 +104,6 @@ class Body:
     Attributes
     ----------
     layout : BodyLayout
-        Its topology.
     numbers : (n,) float array
         Its numbers, finite, in the unit of the file.
     """
@@ -153,11 +142,8 @@ def bodies(
     Parameters
     ----------
     corners : iterable of (m, 3) float array
-        Their corners.
     edges : iterable of EdgeBatch
-        Their edges.
     faces : iterable of FaceBatch
-        Their faces.
     is_solid : bool
         Whether the faces are closed.
 
@@ -178,6 +164,50 @@ def bodies(
     return [Body(layout, numbers) for numbers in np.concatenate(parts, axis=1) + 0.0]
 
 
+def bodies_by_kind(kinds: FloatArray, make: Callable[[IntArray], Iterable[Body]]) -> list[Body]:
+    """
+    Bodies of several topologies.
+
+    Parameters
+    ----------
+    kinds : (n, k) float array
+        Bodies of equal rows have one topology.
+    make : callable
+        Makes the bodies of some ids, all of one topology.
+
+    Returns
+    -------
+    list of Body
+        n bodies, in the order of the rows.
+    """
+    if not len(kinds):
+        return []
+    _, groups = np.unique(kinds, axis=0, return_inverse=True)
+    order = np.argsort(groups.ravel(), kind="stable")
+    result: dict[int, Body] = {}
+    for ids in np.split(order, np.flatnonzero(np.diff(groups.ravel()[order])) + 1):
+        result.update(zip(ids.tolist(), make(ids), strict=True))
+    return [result[i] for i in range(len(kinds))]
+
+
+def circle_numbers(arcs: Arcs, circles: ArcCircles) -> FloatArray:
+    """
+    What tells the circles of arcs in an `EdgeBatch`.
+
+    Parameters
+    ----------
+    arcs : Arcs
+    circles : ArcCircles
+
+    Returns
+    -------
+    (n, 10) float array
+        Parameter 0 is at the start of the arc.
+    """
+    x, _ = circle_axes(arcs, circles)
+    return np.column_stack([circles.centers, circles.axes, x, circles.radii])
+
+
 def line_body(segments: FloatArray) -> Body:
     """
     A set of straight lines.
@@ -185,12 +215,11 @@ def line_body(segments: FloatArray) -> Body:
     Parameters
     ----------
     segments : (n, 2, 3) float array
-        Their ends.
 
     Returns
     -------
     Body
-        The set.
+        One for all lines.
     """
     changes = segments[:, 1] - segments[:, 0]
     numbers = [segments.reshape(-1, 6), unit(changes), norm(changes)[:, None]]

@@ -100,7 +100,6 @@ def check_part21(path: str | os.PathLike[str]) -> tuple[Finding, ...]:
     Parameters
     ----------
     path : path
-        The file.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Cylinders about node axes, and the axes, as bodies of STEP files."""
+"""Cylinders about node axes as solids of STEP files."""
 
 import numpy as np
 
@@ -19,9 +19,7 @@ def cylinder_bodies(
     directions : (n, 3) float array
         Unit vectors along the axes.
     heights : (n,) float array
-        Heights.
     radius : float
-        Radius of all.
 
     Returns
     -------

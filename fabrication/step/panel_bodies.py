@@ -10,10 +10,18 @@ import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray, unit
 from ...kernel.panels.panels import Panels, panel_arcs
-from ...kernel.spheres.arcs import Arcs, arc_circles, circle_axes
+from ...kernel.spheres.arcs import Arcs, arc_circles
 from ...kernel.spheres.rows import center_radius
-from ..solids.panel_numbers import surface_frames
-from .bodies import Body, EdgeBatch, FaceBatch, Ring, bodies
+from ..solids.panel_geometry import surface_frames
+from .bodies import (
+    Body,
+    EdgeBatch,
+    FaceBatch,
+    Ring,
+    bodies,
+    bodies_by_kind,
+    circle_numbers,
+)
 
 
 def panel_bodies(panels: Panels) -> list[Body]:
@@ -34,15 +42,13 @@ def panel_bodies(panels: Panels) -> list[Body]:
     -----
     A solid has the outer face, the concentric inner face and a plane wall per edge.
     """
-    result: dict[int, Body] = {}
     outer = _Layer(panels, panels.spheres, panel_arcs(panels))
-    inner = None
-    if panels.thickness > 0:
-        inner = _Layer(panels, panels.inner_spheres, panel_arcs(panels, "inner"))
-    for ids in _alike(panels, outer, inner):
-        made = _surfaces(outer, ids) if inner is None else _solids(panels, outer, inner, ids)
-        result.update(zip(ids.tolist(), made, strict=True))
-    return [result[panel] for panel in range(panels.n_panels)]
+    if not panels.thickness > 0:
+        return bodies_by_kind(_kinds(panels, [outer]), lambda ids: _surfaces(outer, ids))
+    inner = _Layer(panels, panels.inner_spheres, panel_arcs(panels, "inner"))
+    return bodies_by_kind(
+        _kinds(panels, [outer, inner]), lambda ids: _solids(panels, outer, inner, ids)
+    )
 
 
 class _Layer:
@@ -58,8 +64,7 @@ class _Layer:
         circles = arc_circles(arcs)
         self.is_line = np.isinf(circles.radii)
         self.lines = unit(arcs.ends - arcs.starts)
-        x, _ = circle_axes(arcs, circles)
-        self.circles = np.column_stack([circles.centers, circles.axes, x, circles.radii])
+        self.circles = circle_numbers(arcs, circles)
 
     def edge(self, ids: IntArray, start: int, end: int, first: int) -> EdgeBatch:
         """Edge from a corner to another of panels that are alike; their corners from first."""
@@ -81,20 +86,15 @@ class _Layer:
         return self.planes[ids] * np.repeat([1.0 if is_along else -1.0, 1.0], 3)
 
 
-def _alike(panels: Panels, outer: _Layer, inner: _Layer | None) -> list[IntArray]:
-    """Panels of the same degree and kinds of surfaces and edges."""
-    layers = [outer] if inner is None else [outer, inner]
-    result: list[IntArray] = []
-    degrees: list[int] = np.unique(panels.degrees).tolist()
-    for degree in degrees:
-        ids = np.flatnonzero(panels.degrees == degree)
-        corners = panels.offsets[ids][:, None] + np.arange(degree)
-        keys = np.column_stack(
-            [x for each in layers for x in (each.sides[ids], each.is_line[corners])]
-        )
-        _, groups = np.unique(keys, axis=0, return_inverse=True)
-        result += [ids[groups.ravel() == group] for group in range(int(groups.max()) + 1)]
-    return result
+def _kinds(panels: Panels, layers: list[_Layer]) -> FloatArray:
+    """Degree, and the kinds of surfaces and edges, of each panel."""
+    owners, width = panels.corner_panels, int(panels.degrees.max(initial=0))
+    within = np.arange(len(owners)) - panels.offsets[owners]
+    columns = [panels.degrees.astype(float), *(layer.sides for layer in layers)]
+    lines = np.zeros((panels.n_panels, len(layers), width))
+    for i, layer in enumerate(layers):
+        lines[owners, i, within] = layer.is_line
+    return np.column_stack([*columns, lines.reshape(panels.n_panels, -1)])
 
 
 def _ring(degree: int) -> list[tuple[int, int]]:

@@ -38,7 +38,6 @@ def references(ids: Iterable[int]) -> str:
     Parameters
     ----------
     ids : iterable of int
-        Numbers of entities.
 
     Returns
     -------
@@ -78,7 +77,6 @@ def string(text: str) -> str:
     Parameters
     ----------
     text : str
-        Any text.
 
     Returns
     -------

@@ -1,31 +1,24 @@
-"""
-Panels and beams as exact CAD geometry: STEP files, and objects for CadQuery.
-
-Files are written as text, without a CAD kernel. CadQuery and OpenCASCADE (the package OCP) are
-imported when objects are asked for.
-"""
+"""Writes STEP files of panels and beams: exact solids and faces, without a CAD kernel."""
 
 import os
-from collections.abc import Generator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal, get_args
+from typing import Final, Literal, get_args
 
 import numpy as np
 
 from ...kernel.arrays import FloatArray
 from ...kernel.beams.beams import Beams, node_axis_segments, scale_beams
 from ...kernel.beams.node_cylinders import node_cylinders
-from ...kernel.errors import InputError, MissingLibraryError
+from ...kernel.errors import InputError
 from ...kernel.panels.congruent import congruent_panels
 from ...kernel.panels.panels import Panels
 from ...kernel.parts.colors import AXIS, BEAM, NODE, Color, mould_color, mould_name
 from ..files import check_suffix, check_target, replacing
 from ..model import Model, Written, check_model
-from ..solids.beam_numbers import beam_numbers
-from ..solids.panel_numbers import (
+from ..solids.beam_geometry import beam_geometry
+from ..solids.panel_geometry import (
     CONFUSION,
     copy_places,
     panel_tolerances,
@@ -38,9 +31,6 @@ from .beam_bodies import beam_bodies
 from .bodies import line_body
 from .node_bodies import cylinder_bodies
 from .panel_bodies import panel_bodies
-
-if TYPE_CHECKING:
-    import cadquery
 
 StepCopies = Literal["shapes", "instances"]
 
@@ -55,7 +45,6 @@ class StepOptions:
     units : str
         Unit that the file declares: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
     schema : {"AP214IS", "AP242DIS"}
-        Application protocol.
     title : str
         Title in the header of the file.
     copies : {"shapes", "instances"}
@@ -85,7 +74,6 @@ def write_step(
     path : path
         File to write. It is replaced when the new one is complete.
     options : StepOptions
-        How.
 
     Returns
     -------
@@ -173,7 +161,7 @@ def _shared_parts(panels: Panels, scale: float, confusion: float) -> list[Part]:
 
 def _beam_parts(beams: Beams, scale: float, confusion: float) -> list[Part]:
     """A part per beam, where it stands."""
-    numbers = beam_numbers(scale_beams(beams, scale), confusion)
+    numbers = beam_geometry(scale_beams(beams, scale), confusion)
     tolerances = _file_tolerances(numbers.tolerances, confusion)
     return [
         Part(body, name, "Beams", BEAM, tolerance, (Instance(name, tuple(place)),))
@@ -212,80 +200,6 @@ def _file_tolerances(tolerances: FloatArray, confusion: float) -> list[float]:
     return [float(f"{confusion * 10**step:.3g}") for step in steps.tolist()]
 
 
-def beams_to_cadquery(beams: Beams, units: str = "m") -> "cadquery.Assembly":
-    """
-    Beams as a CadQuery assembly, for further modelling.
-
-    Parameters
-    ----------
-    beams : Beams
-        The beams.
-    units : str
-        Unit of the model: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
-
-    Returns
-    -------
-    cadquery.Assembly
-        Assembly in millimetres, with a `cadquery.Solid` per beam, named by its id.
-
-    Raises
-    ------
-    InputError
-        If the unit is not known.
-    MissingLibraryError
-        If CadQuery or a library of the system that it needs is missing.
-    """
-    scale = millimeters_per(units)
-    with _opencascade():
-        import cadquery
-
-        from ..solids import beam_shapes as beam_brep
-    assembly = cadquery.Assembly(name="Beams")
-    color = cadquery.Color(*(value / 255 for value in BEAM))
-    for shape, name in zip(beam_brep.beam_shapes(beams, scale), beams.annuli.ids, strict=True):
-        assembly.add(cadquery.Solid(shape), name=name, color=color)
-    return assembly
-
-
-def to_cadquery(panels: Panels, units: str = "m") -> "cadquery.Assembly":
-    """
-    Panels as a CadQuery assembly, for further modelling.
-
-    Parameters
-    ----------
-    panels : Panels
-        The panels.
-    units : str
-        Unit of the model: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
-
-    Returns
-    -------
-    cadquery.Assembly
-        Assembly in millimetres, with a `cadquery.Solid` (`cadquery.Face` without thickness)
-        per panel, named by its id and in the colour of its mould.
-
-    Raises
-    ------
-    InputError
-        If the unit is not known.
-    MissingLibraryError
-        If CadQuery or a library of the system that it needs is missing.
-    """
-    scale = millimeters_per(units)
-    with _opencascade():
-        import cadquery
-
-        from ..solids import panel_shapes as brep
-    kind = cadquery.Solid if panels.thickness > 0 else cadquery.Face
-    assembly = cadquery.Assembly(name="Panels")
-    for shape, name, (_, color) in zip(
-        brep.panel_shapes(panels, scale), panels.ids, _moulds(panels), strict=True
-    ):
-        red, green, blue = (value / 255 for value in color)
-        assembly.add(kind(shape), name=name, color=cadquery.Color(red, green, blue))
-    return assembly
-
-
 def _moulds(panels: Panels) -> list[tuple[str, Color]]:
     """Name and colour of the mould of each panel."""
     count = int(panels.labels.max(initial=-1)) + 1
@@ -293,19 +207,3 @@ def _moulds(panels: Panels) -> list[tuple[str, Color]]:
         (mould_name(label, count), mould_color(label, count))
         for label in panels.labels.tolist()
     ]
-
-
-@contextmanager
-def _opencascade() -> Generator[None]:
-    """Turn the failure to import OpenCASCADE into an error that names the remedy."""
-    try:
-        yield
-    except ImportError as error:
-        if "libGL" in str(error) or "libX" in str(error):
-            remedy = (
-                "install the packages libgl1 and libx11-6 (Debian, Ubuntu) or mesa-libGL and "
-                "libX11 (Fedora)"
-            )
-        else:
-            remedy = "install the package cadquery, which brings it"
-        raise MissingLibraryError(f"STEP needs OpenCASCADE: {error}; {remedy}") from error

@@ -15,7 +15,8 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm
 from ..parts.records import MAY_BE_NAN
 from ..spheres.arcs import Arcs, segment_areas, sphere_arcs
-from ..spheres.rows import meet_lines, recenter, rescale
+from ..spheres.incidence import meet_lines
+from ..spheres.rows import recenter, rescale
 from ..support.annuli import Annuli
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from ..arrays import FloatArray, dot, norm
 from ..errors import InputError
 from ..parts.findings import Finding
-from ..spheres.rows import signed_distance
+from ..spheres.incidence import signed_distance
 from .beams import Beams, DrillMarks, cut_corners, inward_directions
 
 NO_MARKS = "B208"

@@ -8,7 +8,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray, norm, unit
 from ..panels.tessellation import MAX_STEPS
 from ..spheres.arcs import Arcs, arc_points
-from ..spheres.rows import normals
+from ..spheres.incidence import normals
 from .beams import Beams, section_arcs
 
 

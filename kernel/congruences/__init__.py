@@ -1,7 +1,8 @@
 """
 Two-parameter families of spheres and their envelopes (Sec. 2.2, 2.3).
 
-envelopes  Discrete sphere congruences and the points that their spheres have in common.
-smooth     Sphere congruences: two-parameter families of spheres, smooth and at the vertices
-           of a mesh.
+curvature_spheres   Spheres that touch a surface: tangent, principal and central ones.
+smooth_envelopes    The two envelopes of a smooth congruence, from its first derivatives.
+discrete_envelopes  Envelopes of discrete congruences, mirror points, contact points, Ribaucour.
+conjugacy           How far parametrisations and nets are from conjugate.
 """

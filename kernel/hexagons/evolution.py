@@ -17,23 +17,23 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..congruences.smooth import touching_spheres
+from ..congruences.curvature_spheres import touching_spheres
 from ..errors import InputError
 from ..meshes.mesh import Mesh, mean_edge_length
+from ..meshes.triangulation import check_triangles
 from ..solvers.levenberg_marquardt import DampedStep, levenberg_marquardt
 from ..tolerances import AXIS_SLACK, DUAL_EDGE
-from .axis_tilt import axis_angles, axis_tilt
-from .delaunay import MAX_SWEEPS, dual_edge_lengths, flip_to_convex
-from .offsets import (
+from .delaunay_flips import MAX_SWEEPS, dual_edge_lengths, flip_to_convex
+from .ortho_energy import axis_deviations, ortho_residuals
+from .tangent_offsets import (
     CLOSEST,
-    Side,
+    CenterSide,
     TangentSurface,
     grow_offsets,
     least_offsets,
     mesh_edges,
     tangent_surface,
 )
-from .triples import check_triangles
 
 FAIRNESS = 1.0
 FIRST_WEIGHT, LARGEST_WEIGHT = 100.0, 1e4
@@ -91,7 +91,11 @@ class Evolution:
 
 
 def evolve_spheres(
-    mesh: Mesh, max_axis_angle: float = np.pi / 12, side: Side = "auto", *, flips: bool = True
+    mesh: Mesh,
+    max_axis_angle: float = np.pi / 12,
+    side: CenterSide = "auto",
+    *,
+    flips: bool = True,
 ) -> Evolution:
     """
     Grow spheres that touch a triangulation towards its curvature spheres.
@@ -122,7 +126,7 @@ def evolve_spheres(
     -----
     Minimises ``E_cs + w E_ortho + E_fair``: ``E_cs = sum (λ / ρ - 0.95)²`` with
     ``ρ = 1 / max(k1, k2)`` for curvatures with respect to the normal towards the centres;
-    ``E_ortho`` of `axis_tilt`, with a weight that is raised until the bound holds; and
+    ``E_ortho`` of `ortho_energy`, with a weight that is raised until the bound holds; and
     for fairness ``E_fair``, the squared differences of offsets along edges (a Laplacian of the
     centres would pull closed surfaces together). Between descents edges are flipped; where
     faces are not convex all the same, the aim is lowered: around small spheres they are.
@@ -236,7 +240,7 @@ def _flip(
 
 def _axis_angles(surface: TangentSurface, offsets: FloatArray) -> FloatArray:
     triangles = surface.mesh.corners.reshape(-1, 3)
-    return axis_angles(
+    return axis_deviations(
         surface.mesh.vertices, surface.normals, _turned(triangles, surface.side), offsets
     )
 
@@ -264,7 +268,6 @@ def descend(
     Parameters
     ----------
     surface : TangentSurface
-        The surface.
     offsets, aims : (V,) float array
         Offsets to start from and to end at.
     bound : float
@@ -295,12 +298,12 @@ def descend(
     constant: Any = (smoothing.T @ smoothing + diags_array(pull**2)).tocsc()
 
     def _energies(state: FloatArray) -> FloatArray:
-        tilt, _ = axis_tilt(points, normals, triangles, state, bound)
+        tilt, _ = ortho_residuals(points, normals, triangles, state, bound)
         parts = (pull * (state - aims), weight * tilt, smoothing @ state)
         return np.array([float(part @ part) for part in parts])
 
     def _linearize(state: FloatArray) -> Callable[[float], DampedStep]:
-        tilt, slopes = axis_tilt(points, normals, triangles, state, bound)
+        tilt, slopes = ortho_residuals(points, normals, triangles, state, bound)
         tilting: Any = csr_array((weight * slopes.ravel(), places), (len(triangles), count))
         attraction, tilt, rough = pull * (state - aims), weight * tilt, smoothing @ state
         normal: Any = (constant + tilting.T @ tilting).tocsc()

@@ -7,7 +7,8 @@ import numpy as np
 from ..arrays import BoolArray, IntArray
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh
-from .dual_meshes import vertex_fans
+from ..meshes.topology import previous_corners
+from ..meshes.vertex_fans import vertex_fans
 
 RowDirection: TypeAlias = Literal["first", "second"]
 
@@ -42,10 +43,9 @@ def shifted_rows(mesh: Mesh, along: RowDirection = "first") -> Mesh:
     _check_grid(mesh)
     topology = mesh.topology
     heads = mesh.corners[topology.next_corners]
-    tails_before = np.empty_like(heads)
-    tails_before[topology.next_corners] = mesh.corners
+    tails_before = mesh.corners[previous_corners(topology)]
     dropped = np.setdiff1d(mesh.corners, np.flatnonzero(_is_even(mesh)))
-    fans = vertex_fans(mesh, dropped)
+    fans = vertex_fans(topology, mesh.corners, dropped, "last")
     first = fans.offsets[:-1]
     is_inner = ~topology.is_boundary_vertex[dropped]
     ring = heads[fans.corners[first[is_inner][:, None] + np.arange(4)]]

@@ -19,7 +19,6 @@ def vertex_normals(mesh: Mesh) -> FloatArray:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------
@@ -83,7 +82,6 @@ def principal_curvatures(mesh: Mesh) -> tuple[FloatArray, FloatArray, BoolArray]
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------

@@ -121,7 +121,6 @@ def with_vertices(mesh: Mesh, vertices: FloatArray) -> Mesh:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     vertices : (V, 3) float array
         New points; finite.
 
@@ -195,7 +194,6 @@ def face_centroids(mesh: Mesh) -> FloatArray:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------
@@ -216,7 +214,6 @@ def local_corners(mesh: Mesh) -> FloatArray:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------
@@ -233,7 +230,6 @@ def face_vector_areas(mesh: Mesh) -> FloatArray:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------
@@ -253,7 +249,6 @@ def face_normals(mesh: Mesh) -> FloatArray:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------
@@ -270,7 +265,6 @@ def shortest_edge(mesh: Mesh) -> float:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------
@@ -288,7 +282,6 @@ def mean_edge_length(mesh: Mesh) -> float:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------
@@ -306,7 +299,6 @@ def reversed_corners(mesh: Mesh) -> IntArray:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------
@@ -326,7 +318,6 @@ def corner_edges(mesh: Mesh) -> IntArray:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------
@@ -346,7 +337,6 @@ def edge_ends(mesh: Mesh, edges: IntArray) -> IntArray:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     edges : (H,) int array
         Edge that leaves each corner, of `corner_edges`.
 

@@ -1,5 +1,5 @@
 """
-Even triangles in place of whatever triangles came in.
+Isotropic remeshing of triangle meshes.
 
 Long edges are split, short ones merged, edges flipped towards six neighbours per vertex, and
 vertices moved along the surface to the middle of their neighbours, again and again.
@@ -14,8 +14,16 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from ..errors import InputError
 from ..tolerances import CREASE, LINE_CORNER
 from .mesh import Mesh, face_normals, face_vector_areas
-from .triangle_edges import THIN, Triangles, find_edges, thickness, triangle_normals
-from .triangle_edits import collapse_short_edges, flip_edges, split_long_edges
+from .triangle_edges import (
+    SLIVER,
+    Triangles,
+    exceeds,
+    find_edges,
+    thickness,
+    to_be_edited,
+    triangle_normals,
+)
+from .triangle_edits import collapse_short_edges, flip_edges, split_long_edges, strays
 from .triangulation import triangulate
 
 MAX_TRIANGLES = 2_000_000
@@ -44,7 +52,9 @@ def remesh_triangles(
     -------
     Mesh
         Triangles with vertices on the surface, and the same topology. Boundary and creases
-        stay; vertices at which they turn sharply (`LINE_CORNER`), end or meet keep their place.
+        stay, no farther than a tenth of `edge_length` (`STRAY`) from their edges, which are
+        shorter for it where lines bend; vertices at which lines turn sharply (`LINE_CORNER`),
+        end or meet keep their place.
 
     Raises
     ------
@@ -59,21 +69,17 @@ def remesh_triangles(
     surface = triangulate(mesh)
     _check_length(surface, edge_length)
     origin = surface.vertices[surface.corners[0]]
-    start = Triangles(
-        (surface.vertices - origin) / edge_length,
-        surface.corners.reshape(-1, 3),
-        np.zeros(surface.n_vertices, bool),
-        _creases(surface, crease_angle),
+    vertices = (surface.vertices - origin) / edge_length
+    lines = np.concatenate([_rim(surface), _creases(surface, crease_angle)])
+    start = to_be_edited(
+        vertices, surface.corners.reshape(-1, 3), _line_corners(vertices, lines), lines
     )
-    edges = find_edges(start)
-    lines = edges.ends[edges.is_line]
-    start = replace(start, is_fixed=_line_corners(start.vertices, lines))
     triangles = start
     for _ in range(iterations):
         triangles = split_long_edges(triangles)
         triangles = collapse_short_edges(triangles)
         triangles = flip_edges(triangles)
-        triangles = _smooth(triangles, start.vertices, start.faces, lines)
+        triangles = _smooth(triangles, start.vertices, start.faces)
     used, corners = np.unique(triangles.faces, return_inverse=True)
     points = origin + edge_length * triangles.vertices[used]
     return Mesh(points, corners.reshape(-1, 3).astype(np.int64))
@@ -86,7 +92,6 @@ def even_share(mesh: Mesh, edge_length: float) -> float:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     edge_length : float
         The length, in model units.
 
@@ -112,14 +117,20 @@ def _check_length(mesh: Mesh, edge_length: float) -> None:
         )
 
 
+def _rim(surface: Mesh) -> IntArray:
+    """Ends (n, 2) of the edges on the boundary."""
+    halves = np.flatnonzero(surface.topology.twins < 0)
+    return surface.corners[np.stack([halves, surface.topology.next_corners[halves]], 1)]
+
+
 def _creases(surface: Mesh, crease_angle: float) -> IntArray:
     """Ends (n, 2) of the edges at which triangles, but no slivers, meet sharply."""
     sides = face_normals(surface)[surface.topology.edge_faces]
     left, right = sides[:, 0], sides[:, 1]
     turns = np.arctan2(norm(np.cross(left, right)), dot(left, right))
-    is_thin = thickness(surface.vertices[surface.corners].reshape(-1, 3, 3)) < THIN
+    is_thin = thickness(surface.vertices[surface.corners].reshape(-1, 3, 3)) < SLIVER
     has_sliver = is_thin[surface.topology.edge_faces].any(axis=1)
-    return surface.topology.edge_vertices[(turns > crease_angle) & ~has_sliver]
+    return surface.topology.edge_vertices[exceeds(turns, crease_angle) & ~has_sliver]
 
 
 def _line_corners(vertices: FloatArray, lines: IntArray) -> BoolArray:
@@ -129,46 +140,46 @@ def _line_corners(vertices: FloatArray, lines: IntArray) -> BoolArray:
     # The sum of two unit vectors is twice the sine of half the turn.
     away = norm(sum_by(pairs[:, 0], arms, len(vertices)))
     count = np.bincount(pairs[:, 0], minlength=len(vertices))
-    is_straight = (count == 2) & (away <= 2 * np.sin(LINE_CORNER / 2))
+    is_straight = (count == 2) & ~exceeds(away, 2 * np.sin(LINE_CORNER / 2))
     return (count > 0) & ~is_straight
 
 
-def _smooth(
-    triangles: Triangles, surface: FloatArray, faces: IntArray, lines: IntArray
-) -> Triangles:
-    """Move vertices to the middle of their neighbours, then onto the surface or its lines."""
+def _smooth(triangles: Triangles, surface: FloatArray, faces: IntArray) -> Triangles:
+    """Move vertices to the middle of their neighbours, on the surface or along its lines."""
     edges = find_edges(triangles)
     vertices, count = triangles.vertices, len(triangles.vertices)
-    on_line = edges.is_line_vertex
-    # A vertex on a line has its neighbours on the line only.
-    pairs = np.concatenate([edges.ends, edges.ends[:, ::-1]])
-    is_line = np.concatenate([edges.is_line, edges.is_line])
-    tails, heads = pairs[is_line | ~on_line[pairs[:, 0]]].T
+    tails, heads = np.concatenate([edges.ends, edges.ends[:, ::-1]]).T
     valence = np.bincount(tails, minlength=count)
     shift = sum_by(tails, vertices[heads] - vertices[tails], count)
     shift /= np.maximum(valence, 1)[:, None]
     normals = triangle_normals(vertices[triangles.faces])
     vertex_normals = sum_by(triangles.faces.ravel(), np.repeat(normals, 3, axis=0), count)
     vertex_normals = unit(vertex_normals)
-    inner = (valence > 0) & ~on_line
-    shift -= np.where(inner, dot(shift, vertex_normals), 0.0)[:, None] * vertex_normals
-    moved = vertices + shift
-    moved[inner] = _nearest(moved[inner], surface, faces)
-    movable = on_line & ~triangles.is_fixed
-    moved[movable] = _nearest(moved[movable], surface, lines)
-    moved[triangles.is_fixed] = vertices[triangles.is_fixed]
-    # What would fold stays.
-    for _ in range(4):
-        folds = dot(triangle_normals(moved[triangles.faces]), normals) <= 0
-        if not folds.any():
-            break
-        stays = triangles.faces[folds]
-        moved[stays] = vertices[stays]
-    return replace(triangles, vertices=moved)
+    shift -= dot(shift, vertex_normals)[:, None] * vertex_normals
+    moves = (valence > 0) & ~edges.is_line_vertex
+    slides = edges.is_line_vertex & ~triangles.is_fixed
+    # Between fixed vertices, a vertex of a line has two neighbours on it.
+    arcs = sum_by(triangles.lines.ravel(), triangles.arcs[:, ::-1].ravel(), count) / 2
+    aims = vertices.copy()
+    aims[moves] = _nearest((vertices + shift)[moves], surface, faces)
+    aims[slides] = triangles.curves.at(arcs[slides])
+    # What would fold or leave its line stays.
+    while True:
+        moved = replace(
+            triangles,
+            vertices=np.where((moves | slides)[:, None], aims, vertices),
+            arcs=np.where(slides[triangles.lines], arcs[triangles.lines], triangles.arcs),
+        )
+        folds = dot(triangle_normals(moved.vertices[triangles.faces]), normals) <= 0
+        stays = [triangles.faces[folds].ravel(), triangles.lines[strays(moved)].ravel()]
+        stays = np.concatenate(stays)
+        if not (moves | slides)[stays].any():
+            return moved
+        moves[stays] = slides[stays] = False
 
 
 def _nearest(points: FloatArray, vertices: FloatArray, elements: IntArray) -> FloatArray:
-    """Nearest points of triangles (n, 3) or segments (n, 2)."""
+    """Nearest points of triangles (n, 3)."""
     from igl import (  # pyright: ignore[reportMissingTypeStubs]
         point_mesh_squared_distance,  # pyright: ignore[reportUnknownVariableType]
     )

@@ -14,6 +14,7 @@ import numpy as np
 from ..arrays import BoolArray, IntArray, sum_by
 from ..errors import InputError, name_ids
 from .mesh import Mesh, corner_edges, edge_ends, face_centroids
+from .topology import previous_corners
 
 
 def subdivide_midpoint(mesh: Mesh) -> Mesh:
@@ -99,7 +100,6 @@ def subdivide_loop(mesh: Mesh) -> Mesh:
     Parameters
     ----------
     mesh : Mesh
-        Triangles.
 
     Returns
     -------
@@ -134,10 +134,8 @@ def subdivide_loop(mesh: Mesh) -> Mesh:
 def _split_faces(mesh: Mesh, edges: IntArray, is_triangle: BoolArray) -> list[IntArray]:
     """Quads at all corners of faces, but four triangles for those so marked; face by face."""
     topology = mesh.topology
-    previous = np.empty_like(topology.next_corners)
-    previous[topology.next_corners] = np.arange(len(previous))
     after = mesh.n_vertices + edges
-    before = after[previous]
+    before = after[previous_corners(topology)]
     center_ids = mesh.n_vertices + int(edges.max()) + np.cumsum(~is_triangle)
     faces = topology.corner_faces
     in_triangle = is_triangle[faces]

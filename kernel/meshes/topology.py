@@ -21,7 +21,6 @@ class Topology:
     Attributes
     ----------
     corner_faces : (H,) int array
-        Face of each corner.
     next_corners : (H,) int array
         Following corner in the same face.
     twins : (H,) int array
@@ -56,7 +55,6 @@ def build_topology(corners: IntArray, offsets: IntArray, n_vertices: int) -> Top
     offsets : (F + 1,) int array
         First corner of each face, and H.
     n_vertices : int
-        Number of vertices.
 
     Returns
     -------
@@ -156,3 +154,20 @@ def _check_vertex_fans(
             f"vertex {vertex} is non-manifold: faces {name_ids(faces.tolist())} meet there "
             "without sharing an edge; duplicate the vertex"
         )
+
+
+def previous_corners(topology: Topology) -> IntArray:
+    """
+    The corner before each corner in its face: inverse of `Topology.next_corners`.
+
+    Parameters
+    ----------
+    topology : Topology
+
+    Returns
+    -------
+    (H,) int array
+    """
+    result = np.empty_like(topology.next_corners)
+    result[topology.next_corners] = np.arange(len(result))
+    return result

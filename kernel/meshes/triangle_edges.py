@@ -5,8 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm
+from ..tolerances import SAME_LENGTH
+from .surface_lines import Curves, loop_starts, trace_curves
 
-THIN = 0.15
+SLIVER = 0.15
 
 
 @dataclass(frozen=True)
@@ -22,14 +24,20 @@ class Triangles:
         Vertices of each triangle.
     is_fixed : (V,) bool array
         Vertices that stay in place.
-    creases : (n, 2) int array
-        Vertices of the edges within that are kept.
+    lines : (n, 2) int array
+        Vertices of the edges on lines: the boundary, and creases.
+    arcs : (n, 2) float array
+        Where these vertices lie on `curves`.
+    curves : Curves
+        The lines as they were at first. They end at fixed vertices.
     """
 
     vertices: FloatArray
     faces: IntArray
     is_fixed: BoolArray
-    creases: IntArray
+    lines: IntArray
+    arcs: FloatArray
+    curves: Curves
 
 
 @dataclass(frozen=True)
@@ -47,6 +55,8 @@ class Edges:
         Half-edges ``3 t + k``, from corner k of triangle t to the next; -1 on the boundary.
     corner_edges : (T, 3) int array
         Edge that leaves each corner.
+    line_edges : (n,) int array
+        The edges of `Triangles.lines`.
     is_rim, is_line : (E,) bool array
         Edges on the boundary; on the boundary or a crease.
     is_rim_vertex, is_line_vertex : (V,) bool array
@@ -57,10 +67,39 @@ class Edges:
     keys: IntArray
     halves: IntArray
     corner_edges: IntArray
+    line_edges: IntArray
     is_rim: BoolArray
     is_line: BoolArray
     is_rim_vertex: BoolArray
     is_line_vertex: BoolArray
+
+
+def to_be_edited(
+    vertices: FloatArray, faces: IntArray, is_fixed: BoolArray, lines: IntArray
+) -> Triangles:
+    """
+    Triangles with their lines as curves; one that closes without a corner gets a fixed vertex.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float array
+        Points.
+    faces : (T, 3) int array
+        Vertices of each triangle.
+    is_fixed : (V,) bool array
+        Vertices that stay in place: at least those where lines end or meet.
+    lines : (n, 2) int array
+        Vertices of the edges on the boundary and on creases.
+
+    Returns
+    -------
+    Triangles
+        The triangles.
+    """
+    is_fixed = is_fixed.copy()
+    is_fixed[loop_starts(lines, is_fixed)] = True
+    curves, arcs = trace_curves(vertices, lines, is_fixed)
+    return Triangles(vertices, faces, is_fixed, lines, arcs, curves)
 
 
 def find_edges(triangles: Triangles) -> Edges:
@@ -70,7 +109,6 @@ def find_edges(triangles: Triangles) -> Edges:
     Parameters
     ----------
     triangles : Triangles
-        The triangles.
 
     Returns
     -------
@@ -86,14 +124,24 @@ def find_edges(triangles: Triangles) -> Edges:
     second[ids[others]] = np.flatnonzero(others)
     ends = ends[first]
     is_rim = second < 0
-    is_line = is_rim | np.isin(keys, pair_keys(triangles.creases, count))
+    line_edges = np.searchsorted(keys, pair_keys(triangles.lines, count)).astype(np.int64)
+    is_line = is_rim.copy()
+    is_line[line_edges] = True
     is_rim_vertex, is_line_vertex = np.zeros((2, count), bool)
     is_rim_vertex[ends[is_rim]] = True
     is_line_vertex[ends[is_line]] = True
     halves = np.stack([first, second], 1).astype(np.int64)
     corner_edges = ids.reshape(-1, 3).astype(np.int64)
     return Edges(
-        ends, keys, halves, corner_edges, is_rim, is_line, is_rim_vertex, is_line_vertex
+        ends,
+        keys,
+        halves,
+        corner_edges,
+        line_edges,
+        is_rim,
+        is_line,
+        is_rim_vertex,
+        is_line_vertex,
     )
 
 
@@ -104,9 +152,7 @@ def pair_keys(pairs: IntArray, count: int) -> IntArray:
     Parameters
     ----------
     pairs : (n, 2) int array
-        Pairs.
     count : int
-        Number of vertices.
 
     Returns
     -------
@@ -123,9 +169,7 @@ def edge_lengths(triangles: Triangles, edges: Edges) -> FloatArray:
     Parameters
     ----------
     triangles : Triangles
-        The triangles.
     edges : Edges
-        Their edges.
 
     Returns
     -------
@@ -135,6 +179,23 @@ def edge_lengths(triangles: Triangles, edges: Edges) -> FloatArray:
     return norm(triangles.vertices[edges.ends[:, 1]] - triangles.vertices[edges.ends[:, 0]])
 
 
+def exceeds(values: FloatArray | float, bounds: FloatArray | float) -> BoolArray:
+    """
+    Whether values are larger by more than rounding, so that what is equal is so on any machine.
+
+    Parameters
+    ----------
+    values, bounds : (...) float array
+        Lengths in edges wanted, or ratios.
+
+    Returns
+    -------
+    (...) bool array
+        Whether they are.
+    """
+    return np.asarray(values - bounds) > SAME_LENGTH
+
+
 def triangle_normals(corners: FloatArray) -> FloatArray:
     """
     Cross products of two sides: normals of twice the area of the triangles.
@@ -142,7 +203,6 @@ def triangle_normals(corners: FloatArray) -> FloatArray:
     Parameters
     ----------
     corners : (..., 3, 3) float array
-        Corners of the triangles.
 
     Returns
     -------
@@ -160,12 +220,11 @@ def thickness(corners: FloatArray) -> FloatArray:
     Parameters
     ----------
     corners : (..., 3, 3) float array
-        Corners of the triangles.
 
     Returns
     -------
     (...) float array
-        From 0 to 0.87, for an equilateral triangle; below `THIN` a sliver, whose normal says
+        From 0 to 0.87, for an equilateral triangle; below `SLIVER` a sliver, whose normal says
         nothing about the surface.
     """
     sides = np.roll(corners, -1, axis=-2) - corners

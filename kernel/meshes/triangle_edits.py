@@ -4,20 +4,24 @@ Splits, collapses and flips of the edges of a triangle mesh, many at a time.
 Every function takes triangles in units in which edges shall have length 1 and returns edited
 ones. Edits that could disturb each other are not made in the same batch, so that a batch is a
 few operations on arrays. None of them changes the topology, and none crosses a line: the
-boundary, or a crease.
+boundary, or a crease. Vertices on a line stay on its curve, and however the choices fall, a
+line that was no farther than `STRAY` from its edges is so afterwards.
 """
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
+from ..tolerances import SAME_LENGTH
 from .triangle_edges import (
-    THIN,
+    SLIVER,
     Edges,
     Triangles,
     edge_lengths,
+    exceeds,
     find_edges,
     pair_keys,
     thickness,
@@ -25,13 +29,63 @@ from .triangle_edges import (
 )
 
 LONG, SHORT = 4 / 3, 4 / 5
+STRAY = 0.1
+Number = TypeVar("Number", np.int64, np.float64)
 LEAST_COSINE = 0.5
 SLIVER_GAIN = 1000
 
 
 def split_long_edges(triangles: Triangles) -> Triangles:
     """
-    Split edges of more than 4/3 in the middle, until none are left.
+    Split edges of more than 4/3, and those on a line that leave it, until none are left.
+
+    Parameters
+    ----------
+    triangles : Triangles
+
+    Returns
+    -------
+    Triangles
+        Triangles of the same shape; vertices added on a line lie in the middle of its curve.
+    """
+    while True:
+        edges = find_edges(triangles)
+        is_long = exceeds(edge_lengths(triangles, edges), LONG)
+        is_long[edges.line_edges[strays(triangles)]] = True
+        if not is_long.any():
+            return triangles
+        halved = is_long[edges.line_edges]
+        arcs = triangles.arcs.mean(axis=1)[halved]
+        middles = triangles.vertices[edges.ends].mean(axis=1)
+        middles[edges.line_edges[halved]] = triangles.curves.at(arcs)
+        middles = middles[is_long]
+        ids = np.full(len(is_long), -1, np.int64)
+        ids[is_long] = len(triangles.vertices) + np.arange(len(middles))
+        vertices = np.concatenate([triangles.vertices, middles])
+        fixed = np.concatenate([triangles.is_fixed, np.zeros(len(middles), bool)])
+        faces = _split_faces(vertices, triangles.faces, ids[edges.corner_edges])
+        triangles = replace(
+            triangles,
+            vertices=vertices,
+            faces=faces,
+            is_fixed=fixed,
+            lines=_halved(triangles.lines, ids[edges.line_edges[halved]], halved),
+            arcs=_halved(triangles.arcs, arcs, halved),
+        )
+
+
+def _halved(
+    pairs: NDArray[Number], middles: NDArray[Number], chosen: BoolArray
+) -> NDArray[Number]:
+    """Pairs (n, 2), the chosen ones cut in two at their middles."""
+    first, second = pairs[chosen].T
+    halves = np.stack([first, middles], 1), np.stack([middles, second], 1)
+    return np.concatenate([pairs[~chosen], *halves])
+
+
+def strays(triangles: Triangles) -> BoolArray:
+    """
+    Edges on lines that their curve leaves by more than `STRAY`.
 
     Parameters
     ----------
@@ -40,30 +94,11 @@ def split_long_edges(triangles: Triangles) -> Triangles:
 
     Returns
     -------
-    Triangles
-        Triangles of the same shape.
+    (n,) bool array
+        For each edge of `lines`.
     """
-    while True:
-        edges = find_edges(triangles)
-        is_long = edge_lengths(triangles, edges) > LONG
-        if not is_long.any():
-            return triangles
-        middles = triangles.vertices[edges.ends[is_long]].mean(axis=1)
-        ids = np.full(len(is_long), -1, np.int64)
-        ids[is_long] = len(triangles.vertices) + np.arange(len(middles))
-        vertices = np.concatenate([triangles.vertices, middles])
-        fixed = np.concatenate([triangles.is_fixed, np.zeros(len(middles), bool)])
-        faces = _split_faces(vertices, triangles.faces, ids[edges.corner_edges])
-        is_crease = edges.is_line & ~edges.is_rim
-        halved = np.flatnonzero(is_crease & is_long)
-        creases = np.concatenate(
-            [
-                edges.ends[is_crease & ~is_long],
-                np.stack([edges.ends[halved, 0], ids[halved]], 1),
-                np.stack([ids[halved], edges.ends[halved, 1]], 1),
-            ]
-        )
-        triangles = Triangles(vertices, faces, fixed, creases)
+    chords = triangles.vertices[triangles.lines]
+    return ~exceeds(STRAY, triangles.curves.deviations(chords, triangles.arcs))
 
 
 def _split_faces(vertices: FloatArray, faces: IntArray, middles: IntArray) -> IntArray:
@@ -78,7 +113,7 @@ def _split_faces(vertices: FloatArray, faces: IntArray, middles: IntArray) -> In
     m, n, p = np.take_along_axis(middles, order, axis=1).T
     one, two, three = (count == k for k in (1, 2, 3))
     diagonals = norm(vertices[a] - vertices[n]), norm(vertices[m] - vertices[c])
-    from_a = two & (diagonals[0] <= diagonals[1])
+    from_a = two & ~exceeds(*diagonals)
     from_m = two & ~from_a
     pieces = [
         (count == 0, (a, b, c)),
@@ -93,12 +128,11 @@ def _split_faces(vertices: FloatArray, faces: IntArray, middles: IntArray) -> In
 
 def collapse_short_edges(triangles: Triangles, max_batches: int = 12) -> Triangles:
     """
-    Merge the ends of edges of less than 4/5 where no side grows beyond 4/3 and nothing folds.
+    Merge the ends of edges of less than 4/5 where nothing grows beyond 4/3, folds or strays.
 
     Parameters
     ----------
     triangles : Triangles
-        The triangles.
     max_batches : int
         Most batches to make.
 
@@ -111,15 +145,17 @@ def collapse_short_edges(triangles: Triangles, max_batches: int = 12) -> Triangl
     for _ in range(max_batches):
         edges = find_edges(triangles)
         lengths = edge_lengths(triangles, edges)
-        candidates = np.flatnonzero((lengths < SHORT) & ~np.isin(edges.keys, refused))
+        candidates = np.flatnonzero(exceeds(SHORT, lengths) & ~np.isin(edges.keys, refused))
         candidates = candidates[_may_merge(triangles, edges, candidates)]
         chosen = candidates[_independent(edges, candidates, lengths[candidates], reach=2)]
         if not len(chosen):
             break
-        places = _merged_places(triangles, edges, chosen)
-        is_good = _keeps_shape(triangles, edges.ends[chosen], places)
+        ends, arcs = edges.ends[chosen], _merged_arcs(triangles, edges, chosen)
+        places = _merged_places(triangles, edges, chosen, arcs)
+        is_good = _keeps_shape(triangles, ends, places)
+        is_good &= _keeps_lines(_merge(triangles, ends, places, arcs), ends)
         refused = np.concatenate([refused, edges.keys[chosen[~is_good]]])
-        triangles = _merge(triangles, edges.ends[chosen[is_good]], places[is_good])
+        triangles = _merge(triangles, ends[is_good], places[is_good], arcs[is_good])
     return triangles
 
 
@@ -128,6 +164,10 @@ def _may_merge(triangles: Triangles, edges: Edges, chosen: IntArray) -> BoolArra
     a, b = edges.ends[chosen].T
     on_line = edges.is_line_vertex
     joins_lines = on_line[a] & on_line[b] & ~edges.is_line[chosen]
+    # The other two sides of a triangle become one edge.
+    halves = edges.halves[chosen]
+    sides = [edges.corner_edges[halves // 3, (halves + turn) % 3] for turn in (1, 2)]
+    joins_lines |= ((halves >= 0) & edges.is_line[sides[0]] & edges.is_line[sides[1]]).any(1)
     both_fixed = triangles.is_fixed[a] & triangles.is_fixed[b]
     from scipy.sparse import csr_array
 
@@ -139,7 +179,6 @@ def _may_merge(triangles: Triangles, edges: Edges, chosen: IntArray) -> BoolArra
     shared = np.asarray(common.sum(axis=1)).ravel()
     # A vertex opposite the edge loses a neighbour.
     corners = np.roll(triangles.faces, 1, axis=1).ravel()
-    halves = edges.halves[chosen]
     opposite = np.where(halves >= 0, corners[halves], corners[halves[:, :1]])
     valence = np.bincount(edges.ends.ravel(), minlength=count)
     is_thin = valence[opposite] <= np.where(edges.is_rim_vertex[opposite], 2, 3)
@@ -147,13 +186,27 @@ def _may_merge(triangles: Triangles, edges: Edges, chosen: IntArray) -> BoolArra
     return fits & ~joins_lines & ~both_fixed & ~is_thin.any(axis=1)
 
 
-def _merged_places(triangles: Triangles, edges: Edges, chosen: IntArray) -> FloatArray:
+def _merged_arcs(triangles: Triangles, edges: Edges, chosen: IntArray) -> FloatArray:
+    """Where on its curve an edge of a line becomes a vertex; nan for other edges."""
+    arcs = np.full(len(edges.keys), np.nan)
+    is_fixed = triangles.is_fixed[triangles.lines]
+    weights = np.where(is_fixed.any(axis=1, keepdims=True), is_fixed, 0.5)
+    arcs[edges.line_edges] = dot(weights, triangles.arcs)
+    return arcs[chosen]
+
+
+def _merged_places(
+    triangles: Triangles, edges: Edges, chosen: IntArray, arcs: FloatArray
+) -> FloatArray:
     """Where the two ends of edges meet: at the one that must not move, or half way."""
     a, b = edges.ends[chosen].T
     rank = edges.is_line_vertex.astype(np.int64) + 2 * triangles.is_fixed
     share = np.select([rank[a] > rank[b], rank[a] < rank[b]], [0.0, 1.0], 0.5)[:, None]
     first, second = triangles.vertices[a], triangles.vertices[b]
-    return first + share * (second - first)
+    places = first + share * (second - first)
+    slides = edges.is_line[chosen] & (rank[a] == rank[b])
+    places[slides] = triangles.curves.at(arcs[slides])
+    return places
 
 
 def _keeps_shape(triangles: Triangles, ends: IntArray, places: FloatArray) -> BoolArray:
@@ -171,17 +224,28 @@ def _keeps_shape(triangles: Triangles, ends: IntArray, places: FloatArray) -> Bo
     moved = np.where(is_moved[changed][..., None], places[merges][:, None], corners)
     after = unit(triangle_normals(moved))
     sides = norm(np.roll(moved, -1, axis=1) - moved)
-    grown = (sides > LONG) & (norm(np.roll(corners, -1, axis=1) - corners) < sides)
-    is_thin = thickness(moved) < np.minimum(thickness_before, THIN)
+    sides_before = norm(np.roll(corners, -1, axis=1) - corners)
+    grown = exceeds(sides, LONG) & exceeds(sides, sides_before)
+    is_thin = exceeds(np.minimum(thickness_before, SLIVER), thickness(moved))
     # The normal of a sliver turns easily.
-    least = np.where(thickness_before < THIN, 0.0, LEAST_COSINE)
+    least = np.where(thickness_before < SLIVER, 0.0, LEAST_COSINE)
     folds = dot(before, after) <= least
     good = np.ones(len(ends), bool)
     good[merges[grown.any(axis=1) | folds | is_thin]] = False
     return good
 
 
-def _merge(triangles: Triangles, ends: IntArray, places: FloatArray) -> Triangles:
+def _keeps_lines(merged: Triangles, ends: IntArray) -> BoolArray:
+    """Merges (n,) after which no line strays; `merged` is what all of them lead to."""
+    is_bad = np.zeros(len(merged.vertices), bool)
+    # The merges are independent: no edge belongs to two of them.
+    is_bad[merged.lines[strays(merged)]] = True
+    return ~is_bad[ends[:, 0]]
+
+
+def _merge(
+    triangles: Triangles, ends: IntArray, places: FloatArray, arcs: FloatArray
+) -> Triangles:
     vertices, fixed = triangles.vertices.copy(), triangles.is_fixed.copy()
     target = np.arange(len(vertices))
     target[ends[:, 1]] = ends[:, 0]
@@ -189,9 +253,20 @@ def _merge(triangles: Triangles, ends: IntArray, places: FloatArray) -> Triangle
     fixed[ends[:, 0]] |= fixed[ends[:, 1]]
     faces = target[triangles.faces]
     is_kept = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
-    creases = target[triangles.creases]
-    creases = creases[creases[:, 0] != creases[:, 1]]
-    return Triangles(vertices, faces[is_kept], fixed, creases)
+    places_on_line = np.full(len(vertices), np.nan)
+    places_on_line[ends] = np.where(triangles.is_fixed[ends], np.nan, arcs[:, None])
+    moved = places_on_line[triangles.lines]
+    line_arcs = np.where(np.isnan(moved), triangles.arcs, moved)
+    lines = target[triangles.lines]
+    stays = lines[:, 0] != lines[:, 1]
+    return replace(
+        triangles,
+        vertices=vertices,
+        faces=faces[is_kept],
+        is_fixed=fixed,
+        lines=lines[stays],
+        arcs=line_arcs[stays],
+    )
 
 
 def flip_edges(triangles: Triangles, max_batches: int = 12) -> Triangles:
@@ -201,7 +276,6 @@ def flip_edges(triangles: Triangles, max_batches: int = 12) -> Triangles:
     Parameters
     ----------
     triangles : Triangles
-        The triangles.
     max_batches : int
         Most batches to make.
 
@@ -245,7 +319,7 @@ def _flip_gains(triangles: Triangles, edges: Edges, quads: IntArray) -> IntArray
     gains = 2 * (a + b - c - d) - 4
     points = triangles.vertices[quads]
     least = np.minimum(*(thickness(points[:, corners]) for corners in BEFORE_FLIP))
-    return np.where(least < THIN, SLIVER_GAIN, gains)
+    return np.where(least < SLIVER, SLIVER_GAIN, gains)
 
 
 def _may_flip(triangles: Triangles, edges: Edges, quads: IntArray) -> BoolArray:
@@ -257,7 +331,7 @@ def _may_flip(triangles: Triangles, edges: Edges, quads: IntArray) -> BoolArray:
     new_keys = pair_keys(quads[:, 2:], len(triangles.vertices))
     is_good = ~np.isin(new_keys, edges.keys)
     for corners in AFTER_FLIP:
-        is_good &= thickness(points[:, corners]) > np.minimum(least, THIN)
+        is_good &= exceeds(thickness(points[:, corners]), np.minimum(least, SLIVER))
         after = unit(triangle_normals(points[:, corners]))
         is_good &= dot(before, after) > LEAST_COSINE
     return is_good
@@ -265,7 +339,8 @@ def _may_flip(triangles: Triangles, edges: Edges, quads: IntArray) -> BoolArray:
 
 def _independent(edges: Edges, chosen: IntArray, values: FloatArray, reach: int) -> BoolArray:
     """Edges of least value among all those with an end at most `reach` edges away."""
-    ranks = _ranks(values)
+    # What is equal but for rounding is told apart by the index.
+    ranks = _ranks(np.round(values / SAME_LENGTH))
     least = np.full(len(edges.is_rim_vertex), len(chosen), np.int64)
     np.minimum.at(least, edges.ends[chosen], ranks[:, None])
     for _ in range(reach):

@@ -107,3 +107,23 @@ def _is_ear(flat: FloatArray) -> BoolArray:
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+def check_triangles(mesh: Mesh) -> None:
+    """
+    Refuse a mesh that is no triangulation.
+
+    Parameters
+    ----------
+    mesh : Mesh
+
+    Raises
+    ------
+    InputError
+        If faces are no triangles; the message names them.
+    """
+    bad = np.flatnonzero(mesh.degrees != 3)
+    if len(bad):
+        raise InputError(
+            f"faces {name_ids(bad.tolist())} are no triangles: triangulate the mesh first"
+        )

@@ -1,10 +1,22 @@
 """
-Spheres that meet smoothly, in few radii: angles, energy (6), strips, clusters (Sec. 3, 4, 6.3).
+Spheres that meet smoothly, in few radii: angles, energy (6), strips, clusters.
 
-clustering    Few moulds: the radii of a sphere mesh gathered into clusters.
-energies      The terms of energy (6) and their table.
-pencil        Angle minimisation in the pencils of the faces' circles.
-strips        Strips: rows of faces whose spheres join smoothly along the row, and only there.
-whole_energy  Energy (6) on sphere meshes: smooth spheres, upright planes between them, nodes
-              with axes.
+Meshes with Spherical Faces, Secs. 3, 4 and 6.3.
+
+Angles alone, on vertices that stay, are the smallest problem: all spheres through the circle
+of a face are ``cos t P + sin t Q``, one unknown per face and four numbers per edge.
+Stage 1 minimises the signed energy ``Σ (1 - g)``, which tells smooth contact from a spike;
+stage 2 the paper's ``Σ (g² - 1)²`` from there. Both are damped Newton iterations on an F×F
+system with one entry per edge, solved by conjugate gradients. The start is the smoother of the
+given spheres and the face planes, so any start gives the same result. Another density is a
+function of g with two derivatives.
+
+Everything else, moving vertices, upright planes and nodes with axes, is `whole_energy`, by
+Levenberg-Marquardt on the terms in `energies`.
+
+angle_minimization  Angles in the pencils of the faces' circles, vertices fixed.
+strips              Rows of faces whose spheres join smoothly along the row, and only there.
+clustering          Few moulds: the radii of a sphere mesh gathered into clusters.
+whole_energy        Energy (6): smooth spheres, upright planes between them, nodes with axes.
+energies            The terms of energy (6), their table, and how their sum falls.
 """

@@ -16,8 +16,8 @@ from ..meshes.mesh import Mesh
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.circles import circle_pencils, face_circles, pencil_spheres
 from ..tolerances import SAME_CURVATURE
+from .angle_minimization import pencil_angles
 from .energies.table import EnergyWeights
-from .pencil import pencil_angles
 from .whole_energy import Conditions, Optimization, move_vertices
 
 RELAXED_CLOSENESS = 0.05
@@ -56,7 +56,6 @@ def cluster_radii(
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     k : int
         Number of moulds, at least 1; fewer come out where fewer curvatures differ.
     seed : int
@@ -128,7 +127,6 @@ def relax_moulds(
     sphere_mesh : SphereMesh
         Spheres of the moulds' radii, as `cluster_radii` returns them.
     clusters : RadiusClusters
-        The moulds.
     tolerance : float
         How far vertices may move, in mean edges.
     regularity, support : float

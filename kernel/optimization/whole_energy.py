@@ -23,12 +23,18 @@ from ..sphere_meshes.fit import face_planes
 from ..sphere_meshes.sphere_mesh import SphereMesh, intersection_angles, vertex_error
 from ..spheres.circles import circle_pencils, face_circles, pencil_spheres
 from ..spheres.rows import recenter, rescale
-from ..tolerances import COMMON_VERTEX, ENERGY_CHANGE, STAGE_CHANGE
+from ..tolerances import (
+    COMMON_VERTEX,
+    ENERGY_CHANGE,
+    RESTING_MODEL,
+    STAGE_CHANGE,
+    STEP_MODEL,
+)
+from .angle_minimization import check_angle_options, minimize_angles, pencil_angles
 from .energies.freedom import Boundary, Freedom, Interior, vertex_freedom
 from .energies.minimize import energy_problem, minimize_energy
 from .energies.setting import Setting, Unknowns, energy_setting, first_unknowns
 from .energies.table import EnergyWeights
-from .pencil import check_angle_options, minimize_angles, pencil_angles
 
 Corners = Literal["soft", "common", "own"]
 
@@ -144,7 +150,6 @@ def optimize_spheres(
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        Mesh and spheres to start from.
     weights : EnergyWeights, optional
         Weights of the terms.
     conditions : Conditions, optional
@@ -201,9 +206,7 @@ def move_vertices(
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        Mesh and spheres to start from.
     weights : EnergyWeights
-        Weights of the terms.
     conditions : Conditions
         What has to be respected; its tolerance bounds every displacement.
 
@@ -307,23 +310,37 @@ def _angles_first(problem: _Problem, weights: EnergyWeights) -> _Problem:
 
 
 def _tightened(problem: _Problem, weights: EnergyWeights, hard: tuple[str, ...]) -> _Problem:
-    """Minimise; then again and again with ten times the weight on what has to hold exactly."""
-    stages = [("energy", weights)]
+    """
+    Minimise; then again and again with ten times the weight on what has to hold exactly.
+
+    Where vertices stay, the first stage comes to rest. The valley of the energy is flat: a
+    descent that ends halfway, or whose steps leave much out, ends where rounding has led it,
+    and raised weights, which make the valley steep, keep it there. Vertices that move make too
+    flat a valley to rest in.
+    """
+    stays = problem.freedom.tolerance == 0
+    ends = (ENERGY_CHANGE, RESTING_MODEL) if stays else (STAGE_CHANGE, STEP_MODEL)
+    problem = _descend(problem, ("energy", weights), *ends)
     factors = SPHERICITY_FACTORS if hard else SUPPORT_FACTORS if weights.support > 0 else ()
     if weights.support > 0:
         hard = (*hard, "support")
     for factor in factors:
         raised = {name: factor * getattr(weights, name) for name in hard}
-        stages.append((f"{' and '.join(hard)} x {factor}", replace(weights, **raised)))
-    for stage in stages[:-1]:
-        problem = _descend(problem, stage, STAGE_CHANGE)
-    return _descend(problem, stages[-1], ENERGY_CHANGE)
+        stage = f"{' and '.join(hard)} x {factor}", replace(weights, **raised)
+        change = ENERGY_CHANGE if factor == max(factors) else STAGE_CHANGE
+        problem = _descend(problem, stage, change)
+    return problem
 
 
-def _descend(problem: _Problem, stage: tuple[str, EnergyWeights], change: float) -> _Problem:
+def _descend(
+    problem: _Problem,
+    stage: tuple[str, EnergyWeights],
+    change: float,
+    share: float = STEP_MODEL,
+) -> _Problem:
     name, weights = stage
     terms = energy_problem(problem.setting, problem.freedom, weights)
-    descent = minimize_energy(terms, problem.unknowns, problem.max_iterations, change)
+    descent = minimize_energy(terms, problem.unknowns, problem.max_iterations, change, share)
     energies = {
         term.name: history for term, history in zip(terms.terms, descent.history.T, strict=True)
     }

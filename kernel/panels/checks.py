@@ -9,7 +9,7 @@ from ..arrays import BoolArray, FloatArray, dot, norm, unit
 from ..parts.records import select_parts
 from ..spheres.arc_crossings import crossing_boundaries
 from ..spheres.arcs import Arcs, arc_points
-from ..spheres.rows import normals
+from ..spheres.incidence import normals
 from ..tolerances import CAP_ANGLE, THIN
 from .panels import Panels, boundaries, panel_areas
 

@@ -17,7 +17,9 @@ from ..meshes.topology import Topology
 from ..parts.records import RejectedPart, reject_parts
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.arcs import Arcs, sphere_arcs
-from ..spheres.rows import angle, evaluate, meet_lines, recenter
+from ..spheres.incidence import evaluate, meet_lines
+from ..spheres.minkowski import angle
+from ..spheres.rows import recenter
 from ..tolerances import PLANE_SAGITTA, SAME_PLANE
 from .checks import NO_PANEL, Found, rejection_reasons
 from .panels import Panels, corner_points, panel_ids

@@ -14,7 +14,8 @@ from ..spheres.arcs import (
     patch_areas,
     sphere_arcs,
 )
-from ..spheres.rows import center_radius, normals, offset
+from ..spheres.incidence import normals
+from ..spheres.rows import center_radius, offset
 from .mould_blanks import PanelCaps, panel_caps
 from .panels import (
     Panels,

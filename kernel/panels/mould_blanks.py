@@ -7,12 +7,12 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..errors import ConvergenceError, InputError
 from ..spheres.arcs import ArcCircles, Arcs, arc_circles
-from ..spheres.rows import normals, project
+from ..spheres.incidence import normals, project
 from ..tolerances import ENCLOSING
 from .congruent import CongruentPanels
 from .panels import Panels, boundaries
 
-_MOST_STEPS = 100
+_MAX_STEPS = 100
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ def panel_caps(panels: Panels) -> PanelCaps:
     first = _first_of_each(owners, panels.n_panels)
     support = np.repeat(arcs.starts[first][:, None], 3, axis=1)
     centers, radii = _ball_of_three(support)
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MAX_STEPS):
         candidates, distances = _farthest(arcs, circles, centers[owners])
         farthest = _argmax_by(owners, distances, panels.n_panels)
         outside = distances[farthest] > radii * (1 + ENCLOSING)

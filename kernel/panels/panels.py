@@ -14,7 +14,8 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray, dot, unit
 from ..parts.records import PER_CORNER
 from ..spheres.arcs import Arcs, patch_areas, sphere_arcs
-from ..spheres.rows import meet_lines, recenter, rescale
+from ..spheres.incidence import meet_lines
+from ..spheres.rows import recenter, rescale
 from ..tolerances import PARALLEL_PLANES
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..errors import InputError
 from ..spheres.arcs import Arcs, arc_points
-from ..spheres.rows import normals, project
+from ..spheres.incidence import normals, project
 from .panels import Panels, boundaries, panel_arcs
 
 MAX_STEPS = 32

@@ -8,12 +8,14 @@ from numpy.typing import ArrayLike
 from ..arrays import FloatArray, IntArray
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_centroids, shortest_edge
+from ..meshes.vertex_fans import vertex_fans
 from ..sphere_meshes.sphere_mesh import SphereMesh
-from ..spheres.rows import minkowski, recenter, rescale
+from ..spheres.minkowski import minkowski
+from ..spheres.rows import recenter, rescale
 from .field.congruence_mesh import CongruenceMesh, congruence_mesh
-from .field.conjugate import conjugate_field, form_roots
-from .field.directions import axis_angles, umbilic_share
-from .field.frames import comb_frames, vertex_fans
+from .field.conjugate_directions import expected_axis_angles, umbilic_share
+from .field.conjugate_form import conjugate_field, form_roots
+from .field.frames import comb_frames
 from .field.jets import fit_jets
 from .field.smooth_surface import SmoothSurface, nearest_triangles
 from .field.smoothing import orient_forms, smooth_forms
@@ -146,7 +148,9 @@ def remesh(
     jets, heights, fitted = fit_jets(surface, degree, rings)
     trace, deviator = orient_forms(surface, *conjugate_field(jets))
     is_real = form_roots(trace, deviator)[2]
-    fans = vertex_fans(surface)
+    fans = vertex_fans(
+        surface.topology, surface.triangles.ravel(), np.arange(len(surface.points))
+    )
     smooth = smooth_forms(surface, trace, deviator, smoothing * step)
     frames = comb_frames(surface, fans, *smooth, least_angle)
     mapped = parametrize(surface, fans, frames, find_seams(surface, fans, frames), step)
@@ -176,7 +180,7 @@ def remesh(
         n_slivers=built.n_slivers,
         n_digons=built.n_digons,
         n_covered=max(_boundary_count(mesh) - _boundary_count(built.mesh), 0),
-        axis_angles=axis_angles(surface, jets),
+        axis_angles=expected_axis_angles(surface, jets),
         curvatures=2 * surface.rows[:, 0] / surface.size,
         degree=fitted,
         surface=SmoothSurface(surface, heights),

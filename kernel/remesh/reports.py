@@ -9,7 +9,8 @@ from ..arrays import FloatArray, dot
 from ..meshes.mesh import Mesh, face_vector_areas, mean_edge_length, shortest_edge
 from ..sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from .pipeline import Remeshing
-from .planar.planarize import Nodes, Planarization, axis_angles, measure_nodes
+from .planar.nodes import Nodes, measure_nodes, node_axis_angles
+from .planar.planarize import Planarization
 
 
 def remeshing_report(done: Remeshing, mesh: Mesh, edge_length: float) -> dict[str, Any]:
@@ -78,7 +79,7 @@ def planarization_report(start: SphereMesh, result: Planarization) -> dict[str, 
     after = result.sphere_mesh
     nodes = measure_nodes(after)
     values = [_quality(start, measure_nodes(start)), _quality(after, nodes)]
-    angles = np.degrees(axis_angles(after, nodes))
+    angles = np.degrees(node_axis_angles(after, nodes))
     return {
         "status": result.status,
         "iterations": result.iterations,
@@ -145,7 +146,6 @@ def sphere_radii(curvatures: FloatArray) -> FloatArray:
     Parameters
     ----------
     curvatures : (n,) float array
-        Signed curvatures.
 
     Returns
     -------
@@ -181,7 +181,6 @@ def finite(value: float) -> float | None:
     Parameters
     ----------
     value : float
-        Any number.
 
     Returns
     -------

@@ -9,12 +9,13 @@ by hand.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import FloatArray, IntArray, sum_by
+from .factorization import SparseArray
 
 
 class Block(NamedTuple):
@@ -131,7 +132,6 @@ def jacobian_pattern(layout: Layout, terms: Sequence[Sequence[Block]]) -> Jacobi
     Parameters
     ----------
     layout : Layout
-        The unknowns.
     terms : sequence of sequences of Block
         What each term depends on.
 
@@ -151,14 +151,15 @@ def jacobian_pattern(layout: Layout, terms: Sequence[Sequence[Block]]) -> Jacobi
     return JacobianPattern(layout, blocks, columns.astype(np.int32), starts.astype(np.int32))
 
 
-def jacobian_matrix(pattern: JacobianPattern, entries: Sequence[Sequence[FloatArray]]) -> Any:  # noqa: ANN401 - scipy is loaded late
+def jacobian_matrix(
+    pattern: JacobianPattern, entries: Sequence[Sequence[FloatArray]]
+) -> SparseArray:
     """
     The Jacobian as a sparse matrix.
 
     Parameters
     ----------
     pattern : JacobianPattern
-        Where the entries go.
     entries : sequence of sequences of (m, width) float arrays
         Values of the blocks of each term, as in `JacobianPattern.blocks`.
 
@@ -190,7 +191,6 @@ def diagonal_blocks(
     Parameters
     ----------
     pattern : JacobianPattern
-        Where the entries go.
     entries : sequence of sequences of (m, width) float arrays
         Values of the blocks of each term.
 
@@ -214,3 +214,23 @@ def diagonal_blocks(
                     if i != j:
                         result[:, j, i] += sums
     return results
+
+
+def block_diagonal(blocks: FloatArray) -> SparseArray:
+    """
+    The matrix with given blocks on its diagonal.
+
+    Parameters
+    ----------
+    blocks : (count, width, width) float array
+
+    Returns
+    -------
+    (count width, count width) bsr_array
+        All else is zero.
+    """
+    from scipy.sparse import bsr_array
+
+    count, width = blocks.shape[:2]
+    starts = np.arange(count + 1, dtype=np.int64)
+    return bsr_array((blocks, starts[:-1], starts), shape=(count * width, count * width))

@@ -1,14 +1,12 @@
 """Truncated conjugate gradients for the steps of a descent."""
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from ..arrays import FloatArray, dot
 from ..tolerances import ROUNDED_DIRECTION, STEP_MODEL
-
-Product = Callable[[FloatArray], FloatArray]
+from .products import Product
 
 
 class CgStep(NamedTuple):
@@ -28,7 +26,11 @@ class CgStep(NamedTuple):
 
 
 def truncated_step(
-    product: Product, precondition: Product, right: FloatArray, max_iterations: int
+    product: Product,
+    precondition: Product,
+    right: FloatArray,
+    max_iterations: int,
+    share: float = STEP_MODEL,
 ) -> CgStep:
     """
     Minimise the quadratic model ``x·Hx / 2 - x·b`` until it gains no more.
@@ -43,11 +45,13 @@ def truncated_step(
         Vector b.
     max_iterations : int
         Largest number of products.
+    share : float
+        Gain, relative to the gain so far, that is not worth waiting for.
 
     Returns
     -------
     CgStep
-        Settled where the gain of an iteration, times their number, fell below `STEP_MODEL` of
+        Settled where the gain of an iteration, times their number, fell below this share of
         the gain so far: what follows would add about as much.
 
     References
@@ -71,7 +75,7 @@ def truncated_step(
         step += length * direction
         residual -= length * image
         gain += length * slope / 2
-        if iteration * length * slope / 2 <= STEP_MODEL * gain:
+        if iteration * length * slope / 2 <= share * gain:
             return CgStep(step, is_settled=True)
         scaled = precondition(residual)
         previous, slope = slope, float(dot(residual, scaled))

@@ -2,7 +2,7 @@
 
 import importlib.util
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 
@@ -42,7 +42,6 @@ def factorize_symmetric(matrix: SparseArray) -> Solver:
     Parameters
     ----------
     matrix : (n, n) sparse array
-        The matrix.
 
     Returns
     -------
@@ -123,5 +122,5 @@ def solve_by_cholmod(matrix: SparseArray, right: FloatArray) -> FloatArray:
     from scipy.sparse import csc_matrix
     from sksparse.cholmod import cholesky  # pyright: ignore
 
-    factorized: Any = cholesky  # pyright: ignore
-    return np.asarray(factorized(csc_matrix(matrix))(right), np.float64)
+    solution = cholesky(csc_matrix(matrix))(right)  # pyright: ignore
+    return np.asarray(cast("FloatArray", solution), np.float64)

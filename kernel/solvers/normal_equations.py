@@ -8,21 +8,30 @@ is small enough, the matrix is formed and factorised.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from ..arrays import FloatArray, dot
-from .blocks import JacobianPattern, Layout, diagonal_blocks, jacobian_matrix
+from ..tolerances import STEP_MODEL
+from .blocks import (
+    JacobianPattern,
+    Layout,
+    block_diagonal,
+    diagonal_blocks,
+    jacobian_matrix,
+)
 from .conjugate_gradients import truncated_step
-from .factorization import solve_definite
+from .factorization import SparseArray, solve_definite
 from .levenberg_marquardt import DampedStep
 from .products import normal_product
 
-MAX_ITERATIONS = 300
+MAX_PRODUCTS = 300
+"""Largest number of products of one step."""
+
 MAX_OPERATIONS = 2 * 10**9
 """Entries of J visited by the conjugate gradients of one step: a large problem gets rougher
 steps, and more of them."""
+
 MAX_FACTORIZED = 100_000
 """Unknowns up to which a factorisation costs less than the iterations that it saves."""
 
@@ -45,7 +54,7 @@ class Linearization:
     """
 
     layout: Layout
-    jacobian: Any
+    jacobian: SparseArray
     residuals: FloatArray
     blocks: tuple[FloatArray, ...]
 
@@ -61,7 +70,6 @@ def linearization(
     Parameters
     ----------
     pattern : JacobianPattern
-        Where the entries go.
     residuals : (m,) float array
         Residuals.
     entries : sequence of sequences of (m, width) float arrays
@@ -80,16 +88,19 @@ def linearization(
     )
 
 
-def damped_step(problem: Linearization, damping: float) -> DampedStep:
+def damped_step(
+    problem: Linearization, damping: float, share: float = STEP_MODEL
+) -> DampedStep:
     """
     Step that minimises ``|r + J x|² + μ σ |x|²``.
 
     Parameters
     ----------
     problem : Linearization
-        The problem.
     damping : float
         μ; the scale σ is the mean of the diagonal of ``JᵀJ``.
+    share : float
+        Gain of the model that a step may leave out, as in `truncated_step`.
 
     Returns
     -------
@@ -103,15 +114,13 @@ def damped_step(problem: Linearization, damping: float) -> DampedStep:
     right = -(jacobian.T @ problem.residuals)
     inverse = _block_inverse(problem.blocks, shift)
 
-    def _product(vector: FloatArray) -> FloatArray:
-        return multiply(vector) + shift * vector
-
-    def _precondition(vector: FloatArray) -> FloatArray:
-        return inverse @ vector
-
     budget = MAX_OPERATIONS // max(2 * jacobian.nnz, 1)
     step, is_settled = truncated_step(
-        _product, _precondition, right, int(min(MAX_ITERATIONS, budget))
+        lambda vector: multiply(vector) + shift * vector,
+        lambda vector: inverse @ vector,
+        right,
+        int(min(MAX_PRODUCTS, budget)),
+        share,
     )
     if not is_settled and len(right) <= MAX_FACTORIZED:
         step = solve_definite(jacobian.T @ jacobian, shift, right)
@@ -119,15 +128,12 @@ def damped_step(problem: Linearization, damping: float) -> DampedStep:
     return DampedStep(step, float(dot(model, model)))
 
 
-def _block_inverse(blocks: tuple[FloatArray, ...], shift: float) -> Any:  # noqa: ANN401
-    from scipy.sparse import block_diag, bsr_array
+def _block_inverse(blocks: tuple[FloatArray, ...], shift: float) -> SparseArray:
+    from scipy.sparse import block_diag
 
-    inverses = [np.linalg.inv(table + shift * np.eye(table.shape[1])) for table in blocks]
-    return block_diag(
-        [
-            bsr_array((table, np.arange(len(table)), np.arange(len(table) + 1)))
-            for table in inverses
-            if len(table)
-        ],
-        format="csr",
-    )
+    inverses = [
+        np.asarray(np.linalg.inv(table + shift * np.eye(table.shape[1])), np.float64)
+        for table in blocks
+        if len(table)
+    ]
+    return block_diag([block_diagonal(table) for table in inverses], format="csr")

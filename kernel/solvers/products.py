@@ -3,23 +3,24 @@
 import importlib.util
 from collections.abc import Callable
 from functools import cache
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from ..arrays import FloatArray
+from .factorization import SparseArray
 
-Product = Callable[[FloatArray], FloatArray]
+Product: TypeAlias = Callable[[FloatArray], FloatArray]
+"""A square matrix as what it does to a vector."""
 
 
-def normal_product(matrix: Any) -> Product:  # noqa: ANN401 - scipy is loaded late
+def normal_product(matrix: SparseArray) -> Product:
     """
     Multiplication by ``JᵀJ``.
 
     Parameters
     ----------
     matrix : (m, n) csr_array
-        The matrix J.
 
     Returns
     -------
@@ -32,14 +33,13 @@ def normal_product(matrix: Any) -> Product:  # noqa: ANN401 - scipy is loaded la
     return normal_product_by_numba(matrix)
 
 
-def normal_product_by_scipy(matrix: Any) -> Product:  # noqa: ANN401
+def normal_product_by_scipy(matrix: SparseArray) -> Product:
     """
-    Multiplication by ``JᵀJ`` in two passes.
+    `normal_product` in two passes.
 
     Parameters
     ----------
     matrix : (m, n) csr_array
-        The matrix J.
 
     Returns
     -------
@@ -47,21 +47,16 @@ def normal_product_by_scipy(matrix: Any) -> Product:  # noqa: ANN401
         (n,) vector x to ``Jᵀ (J x)``.
     """
     transposed = matrix.T
-
-    def _product(vector: FloatArray) -> FloatArray:
-        return transposed @ (matrix @ vector)
-
-    return _product
+    return lambda vector: transposed @ (matrix @ vector)
 
 
-def normal_product_by_numba(matrix: Any) -> Product:  # noqa: ANN401
+def normal_product_by_numba(matrix: SparseArray) -> Product:
     """
-    Multiplication by ``JᵀJ``, row by row.
+    `normal_product` row by row, compiled.
 
     Parameters
     ----------
     matrix : (m, n) csr_array
-        The matrix J.
 
     Returns
     -------
@@ -71,11 +66,7 @@ def normal_product_by_numba(matrix: Any) -> Product:  # noqa: ANN401
     sweep = _sweep()
     # Unsigned indices spare numba the question whether they count from the end.
     columns, starts = matrix.indices.view(np.uint32), matrix.indptr.astype(np.uint64)
-
-    def _product(vector: FloatArray) -> FloatArray:
-        return sweep(matrix.data, columns, starts, vector)
-
-    return _product
+    return lambda vector: sweep(matrix.data, columns, starts, vector)
 
 
 @cache

@@ -8,7 +8,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..tolerances import LINEAR_SOLVE
 
-MAX_ITERATIONS = 400
+MAX_CG_ITERATIONS = 400
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,6 @@ def solve_symmetric(
     Parameters
     ----------
     pattern : SymmetricPattern
-        Where the entries are.
     diagonal : (n,) float array
         Diagonal, no entry zero.
     mixed : (m,) float array
@@ -86,9 +85,6 @@ def solve_symmetric(
     matrix: Any = csr_array((entries, pattern.columns, pattern.starts), shape=shape)
     inverse = 1 / np.abs(diagonal)
 
-    def _precondition(residual: FloatArray) -> FloatArray:
-        return inverse * residual
-
-    jacobi: Any = LinearOperator(shape, matvec=_precondition, dtype=np.float64)
-    solution, _ = cg(matrix, right, rtol=LINEAR_SOLVE, maxiter=MAX_ITERATIONS, M=jacobi)
+    jacobi: Any = LinearOperator(shape, matvec=lambda right: inverse * right, dtype=np.float64)
+    solution, _ = cg(matrix, right, rtol=LINEAR_SOLVE, maxiter=MAX_CG_ITERATIONS, M=jacobi)
     return np.asarray(solution, np.float64)

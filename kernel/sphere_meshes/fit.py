@@ -4,11 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray, dot, sum_by
+from ..arrays import FloatArray, IntArray, batches_by_count, dot, sum_by
 from ..errors import InputError
 from ..meshes.mesh import Mesh, face_centroids, mean_edge_length
 from ..spheres.circles import circle_pencils, face_circles, pencil_spheres
-from ..spheres.rows import evaluate
+from ..spheres.incidence import evaluate
+from ..spheres.minkowski import minkowski
 from ..tolerances import CIRCULAR
 from .sphere_mesh import SphereMesh
 
@@ -20,7 +21,6 @@ def face_planes(mesh: Mesh) -> SphereMesh:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------
@@ -48,7 +48,6 @@ def fit_spheres(mesh: Mesh, ring: int = 1) -> SphereMesh:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     ring : int
         How many rings of faces, joined along edges, take part around each face.
 
@@ -130,28 +129,36 @@ def _pencil_fit(
 
 def _pratt_fit(faces: IntArray, points: FloatArray, count: int) -> FloatArray:
     """Least-squares rows of norm 1, for the faces that occur; zero for the others."""
-    present, local = np.unique(faces, return_inverse=True)
-    size = np.sqrt(sum_by(local, dot(points, points), len(present)) / np.bincount(local))
-    scaled = points / size[local, None]
-    equations = np.concatenate(
-        [dot(scaled, scaled)[:, None], -scaled, np.ones((len(scaled), 1))], axis=1
-    )
-    products = (equations[:, :, None] * equations[:, None, :]).reshape(-1, 25)
-    moments = sum_by(local, products, len(present)).reshape(-1, 5, 5)
-    inverse_norm = np.diag([0.0, 1.0, 1.0, 1.0, 0.0])
-    inverse_norm[0, 4] = inverse_norm[4, 0] = -0.5
-    values, vectors = np.linalg.eig(inverse_norm @ moments)
-    candidates = np.real(vectors).transpose(0, 2, 1)
-    norms = dot(candidates[..., 1:4], candidates[..., 1:4]) - (
-        4 * candidates[..., 0] * candidates[..., 4]
-    )
-    # Among the eigenvectors of positive norm the one of least residual is the fit.
-    cost = np.where(norms > 0, np.abs(np.real(values)), np.inf)
-    best = np.argmin(cost, axis=1)
-    chosen = candidates[np.arange(len(present)), best]
-    chosen = chosen / np.sqrt(norms[np.arange(len(present)), best])[:, None]
-    chosen[:, 0] /= size
-    chosen[:, 4] *= size
+    squares = sum_by(faces, dot(points, points), count)
+    sizes = np.sqrt(squares / np.maximum(np.bincount(faces, minlength=count), 1))
     rows = np.zeros((count, 5))
-    rows[present] = chosen
+    for present, chosen in batches_by_count(faces, count):
+        scaled = points[chosen] / sizes[present, None, None]
+        fitted = _best_unit_rows(scaled)
+        fitted[:, 0] /= sizes[present]
+        fitted[:, 4] *= sizes[present]
+        rows[present] = fitted
     return rows
+
+
+def _best_unit_rows(points: FloatArray) -> FloatArray:
+    """
+    Rows (n, 5) of norm 1 with the least sum of squares over their points (n, k, 3).
+
+    Rows are written as ``T y`` with ``|y|²`` proportional to the sum of squares: the best is
+    the one of the largest norm, a symmetric eigenproblem. T comes from the singular values of
+    the equations themselves: those of their products would be squares, and where four corners
+    lie nearly on a circle, half the digits were lost with them.
+    """
+    n, k, _ = points.shape
+    equations = np.zeros((n, max(k, 5), 5))
+    equations[:, :k, 0] = dot(points, points)
+    equations[:, :k, 1:4] = -points
+    equations[:, :k, 4] = 1
+    _, values, axes = np.linalg.svd(np.linalg.qr(equations, mode="r"))
+    # What the points leave undetermined costs nothing, and is not divided by.
+    shares = np.divide(values[:, 4:], values, out=np.ones_like(values), where=values > 0)
+    ways = axes * shares[:, :, None]
+    norms, vectors = np.linalg.eigh(minkowski(ways[:, :, None], ways[:, None]))
+    best = (vectors[:, None, :, -1] @ ways)[:, 0]
+    return best / np.sqrt(norms[:, -1:])

@@ -26,11 +26,11 @@ from numpy.typing import ArrayLike
 from ..arrays import BoolArray, FloatArray, dot, norm
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_centroids, face_normals, mean_edge_length, reversed_corners
-from ..spheres.mobius import inversion
+from ..spheres.mobius_group import inversion
 from ..tolerances import AT_INFINITY, EPSILON, PLANAR
 from .fit import face_planes
-from .mobius_maps import map_sphere_mesh
-from .planarity import planarity
+from .mobius import map_sphere_mesh
+from .planarity_circularity import planarity
 from .sphere_mesh import SphereMesh
 
 Geometry = Literal["hyperbolic", "elliptic"]
@@ -126,7 +126,6 @@ def change_model(
     radius : float
         Radius of the absolute sphere; in hyperbolic geometry all vertices lie inside or on it.
     center : (3,) array_like of float
-        Centre of the absolute sphere.
     branch : {"inner", "outer"}
         Image inside or outside the absolute sphere.
 

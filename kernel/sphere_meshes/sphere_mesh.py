@@ -8,7 +8,9 @@ from numpy.typing import ArrayLike
 from ..arrays import FloatArray, dot, read_only, sum_by
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_centroids, local_corners
-from ..spheres.rows import angle, evaluate, minkowski, recenter, signed_distance
+from ..spheres.incidence import evaluate, signed_distance
+from ..spheres.minkowski import angle, minkowski
+from ..spheres.rows import recenter
 from ..tolerances import EPSILON
 
 
@@ -20,7 +22,6 @@ class SphereMesh:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     spheres : (F, 5) array_like of float
         Real rows ``(A, Bx, By, Bz, C)`` of any positive scale, in model coordinates. N agrees
         with the normal of the face.
@@ -28,7 +29,6 @@ class SphereMesh:
     Attributes
     ----------
     mesh : Mesh
-        The mesh.
     spheres : (F, 5) float array
         Unit rows in model coordinates; read-only.
     local_spheres : (F, 5) float array
@@ -64,7 +64,6 @@ class SphereMesh:
         Parameters
         ----------
         mesh : Mesh
-            The mesh.
         local_spheres : (F, 5) float array
             Rows of any positive scale, seen from the centroid of their face.
 
@@ -128,7 +127,6 @@ def vertex_error(sphere_mesh: SphereMesh) -> FloatArray:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
 
     Returns
     -------
@@ -150,7 +148,6 @@ def intersection_angles(sphere_mesh: SphereMesh) -> FloatArray:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
 
     Returns
     -------

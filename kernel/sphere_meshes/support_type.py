@@ -13,8 +13,9 @@ import numpy as np
 
 from ..arrays import FloatArray, dot, norm
 from ..meshes.mesh import face_centroids
-from ..spheres.lorentz import SIGNATURE
-from ..spheres.rows import from_pentaspherical, lift_points, minkowski, pentaspherical, recenter
+from ..spheres.minkowski import minkowski
+from ..spheres.pentaspherical import SIGNATURE, from_pentaspherical, pentaspherical
+from ..spheres.rows import lift_points, recenter
 from ..tolerances import EPSILON, NOISE_MARGIN, SUPPORT_MISS
 from .sphere_mesh import SphereMesh
 
@@ -52,7 +53,6 @@ def support_type(sphere_mesh: SphereMesh, tolerance: float = SUPPORT_MISS) -> Su
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     tolerance : float
         Largest residual at which there is said to be one.
 

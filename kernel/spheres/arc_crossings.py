@@ -5,7 +5,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..tolerances import CROSSING, PARALLEL_PLANES
 from .arcs import Arcs
-from .rows import evaluate, normals
+from .incidence import evaluate, normals
 
 
 def crossing_boundaries(

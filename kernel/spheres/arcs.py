@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, dot, norm, sum_by, unit
-from .rows import normals, project
+from .incidence import normals, project
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,6 @@ class ArcCircles:
     Attributes
     ----------
     centers : (H, 3) float array
-        Centres.
     axes : (H, 3) float array
         Unit axes; the arc runs counter-clockwise about its axis.
     radii : (H,) float array
@@ -109,7 +108,6 @@ def arc_points(arcs: Arcs, parameters: FloatArray) -> FloatArray:
     Parameters
     ----------
     arcs : Arcs
-        H arcs.
     parameters : (n,) float array
         Values of τ in [-1, 1]; the ends and the middle are exact.
 
@@ -148,7 +146,6 @@ def arc_lengths(arcs: Arcs) -> FloatArray:
     Parameters
     ----------
     arcs : Arcs
-        H arcs.
 
     Returns
     -------
@@ -169,7 +166,6 @@ def segment_areas(arcs: Arcs) -> FloatArray:
     Parameters
     ----------
     arcs : Arcs
-        H arcs.
 
     Returns
     -------
@@ -194,7 +190,6 @@ def arc_circles(arcs: Arcs) -> ArcCircles:
     Parameters
     ----------
     arcs : Arcs
-        H arcs.
 
     Returns
     -------
@@ -221,9 +216,7 @@ def circle_axes(arcs: Arcs, circles: ArcCircles) -> tuple[FloatArray, FloatArray
     Parameters
     ----------
     arcs : Arcs
-        H arcs.
     circles : ArcCircles
-        Their circles.
 
     Returns
     -------
@@ -282,7 +275,6 @@ def arc_tangents(arcs: Arcs) -> tuple[FloatArray, FloatArray]:
     Parameters
     ----------
     arcs : Arcs
-        H arcs.
 
     Returns
     -------
@@ -302,7 +294,6 @@ def arc_reaches(arcs: Arcs, directions: FloatArray) -> FloatArray:
     Parameters
     ----------
     arcs : Arcs
-        H arcs.
     directions : (H, 3) float array
         Unit vectors in the planes of the arcs.
 

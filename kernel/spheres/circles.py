@@ -15,7 +15,9 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_vector_areas, local_corners
 from ..tolerances import DEGENERATE, EPSILON
-from .rows import evaluate, lift_points, minkowski
+from .incidence import evaluate
+from .minkowski import minkowski
+from .rows import lift_points
 
 
 class PencilKind(IntEnum):
@@ -34,7 +36,6 @@ class Circles:
     Attributes
     ----------
     centers : (..., 3) float array
-        Centres.
     normals : (..., 3) float array
         Unit normals of the planes.
     radii_squared : (...) float array
@@ -125,7 +126,6 @@ def circle_pencils(circles: Circles) -> tuple[FloatArray, FloatArray]:
     Parameters
     ----------
     circles : Circles
-        Real circles.
 
     Returns
     -------
@@ -227,7 +227,6 @@ def face_circles(mesh: Mesh) -> tuple[Circles, FloatArray]:
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
 
     Returns
     -------

@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 
 from ..arrays import BoolArray, dot, norm
-from ..spheres.rows import normals
+from ..spheres.incidence import normals
 from ..tolerances import AXIS_LEAN, DEGENERATE
 from .annuli import Annuli
 

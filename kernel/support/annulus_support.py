@@ -19,7 +19,9 @@ from ..panels.panels import panel_ids
 from ..parts.findings import rejected_report
 from ..parts.records import RejectedPart, reject_parts
 from ..sphere_meshes.sphere_mesh import SphereMesh
-from ..spheres.rows import evaluate, meet_lines, minkowski, normals, recenter
+from ..spheres.incidence import evaluate, meet_lines, normals
+from ..spheres.minkowski import minkowski
+from ..spheres.rows import recenter
 from ..tolerances import BEAM_TILT, DEGENERATE
 from .annuli import (
     Annuli,

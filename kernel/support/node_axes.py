@@ -19,7 +19,9 @@ from ..arrays import BoolArray, FloatArray, IntArray, batches_by_count, dot, nor
 from ..meshes.mesh import Mesh, local_corners, mean_edge_length
 from ..panels.cutting import flatten_nearly_plane
 from ..sphere_meshes.sphere_mesh import SphereMesh
-from ..spheres.rows import angle, recenter, signed_distance
+from ..spheres.incidence import signed_distance
+from ..spheres.minkowski import angle
+from ..spheres.rows import recenter
 from ..tolerances import (
     AXIS_LEAN,
     MIRROR_LEAST,

@@ -117,7 +117,6 @@ def evaluate_nurbs(surface: NurbsSurface, u: FloatArray, v: FloatArray) -> Surfa
     Parameters
     ----------
     surface : NurbsSurface
-        The surface.
     u, v : (N,) float array
         Parameters in its domain.
 
@@ -227,7 +226,6 @@ def nurbs_curvatures(surface: NurbsSurface, u: FloatArray, v: FloatArray) -> Sur
     Parameters
     ----------
     surface : NurbsSurface
-        The surface.
     u, v : (N,) float array
         Parameters in its domain.
 
@@ -277,9 +275,7 @@ def nearest_parameters(
     Parameters
     ----------
     surface : NurbsSurface
-        The surface.
     points : (N, 3) float array
-        Points.
 
     Returns
     -------

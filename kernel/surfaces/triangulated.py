@@ -84,7 +84,6 @@ def grid_counts(shape: ParametricShape, edge_length: float) -> tuple[int, int]:
     Parameters
     ----------
     shape : ParametricShape
-        The surface.
     edge_length : float
         Length of a step.
 
@@ -120,7 +119,6 @@ def parameter_grid(
     Parameters
     ----------
     shape : ParametricShape
-        The surface.
     counts : (int, int)
         Steps along u and v.
     seed : int, optional

@@ -13,7 +13,7 @@ import numpy as np
 import xxhash
 from numpy.typing import NDArray
 
-from .ports import Value
+from .annotations import Value
 
 FileState = tuple[int, int] | None
 
@@ -133,7 +133,6 @@ def file_state(path: str | os.PathLike[str]) -> FileState:
     Parameters
     ----------
     path : path
-        The file.
 
     Returns
     -------
@@ -155,7 +154,7 @@ class Entry:
     Attributes
     ----------
     value : object
-        What the function returned; read-only.
+        What the function returned, `own`.
     messages : tuple of str
         What it warned about.
     files : tuple of (str, FileState)
@@ -191,7 +190,6 @@ class Cache:
         Parameters
         ----------
         key : bytes
-            Key of a step.
 
         Returns
         -------
@@ -218,9 +216,7 @@ class Cache:
         Parameters
         ----------
         key : bytes
-            Key of the step.
         entry : Entry
-            Its outcome.
         """
         with self._lock:
             self._entries[key] = entry
@@ -236,7 +232,6 @@ class Cache:
         Parameters
         ----------
         key : bytes
-            Key of the step.
 
         Returns
         -------
@@ -257,55 +252,3 @@ class Cache:
         with self._lock:
             while len(self._entries) > max(self.max_entries, at_least):
                 self._entries.popitem(last=False)
-
-
-def lock_arrays(value: Value) -> None:
-    """
-    Close the arrays of a result for writing.
-
-    Parameters
-    ----------
-    value : object
-        Arrays within lists, tuples, mappings and dataclasses are reached.
-    """
-    pending: list[Value] = [value]
-    seen = set[int]()
-    while pending:
-        item: Value = pending.pop()
-        if id(item) in seen:
-            continue
-        seen.add(id(item))
-        if isinstance(item, np.ndarray):
-            cast("NDArray[Any]", item).flags.writeable = False
-        elif isinstance(item, Mapping):
-            pending.extend(cast("Mapping[Any, Any]", item).values())
-        elif isinstance(item, list | tuple | Set):
-            pending.extend(cast("list[Any]", item))
-        elif is_dataclass(item) and not isinstance(item, type):
-            pending.extend(getattr(item, entry.name) for entry in fields(item))
-
-
-def own_containers(value: Value) -> Value:
-    """
-    A result that its receiver may change without changing the cache.
-
-    Parameters
-    ----------
-    value : object
-        A result.
-
-    Returns
-    -------
-    object
-        Lists, tuples and dictionaries anew; what they hold, if it is none of these, is shared.
-    """
-    kind = cast("type[Any]", type(value))
-    if kind is dict:
-        return {key: own_containers(item) for key, item in value.items()}
-    if kind is list:
-        return [own_containers(item) for item in value]
-    if kind is tuple:
-        return tuple(own_containers(item) for item in value)
-    if hasattr(kind, "_make"):
-        return kind._make(own_containers(item) for item in value)
-    return value

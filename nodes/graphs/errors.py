@@ -20,21 +20,23 @@ class NodeError(RuntimeError):
     ----------
     message : str
         What failed and where.
-    step : str
-        Name of the step.
-    node : str
-        Name of its node.
+    step, node : str
+        Names of the step and of its node.
     cause : Exception, optional
         What the node raised. It is ``__cause__`` too, but that is lost between processes.
+    reason : str
+        What the node said, paths as the graph gives them.
     """
 
     def __init__(
-        self, message: str, step: str = "", node: str = "", cause: Exception | None = None
-    ) -> None:
+        self, message: str, step: str = "", node: str = "", cause: Exception | None = None,
+        reason: str = "",
+    ) -> None:  # fmt: skip
         super().__init__(message)
         self.step = step
         self.node = node
         self.cause = cause
+        self.reason = reason or str(cause)
 
 
 def nearest(name: str, names: Iterable[str]) -> str:
@@ -44,9 +46,7 @@ def nearest(name: str, names: Iterable[str]) -> str:
     Parameters
     ----------
     name : str
-        The name that was asked for.
     names : iterable of str
-        The names that exist.
 
     Returns
     -------

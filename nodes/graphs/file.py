@@ -1,27 +1,33 @@
 """Graphs as JSON: versioned, in a stable order, and without code."""
 
 import json
-import math
 import os
+import warnings
 from collections.abc import Callable, Mapping, Sequence
-from functools import singledispatch
+from functools import partial
 from graphlib import CycleError, TopologicalSorter
-from typing import Any, Protocol, cast
-
-import numpy as np
-from numpy.typing import NDArray
+from pathlib import Path
+from typing import Any, Protocol, TypeVar, cast
 
 from ...fabrication.files import replacing
+from .annotations import Value
+from .encoding import Names, decode, encode
 from .errors import GraphError, nearest
-from .ports import Value
-from .wires import Each, Param, Step, Wire
+from .node import Node, find_node
+from .ports import Port
+from .wires import Param, Step, Wire
+
+_Parsed = TypeVar("_Parsed")
 
 FORMAT = "spheremesh graph"
 VERSION = 1
 
+RENAMED_PORTS: dict[str, dict[str, str]] = {}
+"""Present names of ports by node and by the name in older graph files."""
+
 
 def encode_graph(
-    title: str, units: str, params: Mapping[str, Mapping[str, Any]], steps: Mapping[str, Step]
+    title: str, units: str, params: Mapping[str, Param], steps: Mapping[str, Step]
 ) -> str:
     """
     The text of a graph file.
@@ -29,11 +35,9 @@ def encode_graph(
     Parameters
     ----------
     title, units : str
-        Of the graph.
-    params : mapping of str to mapping
-        Value, range and choices of each slider.
+    params : mapping of str to Param
+        Its sliders, with their present values.
     steps : mapping of str to Step
-        The steps.
 
     Returns
     -------
@@ -50,113 +54,26 @@ def encode_graph(
         "version": VERSION,
         "title": title,
         "units": units,
-        "params": {
-            name: {key: _encode_at(f"params.{name}", value) for key, value in facts.items()}
-            for name, facts in params.items()
-        },
-        "steps": {
-            name: {
-                "node": step.node.name,
-                "version": step.node.version,
-                "inputs": {
-                    port: _encode_at(f"{name}.{port}", step.inputs[port])
-                    for port in step.node.inputs
-                    if port in step.inputs
-                },
-            }
-            for name, step in steps.items()
-        },
+        "params": {name: _encode_param(param) for name, param in params.items()},
+        "steps": {name: _encode_step(step) for name, step in steps.items()},
     }
     return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-@singledispatch
-def encode(value: Value) -> Value:
-    """
-    A value, a wire or a slider as JSON.
-
-    Parameters
-    ----------
-    value : object
-        What a step was given.
-
-    Returns
-    -------
-    object
-        Numbers, texts and lists are themselves, all else is tagged.
-
-    Raises
-    ------
-    GraphError
-        If it has no form in JSON.
-
-    Examples
-    --------
-    >>> encode([1, float("inf"), {"a": None}])
-    [1, {'float': 'inf'}, {'mapping': {'a': None}}]
-    """
-    raise GraphError(
-        f"a {type(value).__name__} cannot be written into a graph file; "
-        "let a node make it, or read it from a file"
-    )
+def _encode_param(param: Param) -> dict[str, Value]:
+    port = param.port
+    limits = {"min": port.min, "max": port.max, "choices": list(port.choices) or None}
+    facts = {"value": param.value, **{k: v for k, v in limits.items() if v is not None}}
+    return {key: _encode_at(f"params.{param.name}", value) for key, value in facts.items()}
 
 
-@encode.register(type(None))
-@encode.register(bool)
-@encode.register(int)
-@encode.register(str)
-def _(value: Value) -> Value:
-    return value
-
-
-@encode.register
-def _(value: float) -> Value:
-    return value if math.isfinite(value) else {"float": str(value)}
-
-
-@encode.register(np.generic)
-def _(value: np.generic) -> Value:
-    return encode(value.item())
-
-
-@encode.register(os.PathLike)
-def _(value: os.PathLike[str]) -> Value:
-    return os.fspath(value)
-
-
-@encode.register(list)
-@encode.register(tuple)
-def _(value: Sequence[Value]) -> Value:
-    return [encode(item) for item in value]
-
-
-@encode.register(Mapping)
-def _(value: Mapping[Value, Value]) -> Value:
-    if not all(isinstance(key, str) for key in value):
-        raise GraphError("a mapping in a graph file needs texts as keys")
-    return {"mapping": {key: encode(item) for key, item in value.items()}}
-
-
-@encode.register(np.ndarray)
-def _(value: NDArray[Any]) -> Value:
-    if value.dtype.kind not in "biuf":
-        raise GraphError(f"an array of {value.dtype} cannot be written into a graph file")
-    return {"array": encode(value.tolist()), "dtype": value.dtype.name}
-
-
-@encode.register
-def _(value: Each) -> Value:
-    return {"each": encode(value.items)}
-
-
-@encode.register
-def _(value: Wire) -> Value:
-    return {"wire": value.step.name if len(value.step.wires) == 1 else str(value)}
-
-
-@encode.register
-def _(value: Param) -> Value:
-    return {"param": value.name}
+def _encode_step(step: Step) -> dict[str, Value]:
+    inputs = {
+        port: _encode_at(f"{step.name}.{port}", step.inputs[port])
+        for port in step.node.inputs
+        if port in step.inputs
+    }
+    return {"node": step.node.name, "version": step.node.version, "inputs": inputs}
 
 
 def _encode_at(where: str, value: Value) -> Value:
@@ -164,6 +81,15 @@ def _encode_at(where: str, value: Value) -> Value:
         return encode(value)
     except GraphError as error:
         raise GraphError(f"{where}: {error}") from error
+
+
+class _Graph(Protocol):
+    @property
+    def steps(self) -> Mapping[str, Step]: ...
+    def wire(self, name: str, /) -> Step | Wire: ...
+    def slider(self, name: str, /) -> Param: ...
+    def param(self, name: str, value: Value, **facts: Value) -> Param: ...
+    def add(self, node: str, name: str, /, **inputs: Value) -> Step: ...
 
 
 def decode_graph(text: str) -> dict[str, Any]:
@@ -213,63 +139,56 @@ def decode_graph(text: str) -> dict[str, Any]:
     return content
 
 
-class _Names(Protocol):
-    def wire(self, name: str, /) -> Value: ...
-    def slider(self, name: str, /) -> Value: ...
-
-
-def decode(value: Value, graph: _Names) -> Value:
+def add_content(graph: _Graph, content: Mapping[str, Any]) -> None:
     """
-    The inverse of `encode`.
+    Give an empty graph the sliders and steps of a graph file.
 
     Parameters
     ----------
-    value : object
-        JSON.
     graph : Graph
-        Gives the wires and sliders that are named.
-
-    Returns
-    -------
-    object
-        What a step is given.
+    content : mapping
+        From `decode_graph`.
 
     Raises
     ------
     GraphError
-        If the tag is unknown, or the wire or slider is.
+        If a slider or a step is not valid; the message names it.
     """
-    if isinstance(value, list):
-        return [decode(item, graph) for item in cast("list[Value]", value)]
-    if not isinstance(value, dict):
-        return value
-    tagged = cast("dict[str, Value]", value)
-    tag = next((tag for tag in tagged if tag in _DECODERS), "")
-    if not tag or not tagged.keys() <= {tag, "dtype"}:
-        raise GraphError(
-            f"cannot read {json.dumps(tagged)[:60]}: expected a value or one of "
-            f"{', '.join(_DECODERS)}"
-        )
-    try:
-        return _DECODERS[tag](tagged, graph)
-    except (AttributeError, TypeError, ValueError) as error:
-        if isinstance(error, GraphError):
-            raise
-        raise GraphError(f"cannot read {json.dumps(tagged)[:60]}: {error}") from error
+    names = Names(partial(_wire, graph), graph.slider)
+    for name, facts in content["params"].items():
+        try:
+            graph.param(name, **{key: decode(value, names) for key, value in facts.items()})
+        except (GraphError, TypeError) as error:
+            raise GraphError(f"params.{name}: {error}") from error
+    for name, step in content["steps"].items():
+        try:
+            known = find_node(step["node"])
+            inputs = {
+                _present(known, port, known.inputs): decode(value, names)
+                for port, value in step["inputs"].items()
+            }
+            graph.add(known.name, name, **inputs)
+        except GraphError as error:
+            raise GraphError(f"steps.{name}: {error}") from error
+        if known.version != step["version"]:
+            warnings.warn(
+                f"step {name!r} was saved with version {step['version']} of node "
+                f"{known.name}, this is {known.version}: results may differ",
+                stacklevel=2,
+            )
 
 
-_DECODERS: dict[str, Callable[[dict[str, Value], _Names], Value]] = {
-    "wire": lambda tagged, graph: graph.wire(tagged["wire"]),
-    "param": lambda tagged, graph: graph.slider(tagged["param"]),
-    "each": lambda tagged, graph: Each(decode(tagged["each"], graph)),
-    "array": lambda tagged, graph: np.array(
-        decode(tagged["array"], graph), np.dtype(tagged.get("dtype", "float64"))
-    ),
-    "mapping": lambda tagged, graph: {
-        key: decode(item, graph) for key, item in tagged["mapping"].items()
-    },
-    "float": lambda tagged, _: float(tagged["float"]),
-}
+def _wire(graph: _Graph, name: str) -> Step | Wire:
+    """What a graph file names, by its present name."""
+    step_name, dot, port = name.partition(".")
+    step = graph.steps.get(step_name)
+    if dot and step is not None:
+        name = f"{step_name}.{_present(step.node, port, step.node.outputs)}"
+    return graph.wire(name)
+
+
+def _present(node: Node, port: str, ports: Mapping[str, Port]) -> str:
+    return port if port in ports else RENAMED_PORTS.get(node.name, {}).get(port, port)
 
 
 def write_graph(path: str | os.PathLike[str], text: str) -> None:
@@ -279,12 +198,43 @@ def write_graph(path: str | os.PathLike[str], text: str) -> None:
     Parameters
     ----------
     path : path
-        The file.
     text : str
-        Its content.
     """
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
+
+
+def read_graph(path: str | os.PathLike[str], parse: Callable[[str], _Parsed]) -> _Parsed:
+    """
+    Read a graph file; errors name it.
+
+    Parameters
+    ----------
+    path : path
+    parse : callable
+        Makes the graph of its text.
+
+    Returns
+    -------
+    object
+        What `parse` returns.
+
+    Raises
+    ------
+    GraphError
+        If it is no valid graph file.
+    """
+    name = os.fspath(path)
+    try:
+        return parse(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise GraphError(f"{name}: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise GraphError(f"{name}: not UTF-8 text") from error
+    except RecursionError as error:
+        raise GraphError(f"{name}: nested too deeply") from error
+    except GraphError as error:
+        raise GraphError(f"{name}: {error}") from error
 
 
 def _in_order(steps: dict[str, Any]) -> dict[str, Any]:

@@ -1,24 +1,37 @@
 """The lazy graph: nodes wired together, run as far as a target needs."""
 
 import os
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
+from .annotations import Value
 from .cache import Cache, digest
 from .errors import GraphError, nearest
-from .file import decode, decode_graph, encode_graph, write_graph
+from .file import add_content, decode_graph, encode_graph, read_graph, write_graph
 from .mermaid import mermaid_text
-from .node import find_node, known_graph
-from .ports import UNITS, Port, Value, check_range
+from .node import find_node, known_graph, replaced
+from .ports import UNITS, Port, check_range
+from .results import own, snapshot
 from .run import OnStep, Run, output, run_steps
-from .wires import Param, Step, Target, Wire, parents, sources
-from .wiring import Place, check_name, check_names, connect, own
+from .wires import (
+    Param,
+    Place,
+    Step,
+    Target,
+    Wire,
+    check_name,
+    check_owner,
+    connect,
+    connect_all,
+    parents,
+    sources,
+)
 
 
 class Graph:
@@ -28,11 +41,10 @@ class Graph:
     Parameters
     ----------
     title : str
-        What the graph is about.
     units : {"mm", "cm", "m", "in", "ft"}
-        Units of the model.
+        Of the model.
     cache : Cache, optional
-        Results, shared with other graphs if one is given.
+        Results, to share them with other graphs.
 
     Examples
     --------
@@ -61,6 +73,7 @@ class Graph:
         self._params: dict[str, Param] = {}
         self._values: dict[str, Any] = {}
         self._steps: dict[str, Step] = {}
+        self._numbers: dict[str, int] = {}
         self._messages: dict[str, tuple[str, ...]] = {}
 
     @property
@@ -71,7 +84,7 @@ class Graph:
     @property
     def params(self) -> Mapping[str, Param]:  # numpydoc ignore=RT01
         """The sliders by name, with their present values."""
-        return {n: replace(p, value=self._values[n]) for n, p in self._params.items()}
+        return {n: replace(p, value=own(self._values[n])) for n, p in self._params.items()}
 
     @property
     def ends(self) -> tuple[Step, ...]:  # numpydoc ignore=RT01
@@ -101,11 +114,9 @@ class Graph:
         name : str
             A name that is free.
         value : object
-            Its value.
         min, max : float, optional
             Range of a number, the ends included.
         choices : sequence, optional
-            The values allowed.
 
         Returns
         -------
@@ -157,29 +168,28 @@ class Graph:
             inputs_known = ", ".join(found.inputs)
             raise GraphError(f"{found.name}: wire inputs by name; they are {inputs_known}")
         if name is None:
-            name = _free_name(found.name, self._steps)
+            name = self._free_name(found.name)
         elif name in self._steps:
             raise GraphError(f"there is a step {name!r} already")
-        check_name(name, "step")
-        check_names(found, name, inputs)
-        place = Place(self, self._values, name)
-        checked = {key: connect(place, found.inputs[key], inputs[key]) for key in inputs}
-        self._steps[name] = Step(self, name, found, MappingProxyType(checked))
+        connected = connect_all(Place(self, self._values, name), found, inputs)
+        self._steps[name] = Step(self, name, found, MappingProxyType(connected))
         return self._steps[name]
+
+    def _free_name(self, name: str) -> str:
+        free, number = name, self._numbers.get(name, 2)
+        while free in self._steps:
+            free = f"{name}_{number}"
+            number += 1
+        self._numbers[name] = max(2, number - 1)  # those below are taken
+        return free
 
     def set(self, /, **params: Value) -> None:
         """
-        Move sliders.
+        Move sliders; none if a name is unknown or a value not allowed.
 
         Parameters
         ----------
         **params : object
-            New values by name.
-
-        Raises
-        ------
-        GraphError
-            If a name is unknown or a value not allowed; then no slider is moved.
         """
         self._values.update(self.check_params(params))
 
@@ -190,17 +200,11 @@ class Graph:
         Parameters
         ----------
         params : mapping of str to object
-            Values by name.
 
         Returns
         -------
         dict of str to object
             The same values, NumPy's scalars as Python's.
-
-        Raises
-        ------
-        GraphError
-            If a name is unknown or a value not allowed.
         """
         values = {name: _plain(value) for name, value in params.items()}
         for name, value in values.items():
@@ -219,9 +223,12 @@ class Graph:
         *targets: Target,
         on_step: OnStep | None = None,
         read_from: str | os.PathLike[str] | None = None,
+        write_to: str | os.PathLike[str] | None = None,
     ) -> Value:
         """
         The values of targets; only the steps that they need and that have changed are run.
+
+        What is changed while it runs is for the next run.
 
         Parameters
         ----------
@@ -230,8 +237,9 @@ class Graph:
         on_step : callable, optional
             Called with the name of each step touched and ``"running"``, ``"done"``,
             ``"cached"`` or ``"failed"``.
-        read_from : path, optional
-            Folder of the relative paths that nodes read; the working directory by default.
+        read_from, write_to : path, optional
+            Folders of the relative paths that nodes read and write; the working directory by
+            default. A file that a step has written is read where it was written.
 
         Returns
         -------
@@ -247,28 +255,29 @@ class Graph:
             raise GraphError(f"run needs a target; {nearest('', self._steps)}")
         wanted = [self.wire(t) if isinstance(t, str) else t for t in targets]
         for target in wanted:
-            own(self, target)
-        names = [
-            w.step.name if isinstance(w, Wire) else w.name
-            for w in wanted
-            if not isinstance(w, Param)
-        ]
+            check_owner(self, target)
+        steps = [t.step if isinstance(t, Wire) else t for t in wanted]
+        names = [step.name for step in steps if isinstance(step, Step)]
+        values = own(self._values, snapshot)
+        folders = _folder(read_from), _folder(write_to)
         run = Run(
-            steps=self._steps,
-            values=self._values,
-            units=self.units,
-            cache=self._cache,
-            on_step=on_step or _silent,
-            read_from=None if read_from is None else Path(read_from),
+            dict(self._steps),
+            values,
+            self.units,
+            self._cache,
+            on_step or (lambda _step, _state: None),
+            *folders,
         )
+        text = partial(encode_graph, self.title, self.units, self.params, run.steps)
         try:
-            with known_graph(self.to_json):
+            with known_graph(text):
                 run_steps(run, names)
             values = tuple(output(run, target) for target in wanted)
         finally:
             for name, key in run.keys.items():
+                messages = replaced(run.steps[name].node) + self._cache.messages(key)
                 self._messages.pop(name, None)
-                if messages := self._cache.messages(key):
+                if messages:
                     self._messages[name] = messages
             self._cache.trim(2 * len(self._steps))
         return values[0] if len(values) == 1 else values
@@ -285,12 +294,7 @@ class Graph:
         Returns
         -------
         Step or Wire
-            What has the name.
-
-        Raises
-        ------
-        GraphError
-            If nothing has; the message gives the nearest name.
+            What has the name; if nothing has, the error gives the nearest.
         """
         step_name, dot, port = name.partition(".")
         if step_name not in self._steps:
@@ -305,17 +309,11 @@ class Graph:
         Parameters
         ----------
         name : str
-            Its name.
 
         Returns
         -------
         Param
-            To be wired into steps.
-
-        Raises
-        ------
-        GraphError
-            If there is none; the message gives the nearest name.
+            To be wired into steps; if there is none, the error gives the nearest name.
         """
         if name not in self._params:
             raise GraphError(f"no param {name!r}; {nearest(name, self._params)}")
@@ -330,20 +328,7 @@ class Graph:
         str
             Versioned JSON in a stable order, without code.
         """
-        facts = {
-            n: {
-                "value": p.value,
-                "min": p.port.min,
-                "max": p.port.max,
-                "choices": list(p.port.choices) or None,
-            }
-            for n, p in self.params.items()
-        }
-        given = {
-            n: {k: v for k, v in f.items() if k == "value" or v is not None}
-            for n, f in facts.items()
-        }
-        return encode_graph(self.title, self.units, given, self._steps)
+        return encode_graph(self.title, self.units, self.params, self._steps)
 
     @classmethod
     def from_json(cls, text: str, *, cache: Cache | None = None) -> "Graph":
@@ -353,39 +338,18 @@ class Graph:
         Parameters
         ----------
         text : str
-            From `to_json`.
+            From `to_json`; if it is no valid graph, the error says where.
         cache : Cache, optional
-            Results, shared with other graphs if one is given.
+            Results, to share them with other graphs.
 
         Returns
         -------
         Graph
             The same graph.
-
-        Raises
-        ------
-        GraphError
-            If the text is no valid graph; the message says where.
         """
         content = decode_graph(text)
         graph = cls(content["title"], content["units"], cache=cache)
-        for name, facts in content["params"].items():
-            try:
-                graph.param(name, **{key: decode(value, graph) for key, value in facts.items()})
-            except (GraphError, TypeError) as error:
-                raise GraphError(f"params.{name}: {error}") from error
-        for name, step in content["steps"].items():
-            try:
-                inputs = {port: decode(value, graph) for port, value in step["inputs"].items()}
-                added = graph.add(step["node"], name, **inputs)
-            except GraphError as error:
-                raise GraphError(f"steps.{name}: {error}") from error
-            if added.node.version != step["version"]:
-                warnings.warn(
-                    f"step {name!r} was saved with version {step['version']} of node "
-                    f"{added.node.name}, this is {added.node.version}: results may differ",
-                    stacklevel=2,
-                )
+        add_content(graph, content)
         return graph
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -395,7 +359,7 @@ class Graph:
         Parameters
         ----------
         path : path
-            The file; an old one is replaced only when the new one is complete.
+            An old file is replaced only when the new one is complete.
         """
         write_graph(path, self.to_json())
 
@@ -407,28 +371,14 @@ class Graph:
         Parameters
         ----------
         path : path
-            The file.
+            If it is no valid graph file, the error says where.
 
         Returns
         -------
         Graph
-            The graph; nothing has been run.
-
-        Raises
-        ------
-        GraphError
-            If it is no valid graph file; the message says where.
+            Nothing has been run.
         """
-        try:
-            return cls.from_json(Path(path).read_text(encoding="utf-8"))
-        except OSError as error:
-            raise GraphError(f"{os.fspath(path)}: {error.strerror}") from error
-        except UnicodeDecodeError as error:
-            raise GraphError(f"{os.fspath(path)}: not UTF-8 text") from error
-        except RecursionError as error:
-            raise GraphError(f"{os.fspath(path)}: nested too deeply") from error
-        except GraphError as error:
-            raise GraphError(f"{os.fspath(path)}: {error}") from error
+        return read_graph(path, cls.from_json)
 
     def mermaid(self) -> str:
         """
@@ -442,18 +392,10 @@ class Graph:
         return mermaid_text(self._values, self._steps)
 
 
-def _free_name(name: str, taken: Mapping[str, Step]) -> str:
-    if name not in taken:
-        return name
-    number = 2
-    while f"{name}_{number}" in taken:
-        number += 1
-    return f"{name}_{number}"
+def _folder(path: str | os.PathLike[str] | None) -> Path | None:
+    return None if path is None else Path(path).absolute()
 
 
 def _plain(value: Value) -> Value:
-    return cast("Value", value.item()) if isinstance(value, np.generic) else value
-
-
-def _silent(step: str, state: str) -> None:
-    del step, state
+    """NumPy's scalars as Python's; lists and arrays the graph's own."""
+    return own(value.item() if isinstance(value, np.generic) else value, snapshot)

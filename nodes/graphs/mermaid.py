@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from .ports import Value
+from .annotations import Value
 from .wires import Each, Param, Step
 
 
@@ -13,9 +13,7 @@ def mermaid_text(values: Mapping[str, Value], steps: Mapping[str, Step]) -> str:
     Parameters
     ----------
     values : mapping of str to object
-        The sliders.
     steps : mapping of str to Step
-        The steps.
 
     Returns
     -------

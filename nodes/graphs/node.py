@@ -22,9 +22,10 @@ from typing import (
     overload,
 )
 
+from .annotations import Hint, Value
 from .cache import digest
 from .errors import GraphError, nearest
-from .ports import Hint, Port, Value, check_value
+from .ports import Port, check_value
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -44,7 +45,6 @@ class Node:
     Attributes
     ----------
     name : str
-        Name of the function.
     function : callable
         The function, as it was written.
     version : str
@@ -54,11 +54,9 @@ class Node:
     summary : str
         First line of the docstring.
     help : str
-        The docstring.
     inputs, outputs : mapping of str to Port
         The ports by name, in the order of the signature.
     result_type : type
-        Annotation of the result.
     edition : int
         How often the name was defined anew in this process, as happens in notebooks.
     """
@@ -160,6 +158,28 @@ def find_node(node: str | Callable[..., Any]) -> Node:
     if node not in REGISTRY:
         raise GraphError(f"unknown node {node!r}; {nearest(node, REGISTRY)}")
     return REGISTRY[node]
+
+
+def replaced(node: Node) -> tuple[str, ...]:
+    """
+    What is to be said of a step whose node has been defined anew since it was added.
+
+    Parameters
+    ----------
+    node : Node
+
+    Returns
+    -------
+    tuple of str
+        Empty if the function is the present one.
+    """
+    present = REGISTRY.get(node.name, node)
+    if present.function is node.function:
+        return ()
+    return (
+        f"its function {node.name} was replaced after the step was added, and the step keeps "
+        "the old one: add it again to use the new one",
+    )
 
 
 @cache
@@ -322,13 +342,16 @@ def _outputs(node_name: str, result: Hint, texts: Mapping[str, str]) -> dict[str
 
 
 def _split(hint: Hint) -> tuple[Hint, Port]:
-    """An annotation as its type and its facts, also those of an alternative to None."""
+    """An annotation as its type and the facts of its port, also those of an alternative."""
     if get_origin(hint) is Annotated:
         kind, *facts = get_args(hint)
-        return kind, next((fact for fact in facts if isinstance(fact, Port)), Port())
-    options = get_args(hint) if get_origin(hint) in (Union, UnionType) else ()
-    facts = [_split(option)[1] for option in options if get_origin(option) is Annotated]
-    return hint, next(iter(facts), Port())
+        others = [fact for fact in facts if not isinstance(fact, Port)]
+        kind = Annotated[(kind, *others)] if others else kind
+    else:
+        kind = hint
+        options = get_args(hint) if get_origin(hint) in (Union, UnionType) else ()
+        facts = [fact for option in options for fact in get_args(option)[1:]]
+    return kind, next((fact for fact in facts if isinstance(fact, Port)), Port())
 
 
 def _is_named_tuple(kind: Hint) -> bool:

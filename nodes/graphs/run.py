@@ -1,18 +1,19 @@
 """One run of a graph: keys first, then only the steps whose results are not known."""
 
 import os
-from collections.abc import Callable, Iterable, Mapping
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast
 
-import numpy as np
-from numpy.typing import NDArray
-
-from .cache import Cache, Entry, digest, file_state, lock_arrays, own_containers
+from .annotations import Value
+from .cache import Cache, Entry, digest, file_state
 from .errors import GraphError, NodeError
-from .node import collected_messages
-from .ports import Port, Value, check_value, convert
+from .kinds import convert
+from .node import NodeWarning, collected_messages, replaced
+from .ports import Port, check_value
+from .results import own, snapshot
 from .wires import Each, Param, Step, Wire, parents, sources
 
 OnStep = Callable[[str, str], None]
@@ -21,7 +22,7 @@ OnStep = Callable[[str, str], None]
 @dataclass(frozen=True, eq=False)
 class Run:
     """
-    A run under way.
+    A run under way: nobody else changes what it is given.
 
     Attributes
     ----------
@@ -30,14 +31,14 @@ class Run:
     values : mapping of str to object
         Values of the sliders.
     units : str
-        Units of the graph.
     cache : Cache
         Results of earlier runs.
     on_step : callable
         Called with the name of a step and ``"running"``, ``"done"``, ``"cached"`` or
         ``"failed"``.
-    read_from : Path, optional
-        Folder of the relative paths that nodes read; the working directory by default.
+    read_from, write_to : Path, optional
+        Folders of the relative paths that nodes read and write; the working directory by
+        default. What a step has written is read where it was written.
     keys : dict of str to bytes
         Keys found so far.
     entries : dict of str to Entry
@@ -50,6 +51,7 @@ class Run:
     cache: Cache
     on_step: OnStep
     read_from: Path | None = None
+    write_to: Path | None = None
     keys: dict[str, bytes] = field(default_factory=dict[str, bytes])
     entries: dict[str, Entry] = field(default_factory=dict[str, Entry])
 
@@ -73,12 +75,15 @@ def run_steps(run: Run, targets: Iterable[str]) -> None:
     wanted = list(targets)
     needed = _ancestors(run, wanted)
     for step in needed:
+        for text in replaced(step.node):
+            warnings.warn(f"step {step.name!r}: {text}", NodeWarning, stacklevel=3)
+    for step in needed:
         ports = step.node.inputs
         files = [source for name, source in step.sources if _is_file(ports[name])]
         # The state of a file is part of the key, so its path must be known before.
         _bring(run, [w.step.name for w in files if isinstance(w, Wire)])
         run.keys[step.name] = _key(run, step)
-    writers = [step.name for step in needed if any(p.writes for p in step.node.inputs.values())]
+    writers = [step.name for step in needed if _is_writer(step)]
     _bring(run, [*wanted, *writers])
 
 
@@ -99,12 +104,12 @@ def output(run: Run, source: Step | Wire | Param) -> Value:
         What the function returned, one field of it, or the value of the slider.
     """
     if isinstance(source, Param):
-        return run.values[source.name]
+        return own(run.values[source.name])
     step = source.step if isinstance(source, Wire) else source
     value = run.entries[step.name].value
     if isinstance(source, Wire) and step.node.has_fields:
         value = getattr(value, source.port.name)
-    return own_containers(value)
+    return own(value)
 
 
 def _ancestors(run: Run, targets: Iterable[str]) -> list[Step]:
@@ -148,7 +153,21 @@ def _given(run: Run, step: Step, port: Port) -> Value:
 
 def _argument(run: Run, step: Step, port: Port) -> Value:
     value = _resolve(run, _given(run, step, port))
-    return _beside(run.read_from, value) if port.reads and run.read_from else value
+    folder = _folder(run, step, port)
+    return value if folder is None else _beside(folder, value)
+
+
+def _folder(run: Run, step: Step, port: Port) -> Path | None:
+    """Where the relative paths of an input are; None for the working directory."""
+    if not port.reads:
+        return run.write_to if port.writes else None
+    wires = sources(_given(run, step, port))
+    is_written = any(isinstance(wire, Wire) and _is_writer(wire.step) for wire in wires)
+    return run.write_to if is_written else run.read_from
+
+
+def _is_writer(step: Step) -> bool:
+    return any(port.writes for port in step.node.inputs.values())
 
 
 def _beside(folder: Path, value: Value) -> Value:
@@ -167,11 +186,7 @@ def _resolve(run: Run, value: Value) -> Value:
         return output(run, value)
     if any(True for _ in sources(value)):
         return [_resolve(run, item) for item in value]
-    if isinstance(value, np.ndarray):
-        # the caller may still write to its array, and the node may return it
-        value = cast("NDArray[Any]", value).copy()
-        lock_arrays(value)
-    return own_containers(value)
+    return own(value, snapshot)  # the caller may still write to it, and the node return it
 
 
 def _key_part(run: Run, value: Value) -> Value:
@@ -192,7 +207,7 @@ def _key(run: Run, step: Step) -> bytes:
         given = _given(run, step, port)
         parts.append(_key_part(run, given))
         if _is_file(port):
-            paths = _paths(_argument(run, step, port))
+            paths = list(map(_absolute, _paths(_argument(run, step, port))))
             parts.append(paths)
             parts.append([file_state(path) for path in paths] if port.reads else None)
     return digest(parts)
@@ -210,18 +225,46 @@ def _execute(run: Run, step: Step) -> Entry:
             run.on_step(step.name, "failed")
             name = step.node.name
             what = f"step {step.name!r}" + (f" (node {name})" if name != step.name else "")
-            text = str(error) or type(error).__name__
-            raise NodeError(f"{what} failed: {text}", step.name, name, error) from error
-    lock_arrays(value)
-    written = [
-        path
+            text = _as_given(run, str(error)) or type(error).__name__
+            raise NodeError(f"{what} failed: {text}", step.name, name, error, text) from error
+    written = _written(run, step, arguments)
+    run.on_step(step.name, "done")
+    states = tuple((path, file_state(path)) for path in map(_absolute, written))
+    texts = (_as_given(run, text) for text in messages)
+    return Entry(own(_returned(value, written)), tuple(dict.fromkeys(texts)), states)
+
+
+def _written(run: Run, step: Step, arguments: Mapping[str, Any]) -> dict[str, str]:
+    """The files that a step writes: the path that it was told, and that which was given."""
+    return {
+        told: given
         for port in step.node.inputs.values()
         if port.writes
-        for path in _paths(arguments[port.name])
-    ]
-    run.on_step(step.name, "done")
-    states = tuple((path, file_state(path)) for path in written)
-    return Entry(value, tuple(dict.fromkeys(messages)), states)
+        for told, given in zip(
+            _paths(arguments[port.name]),
+            _paths(_resolve(run, _given(run, step, port))),
+            strict=True,
+        )
+    }
+
+
+def _returned(value: Value, written: Mapping[str, str]) -> Value:
+    """What a step returns, with the paths of its files as they were given."""
+    if not written:
+        return value
+    if isinstance(value, str | Path):
+        given = written.get(str(value))
+        return value if given is None else type(value)(given)
+    if isinstance(value, list | tuple):
+        kind: Any = type(cast("Value", value))
+        items = [_returned(item, written) for item in cast("Sequence[Value]", value)]
+        return getattr(kind, "_make", kind)(items)
+    return value
+
+
+def _as_given(run: Run, text: str) -> str:
+    """A message without the folder of the run, which is none of the user's."""
+    return text if run.write_to is None else text.replace(f"{run.write_to}{os.sep}", "")
 
 
 def _call(step: Step, arguments: Mapping[str, Any]) -> Value:
@@ -231,7 +274,7 @@ def _call(step: Step, arguments: Mapping[str, Any]) -> Value:
         # What comes by wire was checked as a type; only small values are looked at again.
         if value is None or isinstance(value, bool | int | float | str):
             check_value(port, value, f"{step.name}.{name}")
-        inputs[name] = convert(port, value)
+        inputs[name] = convert(port.type, value)
     value = step.node.function(**inputs)
     if step.node.has_fields and not isinstance(value, step.node.result_type):
         kind = step.node.result_type.__name__
@@ -266,5 +309,9 @@ def _paths(value: Value) -> list[str]:
     if value is None:
         return []
     if isinstance(value, str | os.PathLike):
-        return [os.path.abspath(os.fspath(value))]  # noqa: PTH100, Path.resolve follows links
+        return [os.fspath(cast("str | os.PathLike[str]", value))]
     return [path for item in value for path in _paths(item)]
+
+
+def _absolute(path: str) -> str:
+    return os.path.abspath(path)  # noqa: PTH100, Path.resolve follows links

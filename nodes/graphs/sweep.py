@@ -7,10 +7,10 @@ from functools import lru_cache
 from itertools import product
 from typing import Any
 
+from .annotations import Value
 from .cache import Cache
 from .errors import GraphError
 from .graph import Graph
-from .ports import Value
 from .wires import Each, Param, Step, Target, Wire
 
 

@@ -1,12 +1,15 @@
-"""What a graph is made of: sliders, steps, and the wires between them."""
+"""What a graph is made of: sliders, steps, the wires between them, and the checks of these."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, TypeAlias, cast
 
-from .errors import UnknownPortError, nearest
+from .annotations import Hint, Value, element_type, type_name
+from .cache import digest
+from .errors import GraphError, UnknownPortError, nearest
+from .kinds import accepts, fits
 from .node import Node
-from .ports import Hint, Port, Value
+from .ports import REQUIRED, Port, check_value
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +22,6 @@ class Param:
     graph : object
         The graph that it belongs to.
     name : str
-        Its name.
     value : object
         Its value when the graph was put together; `Graph.values` holds the present one.
     port : Port
@@ -40,9 +42,7 @@ class Wire:
     Attributes
     ----------
     step : Step
-        The step.
     port : Port
-        The output.
     """
 
     step: "Step"
@@ -81,9 +81,7 @@ class Step:
     graph : object
         The graph that it belongs to.
     name : str
-        Its name.
     node : Node
-        The node.
     inputs : mapping of str to object
         What was given for the inputs: `Wire`, `Param`, `Each` or a value.
     """
@@ -153,7 +151,6 @@ def parents(step: Step) -> list[str]:
     Parameters
     ----------
     step : Step
-        The step.
 
     Returns
     -------
@@ -161,3 +158,187 @@ def parents(step: Step) -> list[str]:
         Names.
     """
     return [wire.step.name for _, wire in step.sources if isinstance(wire, Wire)]
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """
+    Where an input is wired.
+
+    Attributes
+    ----------
+    graph : object
+    values : mapping of str to object
+        Of its sliders.
+    step : str
+    """
+
+    graph: object
+    values: Mapping[str, Any]
+    step: str
+
+
+def connect(place: Place, port: Port, given: Value, at: str = "") -> Value:
+    """
+    What is kept of a value given for an input: steps become wires.
+
+    Parameters
+    ----------
+    place : Place
+    port : Port
+    given : object
+        A step, output, slider, value, list of these, or ``each`` of such a list.
+    at : str
+        Position in a list, for the message.
+
+    Returns
+    -------
+    object
+        The same with `Wire` for steps.
+
+    Raises
+    ------
+    GraphError
+        If it does not fit; the message names both ends.
+    """
+    where = f"{place.step}.{port.name}{at}"
+    if isinstance(given, Each):
+        return Each(_connect_each(place, port, given.items))
+    if isinstance(given, Step):
+        given = _only_output(given, port.type, where)
+    if isinstance(given, Wire):
+        check_owner(place.graph, given)
+        _check_wire(given, given.type, port, where)
+    elif isinstance(given, Param):
+        check_owner(place.graph, given)
+        value = place.values[given.name]
+        _check_literal(port, value, f"param {given.name} for {where}")
+    elif isinstance(given, list | tuple) and _has_sources(given):
+        if not accepts(port.type, []):
+            raise GraphError(f"{where}: a list, must be {type_name(port.type)}; use each(...)")
+        item_port = replace(port, type=element_type(port.type))
+        items = cast("Sequence[Value]", given)
+        return [connect(place, item_port, x, f"{at}[{i}]") for i, x in enumerate(items)]
+    else:
+        _check_literal(port, given, where)
+    return cast("Value", given)
+
+
+def check_owner(graph: object, target: Step | Wire | Param) -> None:
+    """
+    Refuse what belongs to another graph.
+
+    Parameters
+    ----------
+    graph : object
+    target : Step, Wire or Param
+        Something that should be part of it.
+
+    Raises
+    ------
+    GraphError
+    """
+    if not isinstance(target, Step | Wire | Param):  # pyright: ignore[reportUnnecessaryIsInstance]
+        kind = type(target).__name__
+        raise GraphError(f"a target is a step, an output, a slider or its name, not {kind}")
+    owner = target.step if isinstance(target, Wire) else target
+    if owner.graph is not graph:
+        name = str(target) if isinstance(target, Wire) else target.name
+        raise GraphError(f"{name} is part of another graph")
+
+
+def check_name(name: str, what: str) -> None:
+    """
+    Refuse a name that could not be told from others in ``step.port``.
+
+    Parameters
+    ----------
+    name : str
+    what : str
+        Of what, for the message.
+
+    Raises
+    ------
+    GraphError
+        If it is no identifier.
+    """
+    if not name.isidentifier():
+        raise GraphError(f"{what} name {name!r}: use letters, digits and _ only")
+
+
+def connect_all(place: Place, node: Node, inputs: Mapping[str, Value]) -> dict[str, Value]:
+    """
+    What is kept of all that is given for a step.
+
+    Parameters
+    ----------
+    place : Place
+    node : Node
+    inputs : mapping of str to object
+        By name of the port, as for `connect`.
+
+    Returns
+    -------
+    dict of str to object
+        The same with `Wire` for steps.
+
+    Raises
+    ------
+    GraphError
+        If an input is unknown, missing or does not fit.
+    """
+    check_name(place.step, "step")
+    at = f"step {place.step!r}" + (f" (node {node.name})" if node.name != place.step else "")
+    for name in inputs:
+        if name not in node.inputs:
+            raise GraphError(f"{at} has no input {name!r}; {nearest(name, node.inputs)}")
+    for name, port in node.inputs.items():
+        if port.default is REQUIRED and name not in inputs:
+            raise GraphError(f"{at} misses its input {name!r} ({type_name(port.type)})")
+    return {name: connect(place, node.inputs[name], given) for name, given in inputs.items()}
+
+
+def _check_literal(port: Port, value: Value, where: str) -> None:
+    """Refuse what an input does not accept, or what cannot be part of a key."""
+    check_value(port, value, where)
+    try:
+        digest(value)
+    except TypeError as error:
+        raise GraphError(f"{where}: {error}") from error
+
+
+def _has_sources(values: Value) -> bool:
+    return any(isinstance(x, Step | Each) or any(True for _ in sources(x)) for x in values)
+
+
+def _connect_each(place: Place, port: Port, items: Value) -> Value:
+    where = f"{place.step}.{port.name}"
+    if isinstance(items, Step):
+        items = _only_output(items, list[port.type], where)
+    if isinstance(items, Wire):
+        check_owner(place.graph, items)
+        _check_wire(items, element_type(items.type), port, f"each of {where}")
+        return items
+    values = place.values[items.name] if isinstance(items, Param) else items
+    if isinstance(values, str | bytes) or not hasattr(values, "__len__"):
+        raise GraphError(f"{where}: each needs a list, not {type(values).__name__}")
+    connected = [connect(place, port, item, f"[{i}]") for i, item in enumerate(values)]
+    return items if isinstance(items, Param) else connected
+
+
+def _only_output(step: Step, kind: Hint, where: str) -> Wire:
+    if len(step.wires) == 1:
+        return step.wires[0]
+    fitting = [str(wire) for wire in step.wires if fits(wire.type, kind)]
+    advice = f"choose {' or '.join(fitting)}" if fitting else f"none is {type_name(kind)}"
+    raise GraphError(f"cannot wire {step.name} into {where}: it has several outputs; {advice}")
+
+
+def _check_wire(wire: Wire, kind: Hint, port: Port, where: str) -> None:
+    if fits(kind, port.type):
+        return
+    message = f"cannot wire {wire} ({type_name(kind)}) into {where} ({type_name(port.type)})"
+    if kind == wire.type and wire.step.is_mapped and fits(wire.port.type, port.type):
+        raise GraphError(f"{message}; map over the list with each(...)")
+    others = [str(o) for o in wire.step.wires if fits(o.type, port.type)]
+    raise GraphError(f"{message}" + (f"; {' or '.join(others)} would fit" if others else ""))

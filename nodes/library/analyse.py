@@ -6,10 +6,9 @@ from typing import Annotated, Any, Literal, NamedTuple
 import numpy as np
 
 from ...kernel import analysis
-from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.panels import cutting
-from ...kernel.sphere_meshes import planarity as flatness
+from ...kernel.sphere_meshes import planarity_circularity as flatness
 from ...kernel.sphere_meshes import sphere_mesh as measures
 from ...kernel.sphere_meshes.fit import face_planes
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
@@ -17,12 +16,13 @@ from ...kernel.spheres.arcs import Arcs
 from ...kernel.support import beam_tilt as tilt
 from ..graphs.node import node
 from ..graphs.ports import Port
+from .arrays import EdgeAngles, EdgeDistances, FaceDistances, FaceMarks, VertexDistances
 
 
 @node
 def intersection_angles(
     sphere_mesh: SphereMesh, reference: Literal["spheres", "planes"] = "spheres"
-) -> FloatArray:
+) -> EdgeAngles:
     """
     Angle at which neighbouring faces meet.
 
@@ -43,7 +43,7 @@ def intersection_angles(
 
 
 @node
-def vertex_error(sphere_mesh: SphereMesh) -> FloatArray:
+def vertex_error(sphere_mesh: SphereMesh) -> VertexDistances:
     """
     Distance of each vertex from the spheres of its faces.
 
@@ -61,7 +61,7 @@ def vertex_error(sphere_mesh: SphereMesh) -> FloatArray:
 
 
 @node
-def planarity(sphere_mesh: SphereMesh | Mesh) -> FloatArray:
+def planarity(sphere_mesh: SphereMesh | Mesh) -> FaceDistances:
     """
     How far the corners of each face lie off its plane.
 
@@ -79,7 +79,7 @@ def planarity(sphere_mesh: SphereMesh | Mesh) -> FloatArray:
 
 
 @node
-def circularity(sphere_mesh: SphereMesh | Mesh) -> FloatArray:
+def circularity(sphere_mesh: SphereMesh | Mesh) -> FaceDistances:
     """
     How far the corners of each face lie off its best-fit circle.
 
@@ -97,7 +97,7 @@ def circularity(sphere_mesh: SphereMesh | Mesh) -> FloatArray:
 
 
 @node
-def beam_tilt(sphere_mesh: SphereMesh) -> FloatArray:
+def beam_tilt(sphere_mesh: SphereMesh) -> EdgeAngles:
     """
     Tilt of the beams that lie in the planes where neighbouring spheres meet.
 
@@ -115,7 +115,7 @@ def beam_tilt(sphere_mesh: SphereMesh) -> FloatArray:
 
 
 @node
-def deviation(sphere_mesh: SphereMesh, mesh: Mesh) -> FloatArray:
+def deviation(sphere_mesh: SphereMesh, mesh: Mesh) -> FaceDistances:
     """
     How far the panels stand off a reference surface.
 
@@ -135,7 +135,7 @@ def deviation(sphere_mesh: SphereMesh, mesh: Mesh) -> FloatArray:
 
 
 @node
-def spiky_faces(sphere_mesh: SphereMesh) -> BoolArray:
+def spiky_faces(sphere_mesh: SphereMesh) -> FaceMarks:
     """
     Faces that bulge to the wrong side.
 
@@ -184,7 +184,7 @@ class EdgeArcs(NamedTuple):
     """Arcs of the edges, and how far those of neighbours differ."""
 
     arcs: Arcs
-    gap: FloatArray
+    gap: EdgeDistances
 
 
 @node

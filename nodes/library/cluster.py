@@ -6,20 +6,20 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from ...kernel.analysis import angle_summary
-from ...kernel.arrays import FloatArray, IntArray
 from ...kernel.optimization import clustering
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.tolerances import COMMON_VERTEX
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
+from .arrays import FaceLabels, MouldRadii
 
 
 class Clusters(NamedTuple):
     """A sphere mesh of few radii."""
 
     sphere_mesh: SphereMesh
-    labels: IntArray
-    radii: FloatArray
+    labels: FaceLabels
+    radii: MouldRadii
     report: Mapping[str, Any]
 
 

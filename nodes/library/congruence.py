@@ -4,29 +4,30 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from ...kernel.arrays import BoolArray, FloatArray
-from ...kernel.congruences import envelopes
-from ...kernel.congruences import smooth as congruence
+from ...kernel.arrays import BoolArray
+from ...kernel.congruences import curvature_spheres as congruence
+from ...kernel.congruences import discrete_envelopes
 from ...kernel.meshes.mesh import Mesh, mean_edge_length
 from ...kernel.tolerances import VERTEX_MISS
 from ..graphs.node import node, warn
+from .arrays import FaceMarks, FacePoints, VertexDistances, VertexSpheres
 
 
 class Envelope(NamedTuple):
     """The two surfaces that a sphere congruence envelops, a point of each per face."""
 
-    points_plus: FloatArray
-    points_minus: FloatArray
-    is_real: BoolArray
+    points_plus: FacePoints
+    points_minus: FacePoints
+    is_real: FaceMarks
 
 
 @node
 def sphere_congruence(
     mesh: Mesh,
     kind: Literal["central", "tangent", "principal"] = "central",
-    offset: float | FloatArray | None = None,
+    offset: float | VertexDistances | None = None,
     which: Literal["first", "second"] = "first",
-) -> FloatArray:
+) -> VertexSpheres:
     """
     A sphere at every vertex of a surface mesh, touching the surface there.
 
@@ -60,7 +61,7 @@ def sphere_congruence(
 
 @node
 def envelope(
-    mesh: Mesh, spheres: FloatArray, order: Literal["nearest", "oriented"] = "nearest"
+    mesh: Mesh, spheres: VertexSpheres, order: Literal["nearest", "oriented"] = "nearest"
 ) -> Envelope:
     """
     Points in which the spheres at the corners of each face meet: the two enveloped surfaces.
@@ -83,7 +84,7 @@ def envelope(
     is_real : (F,) bool array
         Whether the spheres of the face meet in two real points.
     """
-    result = envelopes.envelope(mesh, spheres, order)
+    result = discrete_envelopes.envelope(mesh, spheres, order)
     if not result.is_real.all():
         warn(
             f"{_share(~result.is_real)} of the faces have no real envelope: their spheres meet "

@@ -10,7 +10,6 @@ from ...fabrication.model import Model, Written
 from ...fabrication.rhino import writer as rhino
 from ...fabrication.schedules import writer as schedule
 from ...fabrication.step import writer as step
-from ...kernel.arrays import IntArray
 from ...kernel.beams.beams import Beams
 from ...kernel.errors import name_ids
 from ...kernel.meshes.mesh import Mesh
@@ -21,6 +20,7 @@ from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...viewer.render import render_image
 from ..graphs.node import node, running_graph, warn
 from ..graphs.ports import Port, Units, WritePath
+from .arrays import FaceLabels
 
 Length = Annotated[float, Port(min=0)]
 
@@ -38,7 +38,7 @@ def panels(
     edges: Literal["bisector", "intersection"] = "bisector",
     thickness: Length = 0.0,
     joint_gap: Length = 0.0,
-    labels: IntArray | None = None,
+    labels: FaceLabels | None = None,
     side: Literal["inward", "outward", "centred"] = "inward",
     layer: Literal["offset", "power"] = "offset",
 ) -> PanelSet:

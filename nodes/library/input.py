@@ -4,14 +4,14 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from ...fabrication.mesh_files import formats as mesh_files
-from ...kernel.arrays import FloatArray
+from ...fabrication.mesh_files import reader, writer
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.surfaces import circular_nets as surfaces
 from ...kernel.surfaces import triangulated
 from ..graphs.node import node
 from ..graphs.ports import Port, ReadPath, WritePath
+from .arrays import VertexNormals
 
 Count = Annotated[int, Port(min=1, max=2000)]
 Length = Annotated[float, Port(min=0)]
@@ -21,7 +21,7 @@ class SampledSurface(NamedTuple):
     """A triangle mesh on a smooth surface, and the normals of that surface."""
 
     mesh: Mesh
-    normals: FloatArray
+    normals: VertexNormals
 
 
 @node
@@ -43,7 +43,7 @@ def read_mesh(path: ReadPath, layer: str = "", n_u: Count = 24, n_v: Count = 24)
     Mesh
         The mesh, in the units of the file.
     """
-    return mesh_files.read_mesh(path, layer, n_u, n_v)
+    return reader.read_mesh(path, layer, n_u, n_v)
 
 
 @node
@@ -65,7 +65,7 @@ def write_mesh(mesh: Mesh | SphereMesh, path: WritePath) -> str:
     """
     if isinstance(mesh, SphereMesh):
         mesh = mesh.mesh
-    return str(mesh_files.write_mesh(mesh, path))
+    return str(writer.write_mesh(mesh, path))
 
 
 @node

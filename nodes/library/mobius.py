@@ -4,20 +4,21 @@ from typing import Annotated, TypeVar
 
 import numpy as np
 
-from ...kernel.arrays import FloatArray
 from ...kernel.errors import InputError, name_ids
 from ...kernel.meshes.mesh import Mesh
-from ...kernel.sphere_meshes import mobius_maps
+from ...kernel.sphere_meshes.mobius import map_mesh, map_sphere_mesh
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
-from ...kernel.spheres import mobius
+from ...kernel.spheres import mobius_group
+from ...kernel.spheres.mobius_images import map_points, map_spheres
 from ..graphs.node import node
 from ..graphs.ports import Port
+from .arrays import Matrix, Points, Spheres, Transform, Vector
 
-Geometry = TypeVar("Geometry", SphereMesh, Mesh, FloatArray)
+Geometry = TypeVar("Geometry", SphereMesh, Mesh, Points | Spheres)
 
 
 @node
-def inversion(center: FloatArray, radius: Annotated[float, Port(min=0)] = 1.0) -> FloatArray:
+def inversion(center: Vector, radius: Annotated[float, Port(min=0)] = 1.0) -> Transform:
     """
     Inversion in a sphere: turns the model inside out about a point.
 
@@ -33,15 +34,15 @@ def inversion(center: FloatArray, radius: Annotated[float, Port(min=0)] = 1.0) -
     (5, 5) float array
         The transform, for `apply_mobius` and `compose`.
     """
-    return mobius.inversion(center, radius)
+    return mobius_group.inversion(center, radius)
 
 
 @node
 def similarity(
     scale: Annotated[float, Port(min=0)] = 1.0,
-    rotation: FloatArray | None = None,
-    translation: FloatArray | None = None,
-) -> FloatArray:
+    rotation: Vector | Matrix | None = None,
+    translation: Vector | None = None,
+) -> Transform:
     """
     Scaling, then rotation, both about the origin, then translation.
 
@@ -61,12 +62,12 @@ def similarity(
         The transform, for `apply_mobius` and `compose`.
     """
     if rotation is not None and np.shape(rotation) == (3,):
-        rotation = mobius.rotation_about(np.radians(rotation))
-    return mobius.similarity(scale, rotation, translation)
+        rotation = mobius_group.rotation_about(np.radians(rotation))
+    return mobius_group.similarity(scale, rotation, translation)
 
 
 @node
-def compose(transforms: list[FloatArray]) -> FloatArray:
+def compose(transforms: list[Transform]) -> Transform:
     """
     One transform that does what several do one after another.
 
@@ -80,11 +81,11 @@ def compose(transforms: list[FloatArray]) -> FloatArray:
     (5, 5) float array
         The transform.
     """
-    return mobius.compose(transforms)
+    return mobius_group.compose(transforms)
 
 
 @node
-def apply_mobius(geometry: Geometry, transform: FloatArray) -> Geometry:
+def apply_mobius(geometry: Geometry, transform: Transform) -> Geometry:
     """
     Carry geometry through a transform; the angles between spheres stay as they are.
 
@@ -102,9 +103,9 @@ def apply_mobius(geometry: Geometry, transform: FloatArray) -> Geometry:
         as every inversion does, faces run the other way round: outside stays outside.
     """
     if isinstance(geometry, SphereMesh):
-        return mobius_maps.map_sphere_mesh(geometry, transform)
+        return map_sphere_mesh(geometry, transform)
     if isinstance(geometry, Mesh):
-        return mobius_maps.map_mesh(geometry, transform)
+        return map_mesh(geometry, transform)
     rows = np.asarray(geometry, float)
     if rows.ndim != 2 or rows.shape[1] not in {3, 5}:
         raise InputError(
@@ -114,5 +115,5 @@ def apply_mobius(geometry: Geometry, transform: FloatArray) -> Geometry:
     if len(bad):
         raise InputError(f"rows {name_ids(bad.tolist())} of the geometry are not finite")
     if rows.shape[1] == 3:
-        return mobius_maps.map_points(rows, transform)
-    return mobius_maps.map_spheres(rows, transform)
+        return map_points(rows, transform)
+    return map_spheres(rows, transform)

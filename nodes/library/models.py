@@ -4,13 +4,13 @@ from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
-from ...kernel.arrays import FloatArray
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.sphere_meshes import model_change as models
 from ...kernel.sphere_meshes import support_type as support
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ..graphs.node import node
 from ..graphs.ports import Port
+from .arrays import Sphere, Vector
 
 Length = Annotated[float, Port(min=0)]
 
@@ -19,7 +19,7 @@ class SupportType(NamedTuple):
     """The sphere to which all spheres of a mesh are orthogonal."""
 
     kind: str
-    omega: FloatArray
+    omega: Sphere
     residual: float
 
 
@@ -28,7 +28,7 @@ def model_change(
     mesh: Mesh,
     geometry: Literal["hyperbolic", "elliptic"] = "hyperbolic",
     radius: Length = 1.0,
-    center: FloatArray | None = None,
+    center: Vector | None = None,
     branch: Literal["inner", "outer"] = "inner",
 ) -> SphereMesh:
     """
@@ -59,7 +59,7 @@ def model_change(
 
 
 @node
-def sphere_bundle(mesh: Mesh, center: FloatArray, radius: Length = 1.0) -> SphereMesh:
+def sphere_bundle(mesh: Mesh, center: Vector, radius: Length = 1.0) -> SphereMesh:
     """
     Turn planar faces into spheres through one point, by an inversion.
 

@@ -6,18 +6,18 @@ from typing import Annotated, Any, Literal, NamedTuple
 import numpy as np
 
 from ...kernel.analysis import angle_summary
-from ...kernel.arrays import FloatArray
 from ...kernel.errors import ConvergenceError, InputError, name_ids
 from ...kernel.meshes.mesh import Mesh, mean_edge_length
-from ...kernel.optimization import pencil, strips
+from ...kernel.optimization import angle_minimization, strips
 from ...kernel.optimization import whole_energy as optimization
 from ...kernel.optimization.energies.table import EnergyWeights
 from ...kernel.sphere_meshes.fit import face_planes
-from ...kernel.sphere_meshes.planarity import circularity
+from ...kernel.sphere_meshes.planarity_circularity import circularity
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ...kernel.tolerances import CIRCULAR, LITTLE_GAIN, VERTEX_MISS
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
+from .arrays import EdgeWeights, FaceRadii, FaceVectors, Vector
 
 Weight = Annotated[float, Port(min=0)]
 
@@ -33,7 +33,7 @@ class Optimum(NamedTuple):
 def minimize_angles(
     sphere_mesh: SphereMesh,
     target_angle: Annotated[float, Port(unit="deg", min=0, max=90)] = 0.0,
-    edge_weights: FloatArray | None = None,
+    edge_weights: EdgeWeights | None = None,
     max_miss: Annotated[float | None, Port(min=0)] = None,
 ) -> Optimum:
     """
@@ -60,7 +60,9 @@ def minimize_angles(
         max, of the planes and of the spheres), ``vertex_error`` (max, and relative to the mean
         edge) and ``circle_miss`` (relative to the mean edge).
     """
-    result, run = pencil.minimize_angles(sphere_mesh, np.radians(target_angle), edge_weights)
+    result, run = angle_minimization.minimize_angles(
+        sphere_mesh, np.radians(target_angle), edge_weights
+    )
     if not run.converged:
         raise ConvergenceError(
             f"the angles did not come to rest in {sum(run.iterations)} steps (last step "
@@ -103,9 +105,9 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     fairness: Weight = 0.0,
     closeness: Weight = 0.0,
     target_angle: Annotated[float, Port(unit="deg", min=0, max=90)] = 0.0,
-    edge_weights: FloatArray | None = None,
+    edge_weights: EdgeWeights | None = None,
     tolerance: Annotated[float, Port(min=0)] = 0.0,
-    fixed_radii: FloatArray | None = None,
+    fixed_radii: FaceRadii | None = None,
     interior: Literal["free", "glide"] = "free",
     boundary: Literal["free", "glide", "fixed"] = "free",
     max_iterations: Annotated[int, Port(min=1)] = 100,
@@ -206,7 +208,7 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
 
 
 @node
-def strip_weights(mesh: Mesh, direction: int | FloatArray = 0) -> FloatArray:
+def strip_weights(mesh: Mesh, direction: int | Vector | FaceVectors = 0) -> EdgeWeights:
     """
     Weights that let spheres join smoothly along strips, and only there.
 

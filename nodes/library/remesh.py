@@ -6,20 +6,27 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from ...kernel.analysis import deviation
-from ...kernel.arrays import BoolArray, FloatArray, IntArray
+from ...kernel.arrays import IntArray
 from ...kernel.errors import ConvergenceError, name_ids
 from ...kernel.meshes.mesh import Mesh, mean_edge_length
 from ...kernel.remesh import pipeline, reports
-from ...kernel.remesh.field import directions, relax
+from ...kernel.remesh.field import conjugate_directions as directions
+from ...kernel.remesh.field import relax
 from ...kernel.remesh.field.relax import CongruenceQuality
 from ...kernel.remesh.field.smooth_surface import SmoothSurface
-from ...kernel.remesh.planar.held_nets import SHORT_EDGE, planarize_held
-from ...kernel.remesh.planar.node_sites import node_distances
-from ...kernel.remesh.planar.planarize import Planarization, measure_nodes, planarize
+from ...kernel.remesh.planar.conditions import node_distances
+from ...kernel.remesh.planar.nodes import measure_nodes
+from ...kernel.remesh.planar.planarize import (
+    SHORT_EDGE,
+    Planarization,
+    planarize,
+    planarize_held,
+)
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.tolerances import NODE_ON_SPHERES, TORSION_FREE
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
+from .arrays import VertexDirections, VertexMarks, VertexSpheres
 
 COMPLEX_SHARE = 0.05
 """A share of the area with complex directions, or none, that is worth a warning."""
@@ -34,8 +41,8 @@ Rings = Annotated[int, Port(min=1, max=10)]
 class Directions(NamedTuple):
     """Conjugate directions at the vertices of a congruence."""
 
-    directions: FloatArray
-    is_real: BoolArray
+    directions: VertexDirections
+    is_real: VertexMarks
     report: Mapping[str, Any]
 
 
@@ -48,7 +55,7 @@ class Remeshed(NamedTuple):
 
 @node
 def conjugate_directions(
-    mesh: Mesh, spheres: FloatArray, degree: Degree = None, rings: Rings = 4
+    mesh: Mesh, spheres: VertexSpheres, degree: Degree = None, rings: Rings = 4
 ) -> Directions:
     """
     The directions that a net of these spheres must follow to have a support structure.
@@ -99,7 +106,7 @@ def conjugate_directions(
 @node
 def p4_remesh(
     mesh: Mesh,
-    spheres: FloatArray,
+    spheres: VertexSpheres,
     edge_length: Annotated[float, Port(min=0)],
     smoothing: Annotated[float, Port(min=0, max=10)] = 0.5,
     least_angle: Annotated[float, Port(unit="deg", min=0, max=80)] = 20.0,
@@ -326,14 +333,14 @@ def _warn_of_damage(report: Mapping[str, Any]) -> None:
 class Relaxed(NamedTuple):
     """A congruence that can be remeshed, and how far it is from the given one."""
 
-    spheres: FloatArray
+    spheres: VertexSpheres
     report: Mapping[str, Any]
 
 
 @node
 def relax_congruence(
     mesh: Mesh,
-    spheres: FloatArray,
+    spheres: VertexSpheres,
     max_complex: Annotated[float, Port(min=0, max=1)] = 0.02,
     max_axis_angle: Annotated[float, Port(unit="deg", min=0, max=90)] = 20.0,
     radius: float | None = None,

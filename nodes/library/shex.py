@@ -4,12 +4,10 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...kernel.arrays import FloatArray
-from ...kernel.congruences import smooth as congruence
+from ...kernel.congruences import curvature_spheres as congruence
 from ...kernel.errors import name_ids
-from ...kernel.hexagons import dual_meshes as shex
+from ...kernel.hexagons import dual_sphere_mesh as shex
 from ...kernel.hexagons import evolution, face_shapes
 from ...kernel.hexagons import shifted_rows as grids
 from ...kernel.meshes.mesh import Mesh, mean_edge_length
@@ -18,13 +16,14 @@ from ...kernel.sphere_meshes.sphere_mesh import vertex_error as vertex_errors
 from ...kernel.tolerances import AXIS_SLACK
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
+from .arrays import FaceShapes, VertexDistances, VertexSpheres
 
 
 class EvolvedSpheres(NamedTuple):
     """A triangulation with flipped edges, spheres at its vertices, and how they grew."""
 
     mesh: Mesh
-    spheres: FloatArray
+    spheres: VertexSpheres
     report: Mapping[str, Any]
 
 
@@ -57,7 +56,7 @@ def shifted_rows(mesh: Mesh, along: Literal["first", "second"] = "first") -> Mes
 
 
 @node
-def tangent_spheres(mesh: Mesh, offset: float | FloatArray) -> FloatArray:
+def tangent_spheres(mesh: Mesh, offset: float | VertexDistances) -> VertexSpheres:
     """
     Spheres that touch a surface at the vertices of its mesh.
 
@@ -167,7 +166,7 @@ def _by_valence(mesh: Mesh) -> dict[str, list[int]]:
 
 @node
 def tangent_sphere_shex(
-    mesh: Mesh, spheres: FloatArray, boundary: Literal["drop", "clip"] = "drop"
+    mesh: Mesh, spheres: VertexSpheres, boundary: Literal["drop", "clip"] = "drop"
 ) -> Hexagons:
     """
     Sphere mesh with a face for every vertex of a triangulation: hexagons, where it is regular.
@@ -239,7 +238,7 @@ def _name_faces(dual: shex.DualSpheres, faces: list[int]) -> list[dict[str, int]
 
 
 @node
-def classify_hexagons(sphere_mesh: SphereMesh) -> NDArray[np.str_]:
+def classify_hexagons(sphere_mesh: SphereMesh) -> FaceShapes:
     """
     Tell convex faces from bow-ties and from those that cross themselves.
 

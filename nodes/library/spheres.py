@@ -3,7 +3,9 @@
 from typing import Annotated, NamedTuple
 
 from ...kernel.meshes.mesh import Mesh
-from ...kernel.sphere_meshes import central, fit
+from ...kernel.sphere_meshes import central_spheres as central
+from ...kernel.sphere_meshes import fit
+from ...kernel.sphere_meshes import smoothed_spheres as smoothing
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ..graphs.node import node
 from ..graphs.ports import Port
@@ -87,7 +89,7 @@ def smoothed_spheres(mesh: Mesh) -> SphereMesh:
     SphereMesh
         Spheres somewhat flatter than the central ones.
     """
-    return central.smoothed_spheres(mesh)
+    return smoothing.smoothed_spheres(mesh)
 
 
 @node

@@ -5,7 +5,6 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.beams import cutting as beam_cutting
 from ...kernel.beams.beams import Beams, beam_lengths, beam_volumes
 from ...kernel.beams.drilling import drill_beams
@@ -13,13 +12,14 @@ from ...kernel.errors import InputError, name_ids
 from ...kernel.meshes.mesh import mean_edge_length
 from ...kernel.parts.findings import findings_report, rejected_report
 from ...kernel.parts.records import RejectedPart
-from ...kernel.remesh.planar.held_nets import planarize_near
+from ...kernel.remesh.planar.landing import planarize_near
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.support import annulus_support as annulus
 from ...kernel.support import node_axes as support
 from ...kernel.support.annuli import Annuli, corner_mismatch, mean_end_depth
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
+from .arrays import VertexAngles, VertexAxes, VertexMarks
 
 
 class LandedNodes(NamedTuple):
@@ -32,9 +32,9 @@ class LandedNodes(NamedTuple):
 class Nodes(NamedTuple):
     """The nodes of a support structure, one per vertex."""
 
-    axes: FloatArray
-    torsion: FloatArray
-    is_valid: BoolArray
+    axes: VertexAxes
+    torsion: VertexAngles
+    is_valid: VertexMarks
     report: Mapping[str, Any]
 
 

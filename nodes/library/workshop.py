@@ -9,7 +9,6 @@ from ...fabrication.audit.report import audit_model
 from ...fabrication.audit.subjects import AuditLimits
 from ...fabrication.model import Model
 from ...kernel.analysis import angle_summary
-from ...kernel.arrays import IntArray
 from ...kernel.beams.beams import Beams
 from ...kernel.meshes.mesh import mean_edge_length
 from ...kernel.panels import congruent
@@ -20,6 +19,7 @@ from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ...kernel.tolerances import SAME_PANEL
 from ..graphs.node import node, warn
 from ..graphs.ports import Port, Units
+from .arrays import PanelLabels
 
 Length = Annotated[float, Port(min=0)]
 Millimeters = Annotated[float, Port(unit="mm", min=0)]
@@ -29,7 +29,7 @@ Degrees = Annotated[float, Port(unit="deg", min=0, max=180)]
 class IdenticalPanels(NamedTuple):
     """Panels gathered by shape."""
 
-    labels: IntArray
+    labels: PanelLabels
     report: Mapping[str, Any]
 
 

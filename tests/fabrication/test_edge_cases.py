@@ -19,20 +19,17 @@ from spheremesh.fabrication.model import Model, Written
 from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
 from spheremesh.fabrication.schedules.panels import panel_tables
 from spheremesh.fabrication.schedules.writer import write_schedule
-from spheremesh.fabrication.solids.panel_shapes import panel_shapes
+from spheremesh.fabrication.solids.opencascade_panels import panel_shapes
 from spheremesh.fabrication.step.check import check_part21
 from spheremesh.fabrication.step.writer import StepOptions, write_step
-from spheremesh.kernel.arrays import FloatArray, norm
+from spheremesh.kernel.arrays import norm
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.optimization.clustering import cluster_radii
-from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.panels import Panels
 from spheremesh.kernel.parts.records import select_parts
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
-from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.kernel.support.annulus_support import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
 
@@ -86,37 +83,29 @@ def step_names(path: Path) -> set[str]:
     }
 
 
-def curved(mesh: Mesh, angles: FloatArray | list[float]) -> SphereMesh:
-    planes, great_spheres = circle_pencils(face_circles(mesh)[0])
-    return SphereMesh.from_local(
-        mesh, pencil_spheres(planes, great_spheres, np.asarray(angles, float))
-    )
-
-
-def squares(*angles: float) -> SphereMesh:
-    """Unit squares in a row under spheres of the given half openings."""
-    points = [[x, y, 0.0] for x in range(len(angles) + 1) for y in (0, 1)]
-    faces = [[2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1] for i in range(len(angles))]
-    return curved(Mesh(points, faces), list(angles))
-
-
 @pytest.mark.parametrize("thickness", [0.0, 0.05])
 @pytest.mark.parametrize("angle", [-0.4, 0.0, 0.4])
-def test_one_panel(tmp_path: Path, thickness: float, angle: float) -> None:
+def test_one_panel(
+    squares: Callable[..., SphereMesh], tmp_path: Path, thickness: float, angle: float
+) -> None:
     panels, rejected = cut_panels(squares(angle), thickness=thickness)
     assert not rejected
     write_all(panels, tmp_path)
 
 
 @pytest.mark.parametrize("side", ["inward", "outward", "centred"])
-def test_planes_and_spheres_of_both_signs(tmp_path: Path, side: str) -> None:
+def test_planes_and_spheres_of_both_signs(
+    squares: Callable[..., SphereMesh], tmp_path: Path, side: str
+) -> None:
     found = squares(0.0, 0.3, -0.3, 0.0, 1e-9, -0.02)
     panels, rejected = cut_panels(found, "bisector", 0.03, 0.01, side=side)  # type: ignore[arg-type]
     assert not rejected
     write_all(panels, tmp_path)
 
 
-def test_radii_below_three_quarters_of_an_edge(tmp_path: Path) -> None:
+def test_radii_below_three_quarters_of_an_edge(
+    squares: Callable[..., SphereMesh], tmp_path: Path
+) -> None:
     panels, rejected = cut_panels(squares(1.25, -1.25, 1.3), thickness=0.02, joint_gap=0.02)
     assert not rejected
     radii = 0.5 / np.abs(panels.spheres[:, 0])
@@ -128,7 +117,11 @@ def test_radii_below_three_quarters_of_an_edge(tmp_path: Path) -> None:
 @pytest.mark.parametrize("angle", [0.0, 0.2])
 @pytest.mark.parametrize("thickness", [0.0, 0.01])
 def test_corners_of_a_hundredth_of_a_degree(
-    tmp_path: Path, degrees: float, angle: float, thickness: float
+    curved: Callable[..., SphereMesh],
+    tmp_path: Path,
+    degrees: float,
+    angle: float,
+    thickness: float,
 ) -> None:
     height = np.tan(np.radians(degrees))
     mesh = Mesh([[0, 0, 0], [1, 0, 0], [1, height, 0]], [[0, 1, 2]])
@@ -144,7 +137,7 @@ def test_corners_of_a_hundredth_of_a_degree(
     assert refused.reason
 
 
-def test_names_of_any_script(tmp_path: Path) -> None:
+def test_names_of_any_script(squares: Callable[..., SphereMesh], tmp_path: Path) -> None:
     found = squares(*[0.1] * 8)
     panels, _ = cut_panels(found, thickness=0.05, labels=np.zeros(8, np.int64))
     names = (
@@ -174,7 +167,9 @@ def test_names_of_any_script(tmp_path: Path) -> None:
     ["", " A", "A ", "A\n1", "A\rB", "\t", "A\0",
      "\x07", "A\x85B", "A\u2028", "\ud800", "\ufffe"],
 )  # fmt: skip
-def test_names_that_files_would_change_are_refused(tmp_path: Path, name: str) -> None:
+def test_names_that_files_would_change_are_refused(
+    squares: Callable[..., SphereMesh], tmp_path: Path, name: str
+) -> None:
     """Rhino trims and cuts them, XML and workbooks break on them, DXF joins their lines."""
     panels, _ = cut_panels(squares(0.1, 0.2), thickness=0.05)
     named = replace(panels, ids=("A", name))
@@ -211,7 +206,9 @@ def test_names_of_beams_in_any_script(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", WRITERS)
-def test_what_no_file_can_hold_is_refused_by_name(tmp_path: Path, name: str) -> None:
+def test_what_no_file_can_hold_is_refused_by_name(
+    squares: Callable[..., SphereMesh], tmp_path: Path, name: str
+) -> None:
     panels, _ = cut_panels(squares(0.1, 0.2, 0.3), thickness=0.05)
     write, target = WRITERS[name], tmp_path / name
     with pytest.raises(InputError, match="there are no panels to write to"):
@@ -226,7 +223,7 @@ def test_what_no_file_can_hold_is_refused_by_name(tmp_path: Path, name: str) -> 
 
 
 def test_caps_and_thicknesses_beyond_reach_are_refused_and_the_rest_is_written(
-    tmp_path: Path,
+    squares: Callable[..., SphereMesh], tmp_path: Path
 ) -> None:
     found = squares(0.2, 1.5, -1.0, 0.0, -0.3)
     # Radius 0.84 on the third: a thickness of 0.84 leaves nothing of it.
@@ -239,21 +236,15 @@ def test_caps_and_thicknesses_beyond_reach_are_refused_and_the_rest_is_written(
     write_all(panels, tmp_path)
 
 
-def roof(scale: float) -> Panels:
-    mesh = roof_net(6, 7, 30.0)
-    found = minimize_angles(fit_spheres(Mesh(scale * mesh.vertices, mesh.faces)))[0]
-    found, clusters = cluster_radii(found, 3)
-    lengths = 0.05 * scale, 0.01 * scale
-    panels, rejected = cut_panels(found, "bisector", *lengths, clusters.labels)
-    assert not rejected
-    return panels
-
-
-def test_law_millimetres_are_the_same_in_every_unit(tmp_path: Path) -> None:
+def test_law_millimetres_are_the_same_in_every_unit(
+    moulded: Callable[..., Panels], tmp_path: Path
+) -> None:
     """A roof drawn in metres, millimetres and feet, from the mesh to the files."""
     rows, numbers = [], []
     for units, scale in (("m", 1.0), ("mm", 1000.0), ("ft", 1 / 0.3048)):
-        panels = roof(scale)
+        roof = roof_net(6, 7, 30.0)
+        spheres = fit_spheres(Mesh(scale * roof.vertices, roof.faces))
+        panels = moulded(spheres, 0.05 * scale, 0.01 * scale)
         rows.append(panel_tables(panels, units)["Panels"])
         text = write_step(Model(panels, units=units), tmp_path / "p.step").path.read_text(
             "ascii"

@@ -1,5 +1,6 @@
 """Whole files or none, and what killed processes leave."""
 
+import errno
 import os
 import time
 from pathlib import Path
@@ -129,6 +130,28 @@ def test_a_folder_in_the_place_of_one_file_keeps_all_others(tmp_path: Path) -> N
     assert {path.name for path in tmp_path.iterdir()} == {"a.txt", "b.txt"}
 
 
+def test_windows_syncs_only_what_is_open_for_writing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fcntl = pytest.importorskip("fcntl", reason="this may be Windows itself")
+    fsync = os.fsync
+    synced: list[int] = []
+
+    def fsync_there(descriptor: int) -> None:
+        if fcntl.fcntl(descriptor, fcntl.F_GETFL) & os.O_ACCMODE == os.O_RDONLY:
+            raise OSError(errno.EBADF, os.strerror(errno.EBADF))
+        fsync(descriptor)
+        synced.append(os.fstat(descriptor).st_ino)
+
+    monkeypatch.setattr(os, "fsync", fsync_there)
+    target = tmp_path / "p.step"
+    for text in ("old", "new"):
+        with replacing(target) as temporary:
+            temporary.write_text(text)
+        assert target.read_text() == text
+        assert synced.pop() == target.stat().st_ino
+
+
 def test_names_that_no_file_can_have(tmp_path: Path) -> None:
     for name in ("a\0.step", "x" * 300 + ".step"):
         with (
@@ -175,3 +198,20 @@ def test_a_full_disk_and_a_file_that_is_held_are_named(
     ):
         temporary.write_bytes(b"new")
     assert [path.read_text() for path in tmp_path.iterdir()] == ["old"]
+
+
+def test_a_temporary_file_that_is_held_is_no_other_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Windows neither renames nor removes what a scanner has open."""
+
+    def fail(*_: object, **__: object) -> None:
+        raise PermissionError(13, "The process cannot access the file")
+
+    monkeypatch.setattr(Path, "replace", fail)
+    monkeypatch.setattr(Path, "unlink", fail)
+    with (
+        pytest.raises(InputError, match=r"cannot write .*p\.step: The process cannot access"),
+        replacing(tmp_path / "p.step") as temporary,
+    ):
+        temporary.write_bytes(b"new")

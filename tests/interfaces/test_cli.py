@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 import spheremesh as sm
-from spheremesh.fabrication.mesh_files.formats import write_mesh
+from spheremesh.fabrication.mesh_files.writer import write_mesh
 from spheremesh.interfaces.cli import main
 from spheremesh.interfaces.panel import PanelOptions, panel_graph
 from spheremesh.kernel.meshes.mesh import Mesh

@@ -12,14 +12,14 @@ from spheremesh.kernel.analysis import (
 from spheremesh.kernel.arrays import norm
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import face_normals, mean_edge_length
-from spheremesh.kernel.optimization.pencil import minimize_angles, pencil_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles, pencil_angles
 from spheremesh.kernel.panels.cutting import edge_arcs, edge_gaps
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
-from spheremesh.kernel.sphere_meshes.planarity import circularity, planarity
+from spheremesh.kernel.sphere_meshes.planarity_circularity import circularity, planarity
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles
 from spheremesh.kernel.spheres.arcs import arc_points
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
-from spheremesh.kernel.spheres.rows import signed_distance
+from spheremesh.kernel.spheres.incidence import signed_distance
 from spheremesh.kernel.support.beam_tilt import beam_tilt
 from spheremesh.kernel.surfaces.circular_nets import ellipsoid_net, torus_net, vase_net
 

@@ -4,7 +4,8 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...solvers.blocks import Block
-from ...spheres.rows import minkowski, minkowski_gradient, recenter
+from ...spheres.minkowski import minkowski, minkowski_gradient
+from ...spheres.rows import recenter
 from .setting import Group, Setting, Unknowns
 
 
@@ -15,7 +16,6 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
 
     Returns
     -------
@@ -35,7 +35,6 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
     setting : Setting
         What stays fixed; edge weights w and target angle α.
     unknowns : Unknowns
-        Spheres.
 
     Returns
     -------
@@ -59,9 +58,7 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     unknowns : Unknowns
-        Spheres.
 
     Returns
     -------

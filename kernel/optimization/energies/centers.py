@@ -8,7 +8,7 @@ the origin and vanishes for two planes.
 import numpy as np
 
 from ...arrays import FloatArray, IntArray, dot
-from ...spheres.rows import normals
+from ...spheres.incidence import normals
 from .setting import Setting, Unknowns
 
 
@@ -19,9 +19,7 @@ def center_lines(setting: Setting, unknowns: Unknowns) -> FloatArray:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     unknowns : Unknowns
-        Spheres.
 
     Returns
     -------
@@ -42,11 +40,8 @@ def center_line_gradients(
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     unknowns : Unknowns
-        Spheres.
     edges : (m,) int array
-        Edges.
     directions : (m, 3) float array
         Vectors a.
 

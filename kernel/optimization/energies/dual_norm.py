@@ -14,7 +14,6 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
 
     Returns
     -------
@@ -31,9 +30,7 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:  # noqa: ARG0
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     unknowns : Unknowns
-        Dual normals.
 
     Returns
     -------
@@ -54,9 +51,7 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  #
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     unknowns : Unknowns
-        Dual normals.
 
     Returns
     -------

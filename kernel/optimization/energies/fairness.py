@@ -14,7 +14,6 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
 
     Returns
     -------
@@ -32,9 +31,7 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     unknowns : Unknowns
-        Displacements.
 
     Returns
     -------
@@ -61,9 +58,7 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  #
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     unknowns : Unknowns
-        Displacements.
 
     Returns
     -------

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from ...meshes.mesh import Mesh, face_normals
-from ...spheres.rows import minkowski, minkowski_gradient
+from ...spheres.minkowski import minkowski, minkowski_gradient
 from ...tolerances import AT_BOUND
 from .setting import Unknowns
 
@@ -85,7 +85,6 @@ def project_displacements(freedom: Freedom, displacements: FloatArray) -> FloatA
     Parameters
     ----------
     freedom : Freedom
-        The bounds.
     displacements : (V, 3) float array
         Displacements in free directions.
 
@@ -109,7 +108,6 @@ def pushed_out(freedom: Freedom, displacements: FloatArray, push: FloatArray) ->
     Parameters
     ----------
     freedom : Freedom
-        The bounds.
     displacements : (V, 3) float array
         Where the vertices are.
     push : (V or 0, 3) float array
@@ -131,7 +129,6 @@ def free_directions(freedom: Freedom, displacements: FloatArray, held: BoolArray
     Parameters
     ----------
     freedom : Freedom
-        The bounds.
     displacements : (V, 3) float array
         Where the vertices are.
     held : (V or 0,) bool array
@@ -157,7 +154,6 @@ def tangent_to_spheres(
     freedom : Freedom
         Which radii are fixed.
     unknowns : Unknowns
-        The rows.
     faces : (m,) int array
         Face of each derivative.
     derivatives : (m, 5) float array
@@ -192,9 +188,7 @@ def moved(
     Parameters
     ----------
     freedom : Freedom
-        The bounds.
     unknowns : Unknowns
-        Where the step starts.
     steps : tuple of (F, 5), (V or 0, 3) and (N or 0, 3) float arrays
         Changes of each group; empty where a group does not take part.
 

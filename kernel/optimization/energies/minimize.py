@@ -10,7 +10,7 @@ from ...arrays import BoolArray, FloatArray, dot, norm, sum_by
 from ...solvers.blocks import Block, JacobianPattern, Layout, jacobian_pattern
 from ...solvers.levenberg_marquardt import DampedStep, Descent, levenberg_marquardt
 from ...solvers.normal_equations import Linearization, damped_step, linearization
-from ...tolerances import LEAST_ENERGY
+from ...tolerances import LEAST_ENERGY, STEP_MODEL
 from .freedom import (
     Freedom,
     free_directions,
@@ -56,11 +56,9 @@ def energy_problem(setting: Setting, freedom: Freedom, weights: EnergyWeights) -
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     freedom : Freedom
         Which way the unknowns may move; vertices are unknown if they may move at all.
     weights : EnergyWeights
-        Weights of the terms.
 
     Returns
     -------
@@ -92,9 +90,7 @@ def weighted_residuals(problem: EnergyProblem, unknowns: Unknowns) -> list[Float
     Parameters
     ----------
     problem : EnergyProblem
-        The problem.
     unknowns : Unknowns
-        The values.
 
     Returns
     -------
@@ -116,9 +112,7 @@ def weighted_entries(
     Parameters
     ----------
     problem : EnergyProblem
-        The problem.
     unknowns : Unknowns
-        The values.
 
     Returns
     -------
@@ -136,7 +130,11 @@ def weighted_entries(
 
 
 def minimize_energy(
-    problem: EnergyProblem, start: Unknowns, max_iterations: int, change: float
+    problem: EnergyProblem,
+    start: Unknowns,
+    max_iterations: int,
+    change: float,
+    share: float = STEP_MODEL,
 ) -> Descent[Unknowns]:
     """
     Minimise the energy by Levenberg-Marquardt.
@@ -144,13 +142,13 @@ def minimize_energy(
     Parameters
     ----------
     problem : EnergyProblem
-        The problem.
     start : Unknowns
-        Where to start.
     max_iterations : int
         Largest number of linear systems.
     change : float
         Relative fall of the energy at which the descent ends.
+    share : float
+        Gain of the model that a step may leave out.
 
     Returns
     -------
@@ -170,7 +168,7 @@ def minimize_energy(
         return np.array([float(dot(part, part)) for part in _residuals(unknowns)])
 
     def _linearize(unknowns: Unknowns) -> Callable[[float], DampedStep]:
-        return _bounded_steps(problem, unknowns, np.concatenate(_residuals(unknowns)))
+        return _bounded_steps(problem, unknowns, np.concatenate(_residuals(unknowns)), share)
 
     def _move(unknowns: Unknowns, step: FloatArray) -> Unknowns:
         spheres, displacements, normals = problem.pattern.layout.split(step)
@@ -182,7 +180,7 @@ def minimize_energy(
 
 
 def _bounded_steps(
-    problem: EnergyProblem, unknowns: Unknowns, residuals: FloatArray
+    problem: EnergyProblem, unknowns: Unknowns, residuals: FloatArray, share: float
 ) -> Callable[[float], DampedStep]:
     """
     Steps at a state, by damping, that leave vertices within their bound.
@@ -204,18 +202,18 @@ def _bounded_steps(
     first = _linear(pushed, start)
     if not len(start):
         # Nothing has a bound, and the unprojected entries need not be kept.
-        return partial(damped_step, first)
+        return partial(damped_step, first, share=share)
 
     def _step(damping: float) -> DampedStep:
         held, ends = pushed, start
-        found = damped_step(first, damping)
+        found = damped_step(first, damping, share)
         while True:
             reached = ends + pattern.layout.split(found.step)[Group.VERTEX]
             leaving = ~held & (norm(reached) > freedom.tolerance)
             if not leaving.any():
                 break
             bound = np.where(leaving[:, None], project_displacements(freedom, reached), ends)
-            trial = damped_step(_linear(held | leaving, bound), damping)
+            trial = damped_step(_linear(held | leaving, bound), damping, share)
             if not trial.predicted < energy:
                 # Too many would have to stop at once: a shorter step comes next.
                 break

@@ -15,7 +15,6 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
 
     Returns
     -------
@@ -35,7 +34,6 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
     setting : Setting
         What stays fixed; n_e the sum of the face normals, e the unit vector of the edge.
     unknowns : Unknowns
-        Spheres.
 
     Returns
     -------
@@ -60,9 +58,7 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     unknowns : Unknowns
-        Spheres.
 
     Returns
     -------

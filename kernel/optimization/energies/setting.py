@@ -123,7 +123,6 @@ def energy_setting(
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     edge_weights : (E,) float array
         Weight of the angle over each interior edge.
     target_angle : float
@@ -200,7 +199,6 @@ def first_unknowns(sphere_mesh: SphereMesh) -> Unknowns:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
 
     Returns
     -------

@@ -4,7 +4,7 @@ import numpy as np
 
 from ...arrays import FloatArray, dot
 from ...solvers.blocks import Block
-from ...spheres.rows import evaluate, normals
+from ...spheres.incidence import evaluate, normals
 from .setting import Group, Setting, Unknowns
 
 
@@ -15,7 +15,6 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
 
     Returns
     -------
@@ -37,9 +36,7 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     unknowns : Unknowns
-        Spheres and displacements.
 
     Returns
     -------
@@ -62,9 +59,7 @@ def vertex_misses(setting: Setting, unknowns: Unknowns) -> FloatArray:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     unknowns : Unknowns
-        Spheres and displacements.
 
     Returns
     -------
@@ -81,9 +76,7 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     unknowns : Unknowns
-        Spheres and displacements.
 
     Returns
     -------

@@ -13,7 +13,6 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
 
     Returns
     -------
@@ -35,9 +34,7 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     unknowns : Unknowns
-        Spheres and dual normals.
 
     Returns
     -------
@@ -59,9 +56,7 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     unknowns : Unknowns
-        Spheres and dual normals.
 
     Returns
     -------

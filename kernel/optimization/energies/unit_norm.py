@@ -4,7 +4,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...solvers.blocks import Block
-from ...spheres.rows import minkowski, minkowski_gradient
+from ...spheres.minkowski import minkowski, minkowski_gradient
 from .setting import Group, Setting, Unknowns
 
 
@@ -15,7 +15,6 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
 
     Returns
     -------
@@ -32,9 +31,7 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:  # noqa: ARG0
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     unknowns : Unknowns
-        Spheres.
 
     Returns
     -------
@@ -55,9 +52,7 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  #
     Parameters
     ----------
     setting : Setting
-        What stays fixed.
     unknowns : Unknowns
-        Spheres.
 
     Returns
     -------

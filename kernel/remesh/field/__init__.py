@@ -1,20 +1,15 @@
 """
 Conjugate directions of a congruence, as a smooth field over its mesh.
 
-congruence_mesh  A triangle mesh with a sphere at every vertex, seen in the unit of its mean
-                 edge.
-conjugate        Conjugate directions of a sphere congruence: where two neighbouring spheres
-                 of a net meet.
-directions       Conjugate directions at the vertices of a triangulated sphere congruence.
-frames           Two directions in every triangle, combed over the cut mesh, and their
-                 singularities.
-jets             Second derivatives of a sphere congruence at the vertices of a mesh, by local
-                 polynomials.
-relax            Relaxation of sphere congruences: towards real conjugate nets with upright
-                 node axes.
-smooth_surface   The smooth surface that a triangle mesh stands for, near its vertices a
-                 polynomial.
-smoothing        A field of quadratic forms over a triangle mesh: its signs, and its
-                 smoothing.
-tree_signs       Signs under which neighbours are alike.
+In the order of the steps:
+
+congruence_mesh       Triangles with a sphere at every vertex, in the unit of the mean edge.
+relax                 Before all else, where needed: congruences made fit to remesh.
+jets                  Second derivatives of the spheres at the vertices, by local polynomials.
+smooth_surface        The smooth surface that the same polynomials give.
+conjugate_form        The quadratic form whose roots are the conjugate directions.
+conjugate_directions  The directions themselves, and what nodes to expect.
+smoothing             The signs of the forms, and their smoothing.
+tree_signs            Signs under which neighbours are alike.
+frames                Two directions in every triangle, combed, and their singularities.
 """

@@ -10,7 +10,10 @@ from ...errors import InputError, name_ids
 from ...meshes.curvature import vertex_normals
 from ...meshes.mesh import Mesh, face_centroids, face_vector_areas, mean_edge_length
 from ...meshes.topology import Topology
-from ...spheres.rows import Kind, kind, minkowski, normals, recenter, rescale
+from ...meshes.triangulation import check_triangles
+from ...spheres.incidence import normals
+from ...spheres.minkowski import minkowski
+from ...spheres.rows import Kind, kind, recenter, rescale
 from ...tolerances import DEGENERATE, EPSILON
 from .tree_signs import tree_signs
 
@@ -130,28 +133,6 @@ def tangent_frames(vectors: FloatArray) -> FloatArray:
     axes = np.eye(3)[np.abs(vectors).argmin(axis=1)]
     first = unit(np.cross(vectors, axes))
     return np.stack([first, np.cross(vectors, first), vectors], 1)
-
-
-def check_triangles(mesh: Mesh) -> None:
-    """
-    Refuse meshes of other faces than triangles.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        The mesh.
-
-    Raises
-    ------
-    InputError
-        If a face is no triangle.
-    """
-    bad = np.flatnonzero(mesh.degrees != 3)
-    if len(bad):
-        raise InputError(
-            f"remeshing needs triangles, but faces {name_ids(bad.tolist())} have more corners: "
-            "use triangulate first"
-        )
 
 
 def _checked_areas(mesh: Mesh) -> FloatArray:

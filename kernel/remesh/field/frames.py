@@ -5,30 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import BoolArray, ComplexArray, FloatArray, IntArray, dot, norm, sum_by
-from ...meshes.topology import Topology
+from ...meshes.topology import Topology, previous_corners
+from ...meshes.vertex_fans import VertexFans
 from .congruence_mesh import CongruenceMesh
-from .conjugate import form_roots
+from .conjugate_form import form_roots
 from .smoothing import transport
-
-
-@dataclass(frozen=True)
-class Fans:
-    """
-    Corners around each vertex in counter-clockwise order, from the boundary where there is one.
-
-    Attributes
-    ----------
-    corners : (H,) int array
-        Corners, vertex after vertex.
-    offsets : (V + 1,) int array
-        First corner of each vertex, and H.
-    is_closed : (V,) bool array
-        Whether the last corner is followed by the first.
-    """
-
-    corners: IntArray
-    offsets: IntArray
-    is_closed: BoolArray
 
 
 @dataclass(frozen=True)
@@ -61,67 +42,13 @@ class CombedFrames:
     indices: IntArray
 
 
-def previous_corners(topology: Topology) -> IntArray:
-    """
-    The corner before each corner in its face.
-
-    Parameters
-    ----------
-    topology : Topology
-        The connectivity.
-
-    Returns
-    -------
-    (H,) int array
-        Inverse of `next_corners`.
-    """
-    result = np.empty_like(topology.next_corners)
-    result[topology.next_corners] = np.arange(len(result))
-    return result
-
-
-def vertex_fans(surface: CongruenceMesh) -> Fans:
-    """
-    Order the corners around every vertex.
-
-    Parameters
-    ----------
-    surface : CongruenceMesh
-        The mesh.
-
-    Returns
-    -------
-    Fans
-        The corners around each vertex.
-    """
-    topology = surface.topology
-    tails = surface.triangles.ravel()
-    counts = np.bincount(tails, minlength=len(surface.points))
-    offsets = np.concatenate([[0], np.cumsum(counts)])
-    starts = np.full(len(counts), len(tails))
-    np.minimum.at(starts, tails, np.arange(len(tails)))
-    open_corners = np.flatnonzero(topology.twins < 0)
-    starts[tails[open_corners]] = open_corners
-    following = topology.twins[previous_corners(topology)]
-    corners = np.empty(len(tails), np.int64)
-    current = starts
-    for step in range(int(counts.max())):
-        active = counts > step
-        corners[offsets[:-1][active] + step] = current[active]
-        current = np.where(active, following[current], current)
-    is_closed = np.ones(len(counts), bool)
-    is_closed[tails[open_corners]] = False
-    return Fans(corners, offsets, is_closed)
-
-
-def fan_signs(fans: Fans, signs: FloatArray) -> FloatArray:
+def fan_signs(fans: VertexFans, signs: FloatArray) -> FloatArray:
     """
     Products of signs at the corners before each corner in its fan.
 
     Parameters
     ----------
-    fans : Fans
-        The order of the corners.
+    fans : VertexFans
     signs : (H,) float array
         1 or -1 for every corner.
 
@@ -138,7 +65,11 @@ def fan_signs(fans: Fans, signs: FloatArray) -> FloatArray:
 
 
 def comb_frames(
-    surface: CongruenceMesh, fans: Fans, trace: FloatArray, deviator: ComplexArray, least: float
+    surface: CongruenceMesh,
+    fans: VertexFans,
+    trace: FloatArray,
+    deviator: ComplexArray,
+    least: float,
 ) -> CombedFrames:
     """
     Directions in the faces from forms at the vertices.
@@ -146,9 +77,7 @@ def comb_frames(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
-    fans : Fans
-        Corners around its vertices.
+    fans : VertexFans
     trace : (V,) float array
         Means of the forms.
     deviator : (V,) complex array
@@ -230,7 +159,7 @@ def _comb(topology: Topology, signs: FloatArray) -> tuple[BoolArray, FloatArray]
 
 def _indices(
     surface: CongruenceMesh,
-    fans: Fans,
+    fans: VertexFans,
     middle: FloatArray,
     signs: FloatArray,
     passage: FloatArray,

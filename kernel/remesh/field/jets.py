@@ -74,7 +74,6 @@ def fit_jets(surface: CongruenceMesh, degree: int | None = None, rings: int = 4)
     Parameters
     ----------
     surface : CongruenceMesh
-        The congruence.
     degree : int, optional
         Degree of the polynomials, from 2 to 7; by default that of `DEGREES` with the least
         expected error.
@@ -267,14 +266,13 @@ def _noise(samples: _Samples) -> FloatArray:
     return (left**2).sum(axis=(1, 2)) / freedom
 
 
-def node_axes(jets: CongruenceJets) -> FloatArray:
+def expected_node_axes(jets: CongruenceJets) -> FloatArray:
     """
     Directions of the node axes that the congruence predicts: normals of the centre surface.
 
     Parameters
     ----------
     jets : CongruenceJets
-        The congruence.
 
     Returns
     -------

@@ -22,9 +22,11 @@ from ...arrays import FloatArray, dot, norm
 from ...errors import ConvergenceError, InputError, name_ids
 from ...meshes.curvature import principal_curvatures
 from ...meshes.mesh import Mesh, face_centroids, face_vector_areas, mean_edge_length
-from ...spheres.rows import minkowski, recenter, rescale
+from ...meshes.triangulation import check_triangles
+from ...spheres.minkowski import minkowski
+from ...spheres.rows import recenter, rescale
 from ...tolerances import BLEND_STEP, FLATTEST
-from .congruence_mesh import CongruenceMesh, check_triangles, congruence_mesh
+from .congruence_mesh import CongruenceMesh, congruence_mesh
 
 SHARPER = 2.0
 """Curvature of the spheres of constant radius, relative to the sharpest of the surface."""
@@ -86,7 +88,6 @@ def relax_congruence(
     Parameters
     ----------
     mesh : Mesh
-        Triangles.
     spheres : (V, 5) array_like of float
         Real rows of the spheres at the vertices, planes included, near the surface there.
     complex_share : callable
@@ -172,7 +173,6 @@ def axis_angle(mesh: Mesh, spheres: FloatArray) -> float:
     Parameters
     ----------
     mesh : Mesh
-        Triangles.
     spheres : (V, 5) float array
         Rows of the spheres at the vertices.
 

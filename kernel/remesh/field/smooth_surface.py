@@ -36,7 +36,6 @@ def nearest_triangles(
     Parameters
     ----------
     surface : CongruenceMesh
-        The triangles.
     points : (n, 3) float array
         Points.
 
@@ -64,7 +63,6 @@ def surface_heights(
     Parameters
     ----------
     surface : SmoothSurface
-        The surface.
     points : (n, 3) float array
         Points near it.
 

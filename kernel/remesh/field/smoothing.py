@@ -51,7 +51,6 @@ def orient_forms(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     trace : (V,) float array
         Means of the forms.
     deviator : (V,) complex array
@@ -115,7 +114,6 @@ def smooth_forms(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     trace : (V,) float array
         Means of the forms.
     deviator : (V,) complex array

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import BoolArray, FloatArray, IntArray, dot, norm
+from ...meshes.vertex_fans import VertexFans
 from ..field.congruence_mesh import CongruenceMesh
-from ..field.frames import CombedFrames, Fans
+from ..field.frames import CombedFrames
 from .seams import Seams
 
 CORNER = np.radians(40)
@@ -48,16 +49,14 @@ class Alignment:
     n_sides: int
 
 
-def next_on_boundary(surface: CongruenceMesh, fans: Fans) -> IntArray:
+def next_on_boundary(surface: CongruenceMesh, fans: VertexFans) -> IntArray:
     """
     The following half-edge along the boundary.
 
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     fans : Fans
-        Corners around its vertices.
 
     Returns
     -------
@@ -76,7 +75,6 @@ def boundary_corners(surface: CongruenceMesh, following: IntArray) -> BoolArray:
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     following : (H,) int array
         The next half-edge along the boundary, or -1.
 
@@ -97,7 +95,7 @@ def boundary_corners(surface: CongruenceMesh, following: IntArray) -> BoolArray:
 
 def align_boundary(
     surface: CongruenceMesh,
-    fans: Fans,
+    fans: VertexFans,
     frames: CombedFrames,
     seams: Seams,
     edge_length: float,
@@ -108,13 +106,9 @@ def align_boundary(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     fans : Fans
-        Corners around its vertices.
     frames : CombedFrames
-        The directions.
     seams : Seams
-        How the faces are tied.
     edge_length : float
         Length of a unit step, in mean edges.
 

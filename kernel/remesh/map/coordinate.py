@@ -12,7 +12,7 @@ from ...arrays import BoolArray, FloatArray, IntArray
 from ...solvers.factorization import SparseArray, factorize_symmetric
 from ..field.congruence_mesh import CongruenceMesh
 from .boundary_alignment import Alignment
-from .integers import IntegerSolutions, Quadratic, relaxed_minimum, round_minimum
+from .integer_rounding import IntegerSolutions, Quadratic, relaxed_minimum, round_minimum
 from .seams import Seams
 
 ACROSS = 100.0
@@ -85,9 +85,7 @@ def eliminate(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     seams : Seams
-        How its faces are tied.
     alignment : Alignment
         Boundary vertices at which the coordinate is given by integers.
     along, across : (F, 3) float array
@@ -139,7 +137,6 @@ def solve_coordinate(
     Parameters
     ----------
     coordinate : Coordinate
-        The problem.
     solutions : IntegerSolutions
         The integers that are allowed.
     n_first : int

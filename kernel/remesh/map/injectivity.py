@@ -20,8 +20,8 @@ REACHES = (1.0, 2.0, 4.0)
 SOFTNESS = 0.2
 """Width of the barrier against folds, relative to the worst of them."""
 
-MAX_ROUNDS = 20
-MAX_STEPS = 12
+UNFOLDING_ROUNDS = 20
+UNFOLDING_STEPS = 12
 
 
 @dataclass(frozen=True)
@@ -149,9 +149,7 @@ def untangle(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     charts : ChartGradients
-        The map.
     start : (V, 2) float array
         Coordinates of the vertices.
     is_fixed : (V, 2) bool array
@@ -193,7 +191,7 @@ def _unfold(part: ChartGradients, start: FloatArray, free: BoolArray) -> FloatAr
     """Minimise a distortion that grows without bound as a face loses its area."""
     values = start
     last = np.inf
-    for _ in range(MAX_ROUNDS):
+    for _ in range(UNFOLDING_ROUNDS):
         least = float(part.determinants(values).min())
         softness = float(np.sqrt(FOLD_SMOOTHING**2 + (SOFTNESS * min(least, 0.0)) ** 2))
         values, energy = _newton(part, values, free, softness)
@@ -243,7 +241,7 @@ def _newton(
         moved[free] += step
         return moved
 
-    found = levenberg_marquardt(start, _energies, _linearize, _move, FOLD_STEP, MAX_STEPS)
+    found = levenberg_marquardt(start, _energies, _linearize, _move, FOLD_STEP, UNFOLDING_STEPS)
     return found.state, float(found.history[-1, 0])
 
 

@@ -13,12 +13,13 @@ import numpy as np
 
 from ...arrays import BoolArray, FloatArray
 from ...errors import InputError
+from ...meshes.vertex_fans import VertexFans
 from ..field.congruence_mesh import CongruenceMesh
-from ..field.frames import CombedFrames, Fans
+from ..field.frames import CombedFrames
 from .boundary_alignment import Alignment, align_boundary, no_alignment
 from .coordinate import Coordinate, eliminate, solve_coordinate
 from .injectivity import ChartGradients, untangle
-from .integers import ContradictionError, IntegerSolutions, integer_solutions
+from .integer_rounding import ContradictionError, IntegerSolutions, integer_solutions
 from .seams import Seams
 from .separation import singular_differences
 
@@ -53,7 +54,11 @@ class Parametrization:
 
 
 def parametrize(
-    surface: CongruenceMesh, fans: Fans, frames: CombedFrames, seams: Seams, edge_length: float
+    surface: CongruenceMesh,
+    fans: VertexFans,
+    frames: CombedFrames,
+    seams: Seams,
+    edge_length: float,
 ) -> Parametrization:
     """
     Map the cut mesh so that unit steps follow the directions with a given length.
@@ -61,13 +66,9 @@ def parametrize(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     fans : Fans
-        Corners around its vertices.
     frames : CombedFrames
-        The directions.
     seams : Seams
-        How the faces are tied.
     edge_length : float
         Length of a unit step, in mean edges.
 
@@ -134,9 +135,7 @@ def chart_gradients(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     frames : CombedFrames
-        The directions.
     edge_length : float
         Length of a unit step, in mean edges.
 

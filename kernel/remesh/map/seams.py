@@ -13,9 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import FloatArray, IntArray
+from ...meshes.topology import previous_corners
+from ...meshes.vertex_fans import VertexFans
 from ...solvers.factorization import SparseArray, factorize
 from ..field.congruence_mesh import CongruenceMesh
-from ..field.frames import CombedFrames, Fans, fan_signs, previous_corners
+from ..field.frames import CombedFrames, fan_signs
 
 
 @dataclass(frozen=True)
@@ -47,16 +49,14 @@ class Seams:
     is_free: bool
 
 
-def find_seams(surface: CongruenceMesh, fans: Fans, frames: CombedFrames) -> Seams:
+def find_seams(surface: CongruenceMesh, fans: VertexFans, frames: CombedFrames) -> Seams:
     """
     Solve the conservation of shifts around all vertices.
 
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     fans : Fans
-        Corners around its vertices.
     frames : CombedFrames
         Signs across edges, seams and singular vertices.
 
@@ -102,7 +102,7 @@ def _seam_edges(
 
 
 def _spanning_tree(
-    surface: CongruenceMesh, fans: Fans, ends: IntArray, singular: IntArray
+    surface: CongruenceMesh, fans: VertexFans, ends: IntArray, singular: IntArray
 ) -> tuple[int, IntArray]:
     """Root (V for the boundary) and the seam edge to the parent of each vertex, or -1."""
     from scipy.sparse import csr_array
@@ -126,7 +126,7 @@ def _spanning_tree(
 
 def _conserve(
     surface: CongruenceMesh,
-    fans: Fans,
+    fans: VertexFans,
     after: FloatArray,
     steps: SparseArray,
     tree: tuple[int, IntArray],
@@ -165,7 +165,7 @@ def _conserve(
 
 
 def _corner_shifts(
-    fans: Fans, signs: FloatArray, steps: SparseArray, flows: SparseArray
+    fans: VertexFans, signs: FloatArray, steps: SparseArray, flows: SparseArray
 ) -> SparseArray:
     """Shift of each corner against the first of its fan, (H, m)."""
     from scipy.sparse import csr_array

@@ -21,9 +21,7 @@ def singular_differences(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     seams : Seams
-        How the coordinates of its faces are tied.
     edge_length : float
         Length of a unit step, in mean edges.
 

@@ -12,9 +12,9 @@ import numpy as np
 
 from ...arrays import BoolArray, FloatArray, IntArray
 from ...errors import ConvergenceError
+from ...meshes.vertex_fans import VertexFans
 from ...tolerances import LATTICE_TIE
 from ..field.congruence_mesh import CongruenceMesh
-from ..field.frames import Fans
 from ..map.injectivity import ChartGradients
 
 
@@ -86,16 +86,16 @@ class Meetings(NamedTuple):
     weights: FloatArray
 
 
-def corner_coordinates(fans: Fans, charts: ChartGradients, values: FloatArray) -> FloatArray:
+def corner_coordinates(
+    fans: VertexFans, charts: ChartGradients, values: FloatArray
+) -> FloatArray:
     """
     Coordinates of the corners with no vertex on a line.
 
     Parameters
     ----------
     fans : Fans
-        Corners around the vertices.
     charts : ChartGradients
-        The map.
     values : (V, 2) float array
         Coordinates of the vertices.
 
@@ -120,7 +120,6 @@ def edge_crossings(surface: CongruenceMesh, corners: FloatArray) -> EdgeCrossing
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     corners : (H, 2) float array
         Coordinates of the corners, none on a line.
 
@@ -161,13 +160,11 @@ def face_segments(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     corners : (H, 2) float array
         Coordinates of the corners, none on a line.
     signs : (H,) float array
         Sign between the charts on both sides of each half-edge.
     crossings : EdgeCrossings
-        The crossings.
 
     Returns
     -------

@@ -11,8 +11,9 @@ import numpy as np
 
 from ...arrays import BoolArray, FloatArray, IntArray
 from ...errors import ConvergenceError
+from ...meshes.vertex_fans import VertexFans
 from ..field.congruence_mesh import CongruenceMesh
-from ..field.frames import CombedFrames, Fans
+from ..field.frames import CombedFrames
 from ..map.boundary_alignment import boundary_corners, next_on_boundary
 from ..map.parametrization import Parametrization
 from .crossings import (
@@ -60,7 +61,7 @@ class _Rim(NamedTuple):
 
 
 def extract_net(
-    surface: CongruenceMesh, fans: Fans, frames: CombedFrames, mapped: Parametrization
+    surface: CongruenceMesh, fans: VertexFans, frames: CombedFrames, mapped: Parametrization
 ) -> Net:
     """
     Trace the lines at whole numbers and a half, and the cells between them.
@@ -68,13 +69,10 @@ def extract_net(
     Parameters
     ----------
     surface : CongruenceMesh
-        The mesh.
     fans : Fans
-        Corners around its vertices.
     frames : CombedFrames
         Signs between the charts of neighbouring faces.
     mapped : Parametrization
-        The map.
 
     Returns
     -------
@@ -166,7 +164,9 @@ def _wires(
     return partners
 
 
-def _boundary_points(surface: CongruenceMesh, fans: Fans, crossings: EdgeCrossings) -> _Rim:
+def _boundary_points(
+    surface: CongruenceMesh, fans: VertexFans, crossings: EdgeCrossings
+) -> _Rim:
     tails = surface.triangles.ravel()
     following = next_on_boundary(surface, fans)
     is_corner = boundary_corners(surface, following)

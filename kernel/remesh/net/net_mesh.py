@@ -55,7 +55,6 @@ def net_mesh(net: Net, edge_length: float) -> NetMesh:
     Parameters
     ----------
     net : Net
-        The cells.
     edge_length : float
         Length of a step of the net.
 

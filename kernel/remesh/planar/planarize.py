@@ -1,11 +1,7 @@
 """
-Planarisation: sphere meshes whose nodes are free of torsion.
+Planarisation: sphere meshes whose nodes are free of torsion, where they are or on a surface.
 
-The planes of the circles around a node meet in a line, the node axis, exactly if the spheres
-span a subspace of dimension 3 in R⁵ and pass through the node: then the mesh of spheres has
-planar faces in P⁴.
-
-Nothing but the constraints is minimised. There are about two of them less than unknowns for
+Nothing but the conditions is minimised. There are about two of them less than unknowns for
 every face, and of all Gauss-Newton steps the damping picks the least one: what keeps a net near
 its start and fair is the norm that the damping uses, not a term of the energy. Such terms would
 end in a compromise, in which it is cheaper for two spheres of a short edge to become one than
@@ -18,18 +14,25 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...arrays import BoolArray, FloatArray, batches_by_count, dot, norm, sum_by, unit
+from ...arrays import FloatArray, dot, norm, sum_by
 from ...errors import InputError
-from ...meshes.mesh import Mesh, face_vector_areas, local_corners, mean_edge_length
+from ...meshes.mesh import Mesh, face_vector_areas, mean_edge_length, shortest_edge
 from ...solvers.levenberg_marquardt import Descent, Status, levenberg_marquardt
 from ...sphere_meshes.sphere_mesh import SphereMesh
 from ...spheres.rows import recenter, rescale
-from ...tolerances import DEGENERATE, NODE_EXACT
+from ...tolerances import NODE_EXACT, ON_SURFACE
 from ..field.smooth_surface import SmoothSurface
-from .node_sites import Site, on_surface
-from .step_norm import StepNorm, step_norm
-from .steps import linearize
-from .system import Net, PlanarSystem, energies, move, must_be_planar, planar_system
+from .conditions import (
+    NetState,
+    PlanarSystem,
+    Site,
+    energies,
+    move,
+    node_distances,
+    on_surface,
+    planar_system,
+)
+from .steps import StepNorm, linearize, step_norm
 
 STEPS = 60
 """Largest number of linear systems."""
@@ -39,6 +42,18 @@ RIM_STEPS = 2
 
 APPROACH = 0.5
 """The approach to a surface ends when a step does not halve what is missed."""
+
+RIM_WEIGHTS = (1.0, 0.5, 0.3, 0.2, 0.1, 0.0)
+"""How much the boundary counts: less where a net cannot meet it, down to nothing."""
+
+KEPT_EDGE = 0.5
+"""Share of its shortest edge that a net must keep to be held on its surface."""
+
+SHORT_EDGE = 0.2
+"""Edges shorter than this share of the mean are short: no net may get such."""
+
+FARTHEST = 0.75
+"""Mean edges by which its nodes may move at most."""
 
 
 @dataclass(frozen=True)
@@ -62,33 +77,6 @@ class Planarization:
     shifts: FloatArray
     status: Status
     iterations: int
-
-
-@dataclass(frozen=True)
-class Nodes:
-    """
-    What the spheres around each node have in common.
-
-    Attributes
-    ----------
-    is_inner : (V,) bool array
-        Nodes inside the mesh.
-    planarity : (V,) float array
-        Fourth singular value of the rows seen from the node, relative to the first; zero for
-        less than four spheres.
-    axes : (V, 3) float array
-        Unit directions of the node axes, through both common points; NaN where there is none:
-        where spheres share a circle or all of them are planes, and at the nodes of the
-        boundary with less than four faces.
-    is_real : (V,) bool array
-        Whether the spheres meet in two real points, by least squares; False where the boundary
-        has no axis.
-    """
-
-    is_inner: BoolArray
-    planarity: FloatArray
-    axes: FloatArray
-    is_real: BoolArray
 
 
 def planarize(
@@ -171,8 +159,8 @@ def _approach(mesh: Mesh, surface: SmoothSurface, rim_weight: float) -> list[tup
 
 
 def _descend(
-    system: PlanarSystem, start: Net, size: StepNorm, steps: int, tolerance: float
-) -> Descent[Net]:
+    system: PlanarSystem, start: NetState, size: StepNorm, steps: int, tolerance: float
+) -> Descent[NetState]:
     return levenberg_marquardt(
         start,
         lambda net: energies(system, net),
@@ -183,7 +171,7 @@ def _descend(
     )
 
 
-def _assembled(system: PlanarSystem, net: Net) -> SphereMesh:
+def _assembled(system: PlanarSystem, net: NetState) -> SphereMesh:
     mesh, faces = system.mesh, system.mesh.topology.corner_faces
     size = mean_edge_length(mesh)
     drift = sum_by(faces, net.shifts[mesh.corners], mesh.n_faces) / mesh.degrees[:, None]
@@ -192,85 +180,65 @@ def _assembled(system: PlanarSystem, net: Net) -> SphereMesh:
     return SphereMesh.from_local(moved, rows)
 
 
-def measure_nodes(sphere_mesh: SphereMesh) -> Nodes:
+def planarize_held(
+    sphere_mesh: SphereMesh, surface: SmoothSurface, fairness: float = 1.0
+) -> tuple[Planarization, bool]:
     """
-    Planarity, axes and reality of the nodes of a sphere mesh.
+    Make nodes planar and keep them on a surface if the net stays a net.
 
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
+    surface : SmoothSurface
+        The surface that the net was made on.
+    fairness : float
+        As in `planarize`.
 
     Returns
     -------
-    Nodes
-        By least squares where the nodes are not planar.
+    result : Planarization
+        The planarised net.
+    is_held : bool
+        Whether the nodes inside lie on the surface: else, as around singular points, edges
+        would shrink or faces turn over.
 
-    Notes
-    -----
-    The spheres orthogonal to those of a node are a pencil. Its plane holds their centres: the
-    axis is normal to it. Its points, null vectors of the product, are the common points.
-
-    References
-    ----------
-    Meshes with Spherical Faces, Prop. 4.2 and 4.3.
+    Raises
+    ------
+    InputError
+        If the fairness is negative or not finite.
     """
-    mesh = sphere_mesh.mesh
-    size = mean_edge_length(mesh)
-    local = rescale(sphere_mesh.local_spheres, 1 / size)[mesh.topology.corner_faces]
-    rows = recenter(local, local_corners(mesh) / size)
-    planarity = np.zeros(mesh.n_vertices)
-    axes = np.full((mesh.n_vertices, 3), np.nan)
-    is_real = np.zeros(mesh.n_vertices, np.bool_)
-    is_planar = must_be_planar(mesh)
-    for group, around in batches_by_count(mesh.corners, mesh.n_vertices):
-        if around.shape[1] < 3:
-            continue
-        nodes, corners = group[is_planar[group]], around[is_planar[group]]
-        _, values, basis = np.linalg.svd(rows[corners])
-        if values.shape[1] > 3:
-            planarity[nodes] = values[:, 3] / values[:, 0]
-        is_full = values[:, 2] > DEGENERATE * values[:, 0]
-        # Forms on rows; the first and last coefficients trade places in the sphere they stand
-        # for, so that without a last coefficient it is a plane.
-        first, second = basis[:, 3], basis[:, 4]
-        plane = second[:, 4:] * first[:, 1:4] - first[:, 4:] * second[:, 1:4]
-        has_axis = is_full & (norm(plane) > DEGENERATE)
-        axes[nodes[has_axis]] = unit(plane[has_axis])
-        mixed = _form(first, second)
-        is_real[nodes] = is_full & (mixed**2 > _form(first, first) * _form(second, second))
-    return Nodes(~mesh.topology.is_boundary_vertex, planarity, axes, is_real)
+    for rim_weight in RIM_WEIGHTS:
+        held = planarize(sphere_mesh, fairness, surface, rim_weight)
+        if _is_held(sphere_mesh.mesh, held, surface):
+            return held, True
+    return planarize(sphere_mesh, fairness), False
 
 
-def _form(first: FloatArray, second: FloatArray) -> FloatArray:
-    """Minkowski product of the spheres that linear forms of rows stand for."""
-    ends = first[:, 0] * second[:, 4] + first[:, 4] * second[:, 0]
-    return dot(first[:, 1:4], second[:, 1:4]) - ends / 2
+def _is_held(before: Mesh, held: Planarization, surface: SmoothSurface) -> bool:
+    after = held.sphere_mesh.mesh
+    inner = ~after.topology.is_boundary_vertex
+    return bool(
+        held.status == "converged"
+        and held.shifts.max() <= FARTHEST
+        and node_distances(surface, after)[inner].max(initial=0.0) <= ON_SURFACE
+        and is_kept(before, after)
+    )
 
 
-def axis_angles(sphere_mesh: SphereMesh, nodes: Nodes) -> FloatArray:
+def is_kept(before: Mesh, after: Mesh) -> bool:
     """
-    Angles between the node axes and the normals of the mesh.
+    Whether a net is still a net.
 
     Parameters
     ----------
-    sphere_mesh : SphereMesh
-        The sphere mesh.
-    nodes : Nodes
-        Measures of its nodes.
+    before, after : Mesh
 
     Returns
     -------
-    (V,) float array
-        Radians from 0 to π/2; NaN where there is no axis, or no normal since faces fold back.
-
-    Notes
-    -----
-    The normals are sums of the vector areas of faces: nets that went wrong have them as well.
+    bool
+        False if a face turned over or edges became too short.
     """
-    mesh = sphere_mesh.mesh
-    areas = face_vector_areas(mesh)[mesh.topology.corner_faces]
-    normals = unit(sum_by(mesh.corners, areas, mesh.n_vertices))
-    across = norm(np.cross(nodes.axes, normals))
-    angles = np.arctan2(across, np.abs(dot(nodes.axes, normals)))
-    return np.where(norm(normals) > 0, angles, np.nan)
+    turned = dot(face_vector_areas(before), face_vector_areas(after)) <= 0
+    first, last = shortest_edge(before), shortest_edge(after)
+    least = max(KEPT_EDGE * first, min(first, SHORT_EDGE * mean_edge_length(after)))
+    return not turned.any() and last >= least

@@ -1,6 +1,7 @@
 """The audit: every code on a panel that deserves it, and on no other."""
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -15,23 +16,10 @@ from spheremesh.kernel.panels.panels import Panels, scale_panels
 from spheremesh.kernel.parts.findings import Finding, findings_report, rejected_report
 from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.fit import face_planes
-from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
 
 
-def curved(mesh: Mesh, angles: list[float]) -> SphereMesh:
-    planes, great_spheres = circle_pencils(face_circles(mesh)[0])
-    return SphereMesh.from_local(mesh, pencil_spheres(planes, great_spheres, np.array(angles)))
-
-
-def squares(*angles: float) -> SphereMesh:
-    """Unit squares in a row, under spheres of the given half openings."""
-    count = len(angles)
-    points = [[x, y, 0.0] for x in range(count + 1) for y in (0, 1)]
-    faces = [[2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1] for i in range(count)]
-    return curved(Mesh(points, faces), list(angles))
-
-
-def sound() -> Panels:
+@pytest.fixture(scope="module")
+def sound(squares: Callable[..., SphereMesh]) -> Panels:
     return cut_panels(squares(0.2, 0.2, 0.2), thickness=0.05, joint_gap=0.01)[0]
 
 
@@ -39,25 +27,27 @@ def codes(findings: tuple[Finding, ...]) -> set[tuple[str, str]]:
     return {(finding.code, finding.id) for finding in findings}
 
 
-def test_sound_panels_have_no_findings() -> None:
-    assert audit_model(Model(sound())) == ()
+def test_sound_panels_have_no_findings(sound: Panels) -> None:
+    assert audit_model(Model(sound)) == ()
     assert findings_report(()) == {"counts": {}, "errors": [], "notes": []}
 
 
-def test_names_numbers_and_refusals_are_errors() -> None:
-    twice = replace(sound(), ids=("A", "B", "A"))
+def test_names_numbers_and_refusals_are_errors(
+    squares: Callable[..., SphereMesh], sound: Panels
+) -> None:
+    twice = replace(sound, ids=("A", "B", "A"))
     assert codes(audit_model(Model(twice))) == {("P001", "A")}
-    corners = sound().corners.copy()
+    corners = sound.corners.copy()
     corners[5] = np.nan
-    broken = audit_model(Model(replace(sound(), corners=corners)))
+    broken = audit_model(Model(replace(sound, corners=corners)))
     assert codes(broken) == {("P002", "P0001")}
     for name, row, panel in (
         ("origins", 1, 1), ("design_spheres", 2, 2), ("thicknesses", 0, 0),
         ("plane_offsets", 9, 2), ("inner_corners", 0, 0),
     ):  # fmt: skip
-        values = getattr(sound(), name).copy()
+        values = getattr(sound, name).copy()
         values[row] = np.inf
-        broken = replace(sound(), **{name: values})
+        broken = replace(sound, **{name: values})
         assert codes(audit_model(Model(broken))) == {("P002", f"P000{panel}")}
     panels, rejected = cut_panels(squares(0.2, 1.5, 0.2))
     findings = audit_model(Model(panels), rejected=rejected_report(rejected))
@@ -68,7 +58,7 @@ def test_names_numbers_and_refusals_are_errors() -> None:
     assert {f.severity for f in findings if f.code > "P102"} == {"note"}
 
 
-def test_caps_beyond_80_degrees_are_errors() -> None:
+def test_caps_beyond_80_degrees_are_errors(squares: Callable[..., SphereMesh]) -> None:
     """Cutting refuses them: a cap that grew afterwards."""
     panels, _ = cut_panels(squares(1.2))
     assert audit_model(Model(panels)) == ()
@@ -94,7 +84,9 @@ def test_sharp_corners_and_short_edges_are_notes() -> None:
     assert findings[0].size == pytest.approx(np.degrees(np.arctan(0.2)))
 
 
-def test_thick_panels_and_other_thicknesses_are_notes() -> None:
+def test_thick_panels_and_other_thicknesses_are_notes(
+    squares: Callable[..., SphereMesh],
+) -> None:
     # Radius sqrt(0.5) / sin(0.2) = 3.56, the smaller one of a dish.
     panels, _ = cut_panels(squares(0.2), thickness=0.8)
     (found,) = audit_model(Model(panels))
@@ -108,7 +100,7 @@ def test_thick_panels_and_other_thicknesses_are_notes() -> None:
     np.testing.assert_allclose([f.size for f in notes], 1000 * panels.thicknesses)
 
 
-def test_tilted_walls_and_large_blanks_are_notes() -> None:
+def test_tilted_walls_and_large_blanks_are_notes(squares: Callable[..., SphereMesh]) -> None:
     """A single panel is cut by planes through its centre, which the joint moves off it."""
     panels, _ = cut_panels(squares(0.9), joint_gap=0.4)
     radius = np.sqrt(0.5) / np.sin(0.9)
@@ -127,7 +119,7 @@ def test_tilted_walls_and_large_blanks_are_notes() -> None:
     assert found.size == pytest.approx(1000 * np.sqrt(2), rel=1e-9)
 
 
-def test_steps_to_neighbours_are_notes() -> None:
+def test_steps_to_neighbours_are_notes(squares: Callable[..., SphereMesh]) -> None:
     panels, _ = cut_panels(squares(0.1, 0.3, 0.1))
     findings = audit_model(Model(panels))
     assert codes(findings) == {("P201", f"P000{i}") for i in range(3)}
@@ -138,7 +130,9 @@ def test_steps_to_neighbours_are_notes() -> None:
 
 
 @pytest.mark.parametrize(("units", "scale"), [("mm", 1000), ("ft", 1 / 0.3048)])
-def test_law_findings_do_not_depend_on_units(units: str, scale: float) -> None:
+def test_law_findings_do_not_depend_on_units(
+    squares: Callable[..., SphereMesh], units: str, scale: float
+) -> None:
     panels, rejected = cut_panels(squares(0.1, 0.35, 1.5), thickness=0.6)
     expected = audit_model(Model(panels), rejected=rejected_report(rejected))
     found = audit_model(
@@ -150,16 +144,16 @@ def test_law_findings_do_not_depend_on_units(units: str, scale: float) -> None:
         assert a.size == (pytest.approx(b.size, rel=1e-9) if b.size is not None else None)
 
 
-def test_no_panels_are_audited_too() -> None:
+def test_no_panels_are_audited_too(squares: Callable[..., SphereMesh], sound: Panels) -> None:
     panels, rejected = cut_panels(squares(1.5))
     assert panels.n_panels == 0
     assert codes(audit_model(Model(panels), rejected=rejected_report(rejected))) == {
         ("P100", "P0000")
     }
-    assert audit_model(Model(select_parts(sound(), np.zeros(3, bool)))) == ()
+    assert audit_model(Model(select_parts(sound, np.zeros(3, bool)))) == ()
 
 
-def test_reports_are_plain_and_sorted() -> None:
+def test_reports_are_plain_and_sorted(squares: Callable[..., SphereMesh]) -> None:
     panels, rejected = cut_panels(squares(0.1, 0.35, 1.5), thickness=0.6)
     findings = audit_model(Model(panels), rejected=rejected_report(rejected))
     report = findings_report(findings)

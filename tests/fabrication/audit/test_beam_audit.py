@@ -15,10 +15,10 @@ from spheremesh.kernel.beams.beams import Beams, scale_beams
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.beams.drilling import drill_beams
 from spheremesh.kernel.beams.facts import beam_facts
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.parts.findings import Finding, findings_report, rejected_report
 from spheremesh.kernel.parts.records import select_parts
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.support.annulus_support import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net

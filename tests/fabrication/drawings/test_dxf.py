@@ -22,7 +22,7 @@ from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.beams.drilling import drill_beams
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.parts.records import select_parts
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.arcs import arc_circles
 from spheremesh.kernel.support.annulus_support import annulus_support

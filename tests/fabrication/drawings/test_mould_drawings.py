@@ -1,5 +1,6 @@
 """Drawings of moulds: read back by ezdxf and by an XML parser."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
@@ -13,8 +14,6 @@ from spheremesh.fabrication.drawings.moulds import layout_moulds, write_mould_dr
 from spheremesh.fabrication.model import Model
 from spheremesh.kernel.arrays import norm
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.optimization.clustering import cluster_radii
-from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.mould_blanks import panel_caps
 from spheremesh.kernel.panels.panels import Panels
@@ -24,10 +23,8 @@ from spheremesh.kernel.surfaces.circular_nets import vase_net
 
 
 @pytest.fixture(scope="module")
-def panels() -> Panels:
-    found = minimize_angles(face_planes(vase_net(12, 6, 1.0, 2.0, 0.3)))[0]
-    found, clusters = cluster_radii(found, 3)
-    return cut_panels(found, "bisector", 0.02, 0.005, clusters.labels)[0]
+def panels(moulded: Callable[..., Panels]) -> Panels:
+    return moulded(face_planes(vase_net(12, 6, 1.0, 2.0, 0.3)), 0.02, 0.005)
 
 
 def test_dxf_is_sound_and_complete(panels: Panels, tmp_path: Path) -> None:

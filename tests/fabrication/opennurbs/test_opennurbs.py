@@ -11,11 +11,13 @@ import numpy as np
 import pytest
 import rhino3dm
 
-from spheremesh.fabrication.opennurbs.brep_audit import verify_brep_bytes, verify_breps
-from spheremesh.fabrication.opennurbs.brep_layout import BrepLayout, UnreadableError, parse_brep
-from spheremesh.fabrication.opennurbs.chunks import CRC
-from spheremesh.fabrication.opennurbs.panel_breps import brep_streams, edge_streams
+from spheremesh.fabrication.opennurbs.brep_audit import BrepErrors, verify_breps
+from spheremesh.fabrication.opennurbs.brep_layout import BrepLayout
+from spheremesh.fabrication.opennurbs.brep_reader import parse_brep
+from spheremesh.fabrication.opennurbs.brep_writer import brep_streams, edge_streams
 from spheremesh.fabrication.opennurbs.render_meshes import panel_meshes
+from spheremesh.fabrication.opennurbs.stream_codes import CRC
+from spheremesh.fabrication.opennurbs.stream_reader import UnreadableError
 from spheremesh.kernel.arrays import FloatArray, IntArray
 from spheremesh.kernel.meshes.mesh import Mesh
 from spheremesh.kernel.panels.cutting import EdgeMode, cut_panels
@@ -24,7 +26,7 @@ from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres.arcs import arc_points
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
-from spheremesh.kernel.spheres.rows import normals, signed_distance
+from spheremesh.kernel.spheres.incidence import normals, signed_distance
 from spheremesh.kernel.surfaces.circular_nets import roof_net, vase_net
 
 Change: TypeAlias = Callable[[FloatArray], FloatArray]
@@ -227,16 +229,23 @@ def resealed(stream: bytes, layout: BrepLayout) -> bytes:
     return bytes(data)
 
 
+def errors_of(
+    stream: bytes, sphere: FloatArray | None = None, origin: FloatArray | None = None
+) -> BrepErrors:
+    spheres, origins = (None if x is None else x[None] for x in (sphere, origin))
+    return verify_breps([stream], spheres, origins)[0]
+
+
 def reason(panels: Panels, stream: bytes) -> str:
-    return verify_brep_bytes(stream, panels.spheres[0], panels.origins[0]).reason()
+    return errors_of(stream, panels.spheres[0], panels.origins[0]).reason()
 
 
 def test_specimen_is_sound(specimen: Specimen) -> None:
     panels, stream = specimen
     assert resealed(stream, parse_brep(stream)) == stream
     assert changed(stream, parse_brep(stream).sides[0].start, lambda x: x) == stream
-    assert verify_brep_bytes(stream).reason() == ""
-    assert verify_brep_bytes(stream, panels.spheres[0], panels.origins[0]).reason() == ""
+    assert errors_of(stream).reason() == ""
+    assert errors_of(stream, panels.spheres[0], panels.origins[0]).reason() == ""
 
 
 def test_moved_vertex(specimen: Specimen) -> None:
@@ -288,7 +297,7 @@ def test_patch_of_another_pole(specimen: Specimen) -> None:
 
     found = reason(panels, changed(stream, surface.points, turned, count))
     assert "a trim leaves its edge" in found
-    errors = verify_brep_bytes(
+    errors = errors_of(
         changed(stream, surface.points, turned, count), panels.spheres[0], panels.origins[0]
     )
     assert errors.to_sphere < 1e-14 / abs(panels.spheres[0, 0])
@@ -337,7 +346,7 @@ def test_open_loop(specimen: Specimen) -> None:
     panels, stream = specimen
     place = parse_brep(stream).sides[0].trim.points
     assert reason(panels, changed(stream, place, lambda x: x + 1e-9))
-    apart = verify_brep_bytes(changed(stream, place, lambda x: x + 1e-3))
+    apart = errors_of(changed(stream, place, lambda x: x + 1e-3))
     assert apart.trim_to_vertex > 1e-4
 
 
@@ -357,22 +366,22 @@ def test_reversed_loop(specimen: Specimen) -> None:
     panels, _ = specimen
     mirrored = Panels(**{**vars(panels), "spheres": -panels.spheres})
     stream = brep_streams(mirrored)[0]
-    assert verify_brep_bytes(stream).reason() == "the loop runs clockwise"
+    assert errors_of(stream).reason() == "the loop runs clockwise"
     assert decode(stream).IsValid
 
 
 def test_face_that_looks_inwards(specimen: Specimen) -> None:
     panels, stream = specimen
     plain = brep_streams(panels)[0]
-    errors = verify_brep_bytes(plain, -panels.spheres[0], panels.origins[0])
+    errors = errors_of(plain, -panels.spheres[0], panels.origins[0])
     assert errors.reason() == "the face looks inwards"
-    assert verify_brep_bytes(stream, -panels.spheres[0], panels.origins[0]).reason()
+    assert errors_of(stream, -panels.spheres[0], panels.origins[0]).reason()
 
 
 def test_another_sphere(specimen: Specimen) -> None:
     panels, stream = specimen
     row = panels.spheres[0] * (1, 1, 1, 1, 1) + (0, 0, 0, 0, 1e-9)
-    assert "not the sphere" in verify_brep_bytes(stream, row, panels.origins[0]).reason()
+    assert "not the sphere" in errors_of(stream, row, panels.origins[0]).reason()
 
 
 def mesh_change(stream: bytes, buffer: str, change: Change, count: int, dtype: str) -> bytes:
@@ -418,7 +427,7 @@ def test_moved_vertex_of_a_flat_mesh(has_doubles: bool) -> None:  # noqa: FBT001
     buffer, dtype, lift = ("points", "<f8", 1e-9) if has_doubles else ("floats", "<f4", 1e-4)
     normal = lift * panels.spheres[0, 1:4]
     lifted = mesh_change(stream, buffer, lambda x: x + normal, 3, dtype)
-    errors = verify_brep_bytes(lifted, panels.spheres[0], panels.origins[0])
+    errors = errors_of(lifted, panels.spheres[0], panels.origins[0])
     if not has_doubles:
         assert "the render mesh leaves the sphere" in errors.reason()
     assert errors.reason()
@@ -484,7 +493,7 @@ def test_flipped_bits(specimen: Specimen) -> None:
     for place in rng.integers(0, len(stream), 100):
         data = bytearray(stream)
         data[place] ^= 1 << int(rng.integers(8))
-        assert verify_brep_bytes(bytes(data)).reason(), place
+        assert errors_of(bytes(data)).reason(), place
     numbers = bytearray(stream)
     place = parse_brep(stream).sides[0].start
     numbers[place : place + 8] = struct.pack("<d", np.nan)
@@ -504,7 +513,7 @@ def test_deflated_meshes_are_checked(specimen: Specimen) -> None:
             data[place] ^= 1
             assert reason(panels, bytes(data))
     moved = panels.origins[0] + 1e-5
-    assert verify_brep_bytes(written, panels.spheres[0], moved).mesh_to_sphere > 1e-7
+    assert errors_of(written, panels.spheres[0], moved).mesh_to_sphere > 1e-7
 
 
 @pytest.mark.parametrize(("shift", "has_doubles"), [(0.0, False), (1e5, True)])

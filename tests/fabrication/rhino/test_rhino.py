@@ -15,18 +15,17 @@ import pytest
 import rhino3dm
 
 from spheremesh import nodes
-from spheremesh.fabrication.mesh_files.formats import read_mesh
+from spheremesh.fabrication.mesh_files.reader import read_mesh
 from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.opennurbs.brep_audit import BrepErrors, verify_breps
-from spheremesh.fabrication.opennurbs.brep_layout import read_brep_streams
+from spheremesh.fabrication.opennurbs.brep_reader import read_brep_streams
 from spheremesh.fabrication.opennurbs.render_meshes import (
     MESH_TOLERANCE,
     RenderMeshes,
     mesh_streams,
     panel_meshes,
 )
-from spheremesh.fabrication.rhino import blocks as rhino_blocks
-from spheremesh.fabrication.rhino import writer as rhino
+from spheremesh.fabrication.rhino import block_writer, panel_writer
 from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
 from spheremesh.fabrication.schedules.panel_text import TEXT_KEYS, panel_text
 from spheremesh.kernel.errors import InputError
@@ -37,7 +36,7 @@ from spheremesh.kernel.parts.colors import mould_color
 from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
-from spheremesh.kernel.spheres.rows import normals, signed_distance
+from spheremesh.kernel.spheres.incidence import normals, signed_distance
 from spheremesh.kernel.surfaces.circular_nets import roof_net
 from spheremesh.nodes import NodeWarning
 
@@ -241,7 +240,7 @@ def test_versions_and_units(
 @pytest.fixture
 def one_is_off(monkeypatch: pytest.MonkeyPatch) -> None:
     """Write panel 17 with a corner off by a millionth."""
-    exact_streams = rhino.brep_streams
+    exact_streams = panel_writer.brep_streams
 
     def shifted(given: Panels, meshes: RenderMeshes | None = None) -> list[bytes]:
         corners = given.corners.copy()
@@ -249,7 +248,7 @@ def one_is_off(monkeypatch: pytest.MonkeyPatch) -> None:
             corners[given.offsets[17]] += 1e-6
         return exact_streams(replace(given, corners=corners), meshes)
 
-    monkeypatch.setattr(rhino, "brep_streams", shifted)
+    monkeypatch.setattr(panel_writer, "brep_streams", shifted)
 
 
 @pytest.mark.usefixtures("one_is_off")
@@ -280,8 +279,10 @@ def test_breps_that_opennurbs_refuses(
     old = tmp_path / "old.3dm"
     old.write_bytes(b"older file")
     sound = [BrepErrors("", 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, True, True)] * panels.n_panels  # noqa: FBT003
-    monkeypatch.setattr(rhino, "verify_breps", lambda *_: sound)
-    monkeypatch.setattr(rhino, "brep_streams", lambda given, _: [b"junk"] * given.n_panels)
+    monkeypatch.setattr(panel_writer, "verify_breps", lambda *_: sound)
+    monkeypatch.setattr(
+        panel_writer, "brep_streams", lambda given, _: [b"junk"] * given.n_panels
+    )
     with pytest.raises(InputError, match=r"none of the 96 panels has .* openNURBS cannot read"):
         write_3dm(Model(panels), old)
     assert old.read_bytes() == b"older file"
@@ -395,7 +396,7 @@ def test_a_block_that_is_not_exact_is_none(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its panels are written one by one."""
-    exact_streams = rhino.brep_streams
+    exact_streams = panel_writer.brep_streams
 
     def shifted(given: Panels, meshes: RenderMeshes | None = None) -> list[bytes]:
         corners = given.corners.copy()
@@ -405,7 +406,7 @@ def test_a_block_that_is_not_exact_is_none(
 
     panels = torus_panels()
     sound = write_3dm(Model(panels), tmp_path / "a.3dm", RhinoOptions("blocks", ()))
-    monkeypatch.setattr(rhino, "brep_streams", shifted)
+    monkeypatch.setattr(panel_writer, "brep_streams", shifted)
     file = write_3dm(Model(panels), tmp_path / "a.3dm", RhinoOptions("blocks", ()))
     assert file.rejected == ()
     n_instances = sound.counts["InstanceReference"] - file.counts["InstanceReference"]
@@ -470,14 +471,14 @@ def test_a_mould_that_is_not_exact_is_named(
 ) -> None:
     panels = torus_panels()
     panels = replace(panels, labels=np.arange(48) % 2)
-    exact = rhino_blocks.brep_streams
+    exact = block_writer.brep_streams
 
     def shifted(given: Panels, meshes: RenderMeshes | None = None) -> list[bytes]:
         corners = given.corners.copy()
         corners[5] += 1e-6
         return exact(replace(given, corners=corners), meshes)
 
-    monkeypatch.setattr(rhino_blocks, "brep_streams", shifted)
+    monkeypatch.setattr(block_writer, "brep_streams", shifted)
     file = write_3dm(Model(panels), tmp_path / "m.3dm", RhinoOptions(layers=("Moulds",)))
     assert file.counts == {"Brep": 49, "InstanceReference": 24}
     assert "the block of Mould 02 is left out: a trim leaves its edge" in file.notes[0]

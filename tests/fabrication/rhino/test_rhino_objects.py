@@ -8,9 +8,9 @@ import pytest
 import rhino3dm
 
 from spheremesh import nodes
-from spheremesh.fabrication.mesh_files.formats import read_mesh
+from spheremesh.fabrication.mesh_files.reader import read_mesh
 from spheremesh.fabrication.model import Model
-from spheremesh.fabrication.rhino.meshes import to_rhino_mesh
+from spheremesh.fabrication.rhino.mesh_writer import to_rhino_mesh
 from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
 from spheremesh.kernel.arrays import FloatArray
 from spheremesh.kernel.errors import InputError

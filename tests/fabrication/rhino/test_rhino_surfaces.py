@@ -8,9 +8,9 @@ import pytest
 import rhino3dm
 
 from spheremesh import nodes
-from spheremesh.fabrication.mesh_files.formats import read_mesh
+from spheremesh.fabrication.mesh_files.reader import read_mesh
 from spheremesh.fabrication.model import Model
-from spheremesh.fabrication.rhino.surfaces import _off_seams, nurbs_surface
+from spheremesh.fabrication.rhino.surface_reader import nurbs_surface, off_seams
 from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
 from spheremesh.kernel.arrays import FloatArray
 from spheremesh.kernel.errors import InputError
@@ -179,7 +179,7 @@ def test_sides_on_a_seam_lie_where_the_face_is(end: int) -> None:
     ]
     confused = [side.copy() for side in sides]
     confused[3][1:4, 0] = low + high - seam
-    found = _off_seams(surface, [side[:, :: 1 - 2 * axis] for side in confused])
+    found = off_seams(surface, [side[:, :: 1 - 2 * axis] for side in confused])
     for side, right in zip(found, sides, strict=True):
         assert np.array_equal(side[:, :: 1 - 2 * axis], right)
 

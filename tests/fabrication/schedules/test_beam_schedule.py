@@ -19,7 +19,7 @@ from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.panels import Panels, panel_ids
 from spheremesh.kernel.parts.records import select_parts
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.support.annulus_support import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import vase_net

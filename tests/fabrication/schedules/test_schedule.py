@@ -3,6 +3,7 @@
 import csv
 import json
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,8 +14,6 @@ from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.schedules.panels import panel_tables
 from spheremesh.fabrication.schedules.writer import write_schedule
 from spheremesh.kernel.errors import InputError, MissingLibraryError
-from spheremesh.kernel.optimization.clustering import cluster_radii
-from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.facts import panel_volumes
 from spheremesh.kernel.panels.mould_blanks import panel_caps
@@ -29,10 +28,8 @@ from spheremesh.kernel.surfaces.circular_nets import torus_net
 
 
 @pytest.fixture(scope="module")
-def panels() -> Panels:
-    found = minimize_angles(face_planes(torus_net(16, 8, 10.0, 3.0)))[0]
-    found, clusters = cluster_radii(found, 3)
-    return cut_panels(found, "bisector", 0.05, 0.01, clusters.labels, "outward")[0]
+def panels(moulded: Callable[..., Panels]) -> Panels:
+    return moulded(face_planes(torus_net(16, 8, 10.0, 3.0)), 0.05, 0.01, side="outward")
 
 
 def test_rows_say_what_the_panels_are(panels: Panels) -> None:

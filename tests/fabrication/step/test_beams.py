@@ -24,12 +24,13 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication.drawings.beams import write_dxf
 from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.opennurbs.render_meshes import MESH_TOLERANCE, gather_meshes
-from spheremesh.fabrication.rhino.beams import with_meshes
+from spheremesh.fabrication.rhino.beam_writer import with_meshes
 from spheremesh.fabrication.rhino.model import new_model
 from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
-from spheremesh.fabrication.solids.beam_shapes import beam_shapes
+from spheremesh.fabrication.solids.cadquery_assembly import beams_to_cadquery
+from spheremesh.fabrication.solids.opencascade_beams import beam_shapes
 from spheremesh.fabrication.step.check import check_part21
-from spheremesh.fabrication.step.writer import beams_to_cadquery, write_step
+from spheremesh.fabrication.step.writer import write_step
 from spheremesh.kernel.arrays import FloatArray, dot, norm
 from spheremesh.kernel.beams import cutting as beam_cutting
 from spheremesh.kernel.beams.beams import Beams, beam_volumes, node_axis_segments
@@ -41,7 +42,7 @@ from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.parts.records import select_parts
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.support.annuli import Annuli
 from spheremesh.kernel.support.annulus_support import annulus_support

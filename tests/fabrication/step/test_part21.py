@@ -9,8 +9,9 @@ import pytest
 
 from spheremesh import Mesh
 from spheremesh.fabrication.model import Model
+from spheremesh.fabrication.step.assembly import StepSchema
 from spheremesh.fabrication.step.check import SHOWN, check_part21
-from spheremesh.fabrication.step.writer import StepCopies, StepOptions, StepSchema, write_step
+from spheremesh.fabrication.step.writer import StepCopies, StepOptions, write_step
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.panels import Panels

@@ -28,11 +28,20 @@ from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_LayerTo
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication.model import Model
-from spheremesh.fabrication.solids.panel_shapes import panel_shapes
-from spheremesh.fabrication.step import writer as step
-from spheremesh.fabrication.step.assembly import Group, StepHeader, StepSchema, assembly_lines
+from spheremesh.fabrication.solids.cadquery_assembly import to_cadquery
+from spheremesh.fabrication.solids.opencascade_panels import panel_shapes
+from spheremesh.fabrication.solids.panel_geometry import panels_in_place
+from spheremesh.fabrication.step.assembly import (
+    Group,
+    Instance,
+    Part,
+    StepHeader,
+    StepSchema,
+    assembly_lines,
+)
 from spheremesh.fabrication.step.check import check_part21
-from spheremesh.fabrication.step.writer import StepOptions, to_cadquery, write_step
+from spheremesh.fabrication.step.panel_bodies import panel_bodies
+from spheremesh.fabrication.step.writer import StepOptions, write_step
 from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.errors import InputError, MissingLibraryError
 from spheremesh.kernel.panels.cutting import EdgeMode, cut_panels
@@ -374,8 +383,14 @@ def mass_centers(shapes: list[TopoDS_Shape]) -> FloatArray:
 
 
 def test_groups_are_assemblies_within_the_assembly(panels: Panels, tmp_path: Path) -> None:
-    first = Group("Panels", step._panel_parts(panels, 1000.0, 1e-7))
-    second = Group("Beams", step._shared_parts(panels, 1000.0, 1e-7))
+    placed = panels_in_place(panels, 1000.0)
+    parts = [
+        Part(body, name, "Layer", (200, 100, 0), 1e-6, (Instance(name, tuple(place)),))
+        for body, name, place in zip(
+            panel_bodies(placed), placed.ids, placed.origins.tolist(), strict=True
+        )
+    ]
+    first, second = Group("Panels", parts), Group("Beams", parts)
     header = StepHeader("AP242DIS", "mm", 1.0, 1e-7, "Roof", "test")
     path = tmp_path / "roof.step"
     text = "".join(assembly_lines(Group("Roof", [first, second]), header))
@@ -607,14 +622,22 @@ def test_what_cannot_be_written(panels: Panels, tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_a_missing_library_of_the_system_is_named() -> None:
-    message = "libGL.so.1: cannot open shared object file: No such file or directory"
-    with pytest.raises(MissingLibraryError, match="libgl1") as error, step._opencascade():
-        raise ImportError(message)
+@pytest.mark.parametrize(
+    ("cause", "remedy"),
+    [
+        ("libGL.so.1: cannot open shared object file: No such file or directory", "libgl1"),
+        ("No module named 'OCP'", "package cadquery"),
+    ],
+)
+def test_a_missing_library_is_named(
+    panels: Panels, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cause: str, remedy: str
+) -> None:
+    (tmp_path / "cadquery.py").write_text(f"raise ImportError({cause!r})")
+    monkeypatch.delitem(sys.modules, "cadquery", raising=False)
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(MissingLibraryError, match=remedy) as error:
+        to_cadquery(panels)
     assert "\n" not in str(error.value)
-    message = "No module named 'OCP'"
-    with pytest.raises(MissingLibraryError, match="package cadquery"), step._opencascade():
-        raise ModuleNotFoundError(message)
 
 
 def test_files_need_no_opencascade(tmp_path: Path) -> None:

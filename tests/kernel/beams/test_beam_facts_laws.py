@@ -21,9 +21,9 @@ from spheremesh.kernel.beams.beams import (
 from spheremesh.kernel.beams.cutting import cut_beams, mitre_angles, neighbor_angles
 from spheremesh.kernel.beams.facts import BeamFacts, beam_facts
 from spheremesh.kernel.meshes.mesh import mean_edge_length
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.parts.records import select_parts
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.arcs import Arcs, arc_points, arc_reaches
 from spheremesh.kernel.support.annulus_support import annulus_support

@@ -11,10 +11,10 @@ from spheremesh.kernel.beams.beams import Beams, section_arcs
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.beams.triangles import beam_triangles, cylinder_triangles
 from spheremesh.kernel.meshes.mesh import mean_edge_length
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.arcs import arc_lengths, segment_areas
-from spheremesh.kernel.spheres.rows import evaluate
+from spheremesh.kernel.spheres.incidence import evaluate
 from spheremesh.kernel.support.annulus_support import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
 

@@ -26,10 +26,10 @@ from spheremesh.kernel.beams.cutting import cut_beams, mitre_angles
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.parts.records import select_parts
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.arcs import Arcs, arc_circles, arc_points, segment_areas
-from spheremesh.kernel.spheres.rows import evaluate
+from spheremesh.kernel.spheres.incidence import evaluate
 from spheremesh.kernel.support.annuli import Annuli
 from spheremesh.kernel.support.annulus_support import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import torus_net

@@ -13,7 +13,7 @@ from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.beams.drilling import drill_beams, mark_centers
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.parts.records import select_parts
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.spheres.arcs import arc_points
 from spheremesh.kernel.support.annulus_support import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import torus_net

@@ -7,29 +7,29 @@ import pytest
 
 from spheremesh import Mesh
 from spheremesh.kernel.arrays import FloatArray, IntArray, dot, norm, unit
-from spheremesh.kernel.congruences.envelopes import envelope
-from spheremesh.kernel.congruences.smooth import (
-    SphereJet,
-    conjugacy_residuals,
-    envelope_points,
-    has_real_envelopes,
+from spheremesh.kernel.congruences.conjugacy import conjugacy_residuals
+from spheremesh.kernel.congruences.curvature_spheres import (
     mean_curvature_spheres,
-    principal_curvature_spheres,
     sphere_congruence,
     touching_spheres,
 )
+from spheremesh.kernel.congruences.discrete_envelopes import envelope
+from spheremesh.kernel.congruences.smooth_envelopes import (
+    SphereJet,
+    envelope_points,
+    has_real_envelopes,
+)
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.curvature import principal_curvatures, vertex_normals
+from spheremesh.kernel.spheres.incidence import evaluate, normals
+from spheremesh.kernel.spheres.minkowski import minkowski
 from spheremesh.kernel.spheres.rows import (
     Kind,
     center_radius,
-    evaluate,
     from_center_radius,
     kind,
     lift_points,
-    minkowski,
     normalize,
-    normals,
     recenter,
 )
 from spheremesh.kernel.surfaces.circular_nets import ellipsoid_net, torus_net
@@ -52,6 +52,15 @@ def surface_jets(count: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatA
     first[:20], second[10:30] = 0, 0
     second[30:50] = -first[30:50]
     return points, unit(directions), first, second
+
+
+def principal_spheres(
+    points: FloatArray, directions: FloatArray, first: FloatArray, second: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    return (
+        touching_spheres(points, directions, first),
+        touching_spheres(points, directions, second),
+    )
 
 
 def ellipsoid_evolute(a: float, b: float) -> tuple[SphereJet, FloatArray]:
@@ -212,7 +221,7 @@ def test_law_c3_spheres_of_revolution_are_conjugate_in_rows_of_any_scale() -> No
 def test_law_c5_principal_spheres_touch_the_surface() -> None:
     points, directions, first, second = surface_jets(200)
     for rows, curvatures in zip(
-        principal_curvature_spheres(points, directions, first, second),
+        principal_spheres(points, directions, first, second),
         (first, second),
         strict=True,
     ):
@@ -257,7 +266,7 @@ def cross_ratio(pencil: FloatArray, rows: list[FloatArray]) -> FloatArray:
 def test_law_c6_the_cross_ratio_with_the_point_is_minus_one() -> None:
     points, directions, first, second = surface_jets(200)
     second = np.where(np.abs(first - second) < 0.1, first + 1, second)
-    s, t = principal_curvature_spheres(points, directions, first, second)
+    s, t = principal_spheres(points, directions, first, second)
     central = mean_curvature_spheres(points, directions, first, second)
     pencil = np.stack([touching_spheres(points, directions, 0.0), lift_points(points)], 1)
     ratios = cross_ratio(pencil, [s, lift_points(points), t, central])
@@ -279,7 +288,7 @@ def test_law_c6_central_spheres_commute_with_inversion() -> None:
     def inverted(rows: FloatArray) -> FloatArray:
         return rows - 2 * minkowski(rows, mirror)[:, None] * mirror
 
-    s, t = principal_curvature_spheres(points, directions, first, second)
+    s, t = principal_spheres(points, directions, first, second)
     arm = points - center
     images = center + radius**2 * arm / dot(arm, arm)[:, None]
     s, t = inverted(s), inverted(t)

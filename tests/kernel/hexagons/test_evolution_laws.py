@@ -10,13 +10,19 @@ from hypothesis import strategies as st
 from spheremesh import Mesh
 from spheremesh.kernel.arrays import FloatArray, dot, norm
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.hexagons.axis_tilt import axis_angles, axis_tilt
-from spheremesh.kernel.hexagons.dual_meshes import dual_sphere_mesh
+from spheremesh.kernel.hexagons.dual_sphere_mesh import dual_sphere_mesh
 from spheremesh.kernel.hexagons.evolution import Evolution, descend, evolve_spheres
 from spheremesh.kernel.hexagons.face_shapes import face_shapes
-from spheremesh.kernel.hexagons.offsets import Side, grow_offsets, mesh_edges, tangent_surface
+from spheremesh.kernel.hexagons.ortho_energy import axis_deviations, ortho_residuals
+from spheremesh.kernel.hexagons.tangent_offsets import (
+    CenterSide,
+    grow_offsets,
+    mesh_edges,
+    tangent_surface,
+)
 from spheremesh.kernel.meshes.mesh import mean_edge_length
-from spheremesh.kernel.spheres.rows import center_radius, evaluate, normals
+from spheremesh.kernel.spheres.incidence import evaluate, normals
+from spheremesh.kernel.spheres.rows import center_radius
 
 Grids = dict[str, Any]
 BOUND = np.radians(15.0)
@@ -100,10 +106,10 @@ def test_law_f3_derivatives_of_the_tilt(seed: int, bound: float) -> None:
     offsets, step = rng.uniform(0.5, 2, 9), 1e-6
 
     def _residuals(offsets: FloatArray) -> FloatArray:
-        return axis_tilt(points, upwards, triangles, offsets, bound)[0]
+        return ortho_residuals(points, upwards, triangles, offsets, bound)[0]
 
-    residuals, slopes = axis_tilt(points, upwards, triangles, offsets, bound)
-    angles = axis_angles(points, upwards, triangles, offsets)
+    residuals, slopes = ortho_residuals(points, upwards, triangles, offsets, bound)
+    angles = axis_deviations(points, upwards, triangles, offsets)
     np.testing.assert_array_equal(residuals > 0, angles > bound)
     signed = np.cos(angles) * np.abs(np.cos(angles))
     expected = np.maximum(0, np.cos(bound) ** 2 - signed)
@@ -176,7 +182,7 @@ def test_law_turning_the_faces_over_turns_the_spheres(
 
 def test_sides(curved_grids: Grids) -> None:
     mesh = curved_grids["catenoid"].mesh
-    found = {side: evolve_spheres(mesh, side=side) for side in get_args(Side)}
+    found = {side: evolve_spheres(mesh, side=side) for side in get_args(CenterSide)}
     assert [found[side].side for side in ("auto", "plus", "minus")] == [1, 1, -1]
     for evolution in found.values():
         assert not evolution.is_outer.any()

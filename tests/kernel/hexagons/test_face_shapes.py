@@ -7,16 +7,19 @@ import pytest
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray
-from spheremesh.kernel.congruences.smooth import mean_curvature_spheres, touching_spheres
-from spheremesh.kernel.hexagons.dual_meshes import dual_sphere_mesh
+from spheremesh.kernel.congruences.curvature_spheres import (
+    mean_curvature_spheres,
+    touching_spheres,
+)
+from spheremesh.kernel.hexagons.dual_sphere_mesh import dual_sphere_mesh
 from spheremesh.kernel.hexagons.face_shapes import (
     PencilPosition,
     boundary_crosses,
     face_shapes,
     pencil_positions,
 )
-from spheremesh.kernel.sphere_meshes.mobius_maps import map_sphere_mesh
-from spheremesh.kernel.spheres.mobius import inversion
+from spheremesh.kernel.sphere_meshes.mobius import map_sphere_mesh
+from spheremesh.kernel.spheres.mobius_group import inversion
 
 Grids = dict[str, Any]
 

@@ -11,7 +11,13 @@ from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import face_normals, face_vector_areas, mean_edge_length
 from spheremesh.kernel.meshes.remeshing import even_share, remesh_triangles
 from spheremesh.kernel.meshes.subdivision import subdivide_midpoint
-from spheremesh.kernel.meshes.triangle_edges import Triangles, edge_lengths, find_edges
+from spheremesh.kernel.meshes.surface_lines import loop_starts, trace_curves
+from spheremesh.kernel.meshes.triangle_edges import (
+    Triangles,
+    edge_lengths,
+    find_edges,
+    to_be_edited,
+)
 from spheremesh.kernel.meshes.triangle_edits import (
     collapse_short_edges,
     flip_edges,
@@ -24,19 +30,34 @@ from spheremesh.kernel.surfaces.circular_nets import torus_net
 @pytest.fixture(scope="module")
 def shapes(nets: dict[str, Mesh]) -> dict[str, Mesh]:
     """Surfaces with none, one and two boundaries, some of very uneven triangles."""
-    rng = np.random.default_rng(1)
-    cloud = rng.uniform(size=(400, 2)) ** 1.5
-    from scipy.spatial import Delaunay
-
-    wild = Delaunay(cloud).simplices.astype(np.int64)
-    height = 0.3 * np.sin(3 * cloud[:, 0]) * cloud[:, 1]
-    sheet = Mesh(np.column_stack([cloud, height]), wild)
     return {
         "torus": torus_net(24, 12, 3.0, 1.0),
         "enneper": nets["enneper"],
         "vase": nets["vase"],
-        "wild": sheet,
+        "wild": wild_sheet(1),
     }
+
+
+def wild_sheet(seed: int) -> Mesh:
+    """Very uneven triangles between random points, with slivers and a jagged boundary."""
+    from scipy.spatial import Delaunay
+
+    cloud = np.random.default_rng(seed).uniform(size=(400, 2)) ** 1.5
+    height = 0.3 * np.sin(3 * cloud[:, 0]) * cloud[:, 1]
+    triangles = Delaunay(cloud).simplices.astype(np.int64)
+    return Mesh(np.column_stack([cloud, height]), triangles)
+
+
+def star(n_tips: int) -> Mesh:
+    """A ring whose outer boundary is a fine smooth wave, without a corner."""
+    turns = 2 * np.pi * np.arange(160) / 160
+    radii = np.linspace(0.3, 1, 12)[:, None]
+    radii = radii + 0.25 * np.cos(n_tips * turns) * radii**3
+    points = np.stack([radii * np.cos(turns), radii * np.sin(turns), 0.1 * radii**2], -1)
+    ids = np.arange(radii.size).reshape(radii.shape)
+    ids = np.concatenate([ids, ids[:, :1]], 1)
+    quads = np.stack([ids[:-1, :-1], ids[1:, :-1], ids[1:, 1:], ids[:-1, 1:]], -1)
+    return triangulate(Mesh(points.reshape(-1, 3), quads.reshape(-1, 4)))
 
 
 def characteristic(mesh: Mesh) -> int:
@@ -116,9 +137,54 @@ def test_law_boundaries_stay(name: str, shapes: dict[str, Mesh]) -> None:
     mesh = shapes[name]
     length = 0.7 * mean_edge_length(mesh)
     result = remesh_triangles(mesh, length)
+    assert_boundary_stays(mesh, result, length)
+
+
+def assert_boundary_stays(mesh: Mesh, result: Mesh, length: float) -> None:
     on_rim = result.vertices[result.topology.is_boundary_vertex]
     assert rim_distances(on_rim, mesh).max() < 1e-12 * np.ptp(mesh.vertices)
     assert rim_distances(rim_points(mesh), result).max() < 0.1 * length
+
+
+@pytest.mark.parametrize("seed", [11, 12, 13])
+def test_law_boundaries_stay_however_ties_fall(seed: int) -> None:
+    # Rounding moves vertices by more than it differs between processors.
+    rng = np.random.default_rng(seed)
+    sheet = wild_sheet(1)
+    length = 0.7 * mean_edge_length(sheet)
+    noise = 1 + 1e-13 * rng.normal(size=sheet.vertices.shape)
+    mesh = Mesh(sheet.vertices * noise, sheet.faces)
+    assert_boundary_stays(mesh, remesh_triangles(mesh, length), length)
+    mesh = wild_sheet(seed)
+    for factor in (0.7, 1.5):
+        length = factor * mean_edge_length(mesh)
+        assert_boundary_stays(mesh, remesh_triangles(mesh, length), length)
+
+
+@pytest.mark.parametrize("factor", [2.0, 4.0])
+@pytest.mark.parametrize("n_tips", [3, 5, 8])
+def test_law_boundaries_that_bend_within_an_edge_stay(n_tips: int, factor: float) -> None:
+    mesh = star(n_tips)
+    length = factor * mean_edge_length(mesh)
+    result = remesh_triangles(mesh, length)
+    assert_boundary_stays(mesh, result, length)
+    assert result.n_vertices < 1.5 * mesh.n_vertices / factor**2
+    assert characteristic(result) == 0
+    assert n_boundaries(result) == 2
+
+
+@pytest.mark.parametrize("name", ["torus", "wild", "cube"])
+def test_law_rounding_decides_nothing(
+    name: str, shapes: dict[str, Mesh], rotation: FloatArray
+) -> None:
+    mesh = {**shapes, "cube": cube()}[name]
+    length = 0.9 * mean_edge_length(mesh) if name != "cube" else 0.2
+    result = remesh_triangles(mesh, length)
+    rng = np.random.default_rng(0)
+    noise = 1 + 1e-13 * rng.normal(size=mesh.vertices.shape)
+    for points in (mesh.vertices * noise, mesh.vertices @ rotation.T):
+        other = remesh_triangles(Mesh(points, mesh.faces), length)
+        np.testing.assert_array_equal(other.corners, result.corners)
 
 
 def test_law_flat_stays_flat_and_corners_stay() -> None:
@@ -209,10 +275,10 @@ def test_law_what_is_thinner_than_an_edge_keeps_its_topology(length: float) -> N
 
 def edited(mesh: Mesh) -> Triangles:
     surface = triangulate(mesh)
-    return Triangles(
-        surface.vertices, surface.corners.reshape(-1, 3), np.zeros(surface.n_vertices, bool),
-        np.zeros((0, 2), np.int64),
-    )  # fmt: skip
+    rim = np.flatnonzero(surface.topology.twins < 0)
+    lines = surface.corners[np.stack([rim, surface.topology.next_corners[rim]], 1)]
+    nowhere = np.zeros(surface.n_vertices, bool)
+    return to_be_edited(surface.vertices, surface.corners.reshape(-1, 3), nowhere, lines)
 
 
 def test_law_edits_keep_the_topology(shapes: dict[str, Mesh]) -> None:
@@ -232,6 +298,36 @@ def test_law_edits_keep_the_topology(shapes: dict[str, Mesh]) -> None:
                 np.bincount(find_edges(t).ends.ravel()) - 6 for t in (start, flipped)
             )
             assert (after**2).sum() <= (before**2).sum()
+
+
+def test_law_edges_of_two_lines_do_not_become_one() -> None:
+    # A narrow triangle between the boundary and a crease: its third corner could be merged.
+    points = np.array([[0, 0, 0], [1, 0, 0], [0.5, 0.05, 0], [0.5, -0.9, 0.3]])
+    faces = np.array([[0, 1, 2], [1, 0, 3]])
+    lines = np.array([[1, 2], [2, 0], [0, 3], [3, 1], [0, 1]])
+    start = to_be_edited(points, faces, np.array([True, True, False, True]), lines)
+    merged = collapse_short_edges(start)
+    assert len(np.unique(np.sort(merged.lines, axis=1), axis=0)) == len(merged.lines) == 5
+
+
+def test_law_curves_know_how_far_chords_leave_them() -> None:
+    turns = np.linspace(0, np.pi, 101)
+    arc = np.column_stack([np.cos(turns), np.sin(turns), 0 * turns])
+    points = np.concatenate([arc, arc + np.array([0, 0, 0.01])])
+    first = np.stack([np.arange(100), np.arange(1, 101)], 1)
+    lines = np.concatenate([first, first + 101])
+    is_fixed = np.isin(np.arange(202), [0, 100, 101, 201])
+    curves, arcs = trace_curves(points, lines, is_fixed)
+    np.testing.assert_allclose(np.abs(np.diff(arcs, axis=1)), 2 * np.sin(np.pi / 200))
+    # The ends of the first and the last edge: a quarter and a half circle, however close.
+    start, middle, end = arcs[0, 0], arcs[50, 0], arcs[99, 1]
+    other = arcs[[100, 199], [0, 1]]
+    places = np.array([[start, middle], [middle, end], other])
+    chords = curves.at(places.ravel()).reshape(-1, 2, 3)
+    quarter = 1 - np.cos(np.pi / 4)
+    np.testing.assert_allclose(curves.deviations(chords, places), [quarter, quarter, 1])
+    with_start = loop_starts(np.array([[4, 2], [2, 3], [3, 4], [5, 6]]), np.arange(7) == 5)
+    np.testing.assert_array_equal(with_start, [2])
 
 
 def test_coarsening_beyond_the_shape_keeps_a_surface(octahedron: Mesh) -> None:

@@ -15,7 +15,7 @@ from spheremesh.kernel.meshes.subdivision import (
     subdivide_midpoint,
 )
 from spheremesh.kernel.meshes.triangulation import triangulate
-from spheremesh.kernel.sphere_meshes.planarity import planarity
+from spheremesh.kernel.sphere_meshes.planarity_circularity import planarity
 
 Scheme = Callable[[Mesh], Mesh]
 SMOOTH: dict[str, Scheme] = {"loop": subdivide_loop, "catmull-clark": subdivide_catmull_clark}

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, norm, unit
 from spheremesh.kernel.errors import InputError
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.optimization.energies.freedom import (
     Freedom,
     free_directions,
@@ -34,10 +35,9 @@ from spheremesh.kernel.optimization.energies.setting import (
     first_unknowns,
 )
 from spheremesh.kernel.optimization.energies.table import TERMS, EnergyWeights, Term
-from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.solvers.blocks import jacobian_matrix
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
-from spheremesh.kernel.spheres.rows import minkowski
+from spheremesh.kernel.spheres.minkowski import minkowski
 from spheremesh.nodes import ellipsoid_mesh, torus_mesh, vase_mesh
 
 STEP = 1e-6

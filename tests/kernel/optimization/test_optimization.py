@@ -8,15 +8,15 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import norm
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.optimization.clustering import cluster_radii, relax_moulds
 from spheremesh.kernel.optimization.energies.table import EnergyWeights
-from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.optimization.whole_energy import (
     Conditions,
     Optimization,
     optimize_spheres,
 )
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles, vertex_error
 from spheremesh.nodes import (
@@ -253,14 +253,39 @@ def test_scale_and_place_change_nothing(scale: float, tolerance: float) -> None:
         assert np.abs(difference).max() < 1e-4
 
 
+def joined(first: Mesh, second: Mesh) -> Mesh:
+    """Two meshes far from each other, the second lying on another side."""
+    corners = [*first.faces, *(face + first.n_vertices for face in second.faces)]
+    return Mesh(np.concatenate([first.vertices, second.vertices[:, [1, 2, 0]] + 20]), corners)
+
+
 def test_pieces_do_not_know_of_each_other() -> None:
     one = vase_mesh(8, 6)
-    corners = [*one.faces, *(face + one.n_vertices for face in one.faces)]
-    both = Mesh(np.concatenate([one.vertices, one.vertices[:, [1, 2, 0]] + 20]), corners)
-    found, _ = optimize_spheres(smooth(both), TABLE_1)
+    found, _ = optimize_spheres(smooth(joined(one, one)), TABLE_1)
     alone, _ = optimize_spheres(smooth(one), TABLE_1)
     expected = np.tile(intersection_angles(alone), 2)
     np.testing.assert_allclose(intersection_angles(found), expected, atol=1e-5)
+
+
+def test_unlike_pieces_do_not_know_of_each_other() -> None:
+    """They share steps and the end of the descent, so each must come to rest."""
+    pieces = [
+        Mesh(mesh.vertices / mean_edge_length(mesh), mesh.faces)
+        for mesh in (vase_mesh(8, 6), ellipsoid_mesh(12, 8))
+    ]
+    found, _ = optimize_spheres(smooth(joined(*pieces)), TABLE_1)
+    alone = [optimize_spheres(smooth(piece), TABLE_1)[0] for piece in pieces]
+    expected = np.concatenate([intersection_angles(piece) for piece in alone])
+    np.testing.assert_allclose(intersection_angles(found), expected, atol=1e-4)
+
+
+@pytest.mark.parametrize("mesh", [vase_mesh(8, 6), vase_mesh(12, 10)])
+def test_rounding_does_not_lead_a_descent(mesh: Mesh) -> None:
+    """Vertices that differ by their rounding give the same spheres, on any processor."""
+    expected = intersection_angles(optimize_spheres(smooth(mesh), TABLE_1)[0])
+    for seed in range(4):
+        found, _ = optimize_spheres(smooth(noisy(mesh, 1e-15, seed)), TABLE_1)
+        np.testing.assert_allclose(intersection_angles(found), expected, atol=3e-6)
 
 
 def test_a_single_face() -> None:

@@ -8,7 +8,7 @@ import pytest
 from spheremesh import Mesh
 from spheremesh.kernel.arrays import IntArray, unit
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.optimization.strips import strip_weights, strip_weights_along
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles

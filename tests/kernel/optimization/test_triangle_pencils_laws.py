@@ -7,12 +7,12 @@ import pytest
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, unit
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
-from spheremesh.kernel.sphere_meshes.mobius_maps import map_sphere_mesh
+from spheremesh.kernel.sphere_meshes.mobius import map_sphere_mesh
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles, vertex_error
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
-from spheremesh.kernel.spheres.mobius import inversion
+from spheremesh.kernel.spheres.mobius_group import inversion
 from spheremesh.kernel.spheres.rows import center_radius
 
 NAMES = ["torus", "ellipsoid", "vase", "roof", "bumpy"]

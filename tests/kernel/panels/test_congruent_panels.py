@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.panels.congruent import congruent_panels
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.panels import Panels

@@ -6,8 +6,8 @@ import pytest
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.errors import InputError
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.optimization.clustering import cluster_radii
-from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.panels.congruent import congruent_panels
 from spheremesh.kernel.panels.cutting import EdgeMode, cut_panels
 from spheremesh.kernel.panels.mould_blanks import mould_blanks, panel_caps
@@ -17,7 +17,7 @@ from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.arcs import arc_points
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
-from spheremesh.kernel.spheres.rows import evaluate, project
+from spheremesh.kernel.spheres.incidence import evaluate, project
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
 
 

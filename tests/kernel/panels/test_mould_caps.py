@@ -15,7 +15,7 @@ from spheremesh.kernel.panels.panels import Panels, panel_areas
 from spheremesh.kernel.panels.thickness import ThicknessSide
 from spheremesh.kernel.sphere_meshes.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
-from spheremesh.kernel.spheres.rows import normals, signed_distance
+from spheremesh.kernel.spheres.incidence import normals, signed_distance
 from spheremesh.kernel.surfaces.circular_nets import roof_net
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import dot, norm, unit
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels, edge_gaps
 from spheremesh.kernel.panels.facts import panel_facts
 from spheremesh.kernel.panels.panels import (

@@ -14,8 +14,8 @@ from spheremesh.kernel.meshes.mesh import (
     local_corners,
     mean_edge_length,
 )
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.optimization.clustering import cluster_radii
-from spheremesh.kernel.optimization.pencil import minimize_angles
 from spheremesh.kernel.panels.cutting import (
     EdgeMode,
     cut_panels,
@@ -41,7 +41,8 @@ from spheremesh.kernel.spheres.circles import (
     intersection_circles,
     pencil_spheres,
 )
-from spheremesh.kernel.spheres.rows import center_radius, evaluate, normals, recenter
+from spheremesh.kernel.spheres.incidence import evaluate, normals
+from spheremesh.kernel.spheres.rows import center_radius, recenter
 from spheremesh.kernel.surfaces.circular_nets import enneper_net
 
 NETS = ["torus", "ellipsoid", "egg", "vase", "roof"]

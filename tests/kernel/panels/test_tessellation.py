@@ -4,7 +4,7 @@ import pytest
 from spheremesh.kernel.arrays import dot, norm, sum_by
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import Mesh
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.facts import panel_volumes
 from spheremesh.kernel.panels.panels import Panels, panel_areas
@@ -16,7 +16,8 @@ from spheremesh.kernel.panels.tessellation import (
 )
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.sphere_meshes.sphere_mesh import SphereMesh
-from spheremesh.kernel.spheres.rows import from_center_radius, normalize, signed_distance
+from spheremesh.kernel.spheres.incidence import signed_distance
+from spheremesh.kernel.spheres.rows import from_center_radius, normalize
 from spheremesh.kernel.surfaces.circular_nets import ellipsoid_net, roof_net, torus_net
 
 RTOL = 1e-12

@@ -7,7 +7,7 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels, thickness_report
 from spheremesh.kernel.panels.facts import panel_volumes
 from spheremesh.kernel.panels.panels import (
@@ -19,7 +19,8 @@ from spheremesh.kernel.panels.panels import (
 from spheremesh.kernel.panels.thickness import ThicknessRule, ThicknessSide, panel_faces
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.arcs import arc_points
-from spheremesh.kernel.spheres.rows import center_radius, evaluate, from_center_radius
+from spheremesh.kernel.spheres.incidence import evaluate
+from spheremesh.kernel.spheres.rows import center_radius, from_center_radius
 
 SIDES: list[ThicknessSide] = ["inward", "outward", "centred"]
 SHARES = {"inward": 0.0, "outward": 1.0, "centred": 0.5}

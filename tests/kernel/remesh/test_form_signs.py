@@ -6,11 +6,11 @@ from scipy.sparse import coo_array
 
 from spheremesh import Mesh
 from spheremesh.kernel.arrays import FloatArray
-from spheremesh.kernel.congruences.smooth import touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import touching_spheres
 from spheremesh.kernel.meshes.curvature import vertex_normals
 from spheremesh.kernel.remesh.field.congruence_mesh import congruence_mesh
-from spheremesh.kernel.remesh.field.conjugate import conjugate_field
-from spheremesh.kernel.remesh.field.directions import conjugate_directions
+from spheremesh.kernel.remesh.field.conjugate_directions import conjugate_directions
+from spheremesh.kernel.remesh.field.conjugate_form import conjugate_field
 from spheremesh.kernel.remesh.field.jets import fit_jets
 from spheremesh.kernel.remesh.field.smoothing import orient_forms
 from spheremesh.kernel.remesh.field.tree_signs import tree_signs

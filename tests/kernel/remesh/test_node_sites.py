@@ -5,15 +5,15 @@ import pytest
 
 from spheremesh import Mesh
 from spheremesh.kernel.arrays import FloatArray, norm
-from spheremesh.kernel.congruences.smooth import touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import touching_spheres
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.remesh.field.congruence_mesh import congruence_mesh
 from spheremesh.kernel.remesh.field.jets import fit_jets
 from spheremesh.kernel.remesh.field.smooth_surface import SmoothSurface, surface_heights
 from spheremesh.kernel.remesh.pipeline import Remeshing, remesh
-from spheremesh.kernel.remesh.planar.held_nets import planarize_held
-from spheremesh.kernel.remesh.planar.node_sites import anywhere, node_distances, on_surface
-from spheremesh.kernel.remesh.planar.planarize import measure_nodes, planarize
+from spheremesh.kernel.remesh.planar.conditions import anywhere, node_distances, on_surface
+from spheremesh.kernel.remesh.planar.nodes import measure_nodes
+from spheremesh.kernel.remesh.planar.planarize import planarize, planarize_held
 from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
 from spheremesh.kernel.surfaces.triangulated import SampleShape, triangulated_surface
 from spheremesh.kernel.tolerances import TORSION_FREE

@@ -9,27 +9,27 @@ from hypothesis import strategies as st
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, IntArray, dot, norm, unit
-from spheremesh.kernel.congruences.envelopes import envelope, mirror_points
-from spheremesh.kernel.congruences.smooth import touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import touching_spheres
+from spheremesh.kernel.congruences.discrete_envelopes import envelope, mirror_points
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
-from spheremesh.kernel.remesh.planar.planarize import axis_angles, measure_nodes, planarize
-from spheremesh.kernel.remesh.planar.step_norm import step_norm
-from spheremesh.kernel.remesh.planar.steps import linearize
-from spheremesh.kernel.remesh.planar.system import (
-    Net,
+from spheremesh.kernel.remesh.planar.conditions import (
+    NetState,
     PlanarSystem,
     energies,
     move,
+    planar_residuals,
     planar_system,
-    residuals,
 )
+from spheremesh.kernel.remesh.planar.nodes import measure_nodes, node_axis_angles
+from spheremesh.kernel.remesh.planar.planarize import planarize
+from spheremesh.kernel.remesh.planar.steps import linearize, step_norm
 from spheremesh.kernel.remesh.reports import planarization_report
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
-from spheremesh.kernel.sphere_meshes.mobius_maps import map_sphere_mesh
+from spheremesh.kernel.sphere_meshes.mobius import map_sphere_mesh
 from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
-from spheremesh.kernel.spheres.mobius import inversion
+from spheremesh.kernel.spheres.mobius_group import inversion
 from spheremesh.kernel.spheres.rows import (
     center_radius,
     from_center_radius,
@@ -173,7 +173,10 @@ def test_law_e3_axes_are_normal_to_the_faces_of_the_centers() -> None:
         assert norm(np.cross(normal, nodes.axes[vertex])) < 1e-10
     # Centres lie on a parallel surface: what is left is of the second order.
     fine = constant_radius_torus(48, 24)
-    errors = axis_angles(exact, nodes).max(), axis_angles(fine, measure_nodes(fine)).max()
+    errors = (
+        node_axis_angles(exact, nodes).max(),
+        node_axis_angles(fine, measure_nodes(fine)).max(),
+    )
     assert np.degrees(errors[0]) < 4
     assert errors[1] < 0.3 * errors[0]
 
@@ -301,20 +304,20 @@ def test_law_f8_numbering_does_not_matter(
     np.testing.assert_allclose(np.sort(found.shifts), np.sort(expected.shifts), atol=1e-8)
 
 
-def small_problem() -> tuple[PlanarSystem, Net]:
+def small_problem() -> tuple[PlanarSystem, NetState]:
     """A net with a boundary, spheres of mixed degree, and a net away from its start."""
     system = planar_system(perturbed(central_spheres(vase_net(5, 3, 1.0, 3.0, 0.3)), 0.02))
     rng = np.random.default_rng(3)
     size = 5 * len(system.start.rows) + 7 * len(system.start.shifts)
     net = move(system.start, 0.05 * rng.normal(size=size))
-    return system, Net(net.rows, net.shifts, net.normals * system.is_planar[:, None])
+    return system, NetState(net.rows, net.shifts, net.normals * system.is_planar[:, None])
 
 
-def stacked(system: PlanarSystem, net: Net) -> FloatArray:
-    return np.concatenate([r.ravel() for r in residuals(system, net)])
+def stacked(system: PlanarSystem, net: NetState) -> FloatArray:
+    return np.concatenate([r.ravel() for r in planar_residuals(system, net)])
 
 
-def differences(system: PlanarSystem, net: Net) -> FloatArray:
+def differences(system: PlanarSystem, net: NetState) -> FloatArray:
     """Jacobian of all residuals by central differences; boundary normals are left out."""
     size = 5 * len(net.rows) + 7 * len(net.shifts)
     columns: list[FloatArray] = []
@@ -330,7 +333,7 @@ def differences(system: PlanarSystem, net: Net) -> FloatArray:
     return jacobian
 
 
-def dense_metric(system: PlanarSystem, net: Net, fairness: float) -> FloatArray:
+def dense_metric(system: PlanarSystem, net: NetState, fairness: float) -> FloatArray:
     """Squared norm of steps: spheres, shares of their differences, nodes by their edges."""
     mesh, n_faces, n_nodes = system.mesh, len(net.rows), len(net.shifts)
     size = mean_edge_length(mesh)
@@ -418,5 +421,5 @@ def test_folded_nets_are_measured_all_the_same() -> None:
     folded = SphereMesh(Mesh(square, [[0, 1, 2, 3], [3, 2, 1, 0]]), rows)
     nodes = measure_nodes(folded)
     assert nodes.is_inner.all()
-    assert np.isnan(axis_angles(folded, nodes)).all()
+    assert np.isnan(node_axis_angles(folded, nodes)).all()
     assert planarization_report(folded, planarize(folded))["turned_faces"] == []

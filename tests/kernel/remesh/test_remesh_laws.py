@@ -12,16 +12,17 @@ from numpy.polynomial import Polynomial
 
 from spheremesh import Mesh
 from spheremesh.kernel.arrays import FloatArray, dot, norm
-from spheremesh.kernel.congruences.smooth import touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import touching_spheres
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import face_centroids, face_normals, mean_edge_length
+from spheremesh.kernel.meshes.vertex_fans import VertexFans, vertex_fans
 from spheremesh.kernel.remesh.field.congruence_mesh import CongruenceMesh, congruence_mesh
-from spheremesh.kernel.remesh.field.conjugate import conjugate_field
-from spheremesh.kernel.remesh.field.frames import CombedFrames, Fans, comb_frames, vertex_fans
+from spheremesh.kernel.remesh.field.conjugate_form import conjugate_field
+from spheremesh.kernel.remesh.field.frames import CombedFrames, comb_frames
 from spheremesh.kernel.remesh.field.jets import fit_jets
 from spheremesh.kernel.remesh.field.smoothing import smooth_forms
 from spheremesh.kernel.remesh.map.injectivity import distortion
-from spheremesh.kernel.remesh.map.integers import (
+from spheremesh.kernel.remesh.map.integer_rounding import (
     ContradictionError,
     Quadratic,
     integer_solutions,
@@ -31,7 +32,9 @@ from spheremesh.kernel.remesh.map.integers import (
 from spheremesh.kernel.remesh.map.parametrization import parametrize
 from spheremesh.kernel.remesh.map.seams import find_seams
 from spheremesh.kernel.remesh.pipeline import Remeshing, remesh
-from spheremesh.kernel.spheres.rows import normals, pentaspherical, recenter
+from spheremesh.kernel.spheres.incidence import normals
+from spheremesh.kernel.spheres.pentaspherical import pentaspherical
+from spheremesh.kernel.spheres.rows import recenter
 from spheremesh.kernel.surfaces.triangulated import SampleShape, triangulated_surface
 
 Congruence = tuple[Mesh, FloatArray]
@@ -98,10 +101,12 @@ def dome() -> Congruence:
 
 def prepared(
     congruence: Congruence, smoothing: float = 1.0
-) -> tuple[CongruenceMesh, Fans, CombedFrames]:
+) -> tuple[CongruenceMesh, VertexFans, CombedFrames]:
     surface = congruence_mesh(*congruence)
     form = smooth_forms(surface, *conjugate_field(fit_jets(surface)[0]), length=smoothing)
-    fans = vertex_fans(surface)
+    fans = vertex_fans(
+        surface.topology, surface.triangles.ravel(), np.arange(len(surface.points))
+    )
     return surface, fans, comb_frames(surface, fans, *form, 0.3)
 
 

@@ -8,13 +8,14 @@ import pytest
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, norm
-from spheremesh.kernel.congruences.smooth import touching_spheres
+from spheremesh.kernel.congruences.curvature_spheres import touching_spheres
 from spheremesh.kernel.hexagons.evolution import evolve_spheres
 from spheremesh.kernel.meshes.mesh import face_centroids
 from spheremesh.kernel.remesh.net.extraction import Net
 from spheremesh.kernel.remesh.net.net_mesh import net_mesh
 from spheremesh.kernel.remesh.pipeline import remesh
-from spheremesh.kernel.remesh.planar.planarize import Planarization, measure_nodes, planarize
+from spheremesh.kernel.remesh.planar.nodes import measure_nodes
+from spheremesh.kernel.remesh.planar.planarize import Planarization, planarize
 from spheremesh.kernel.remesh.reports import planarization_report
 from spheremesh.kernel.spheres.rows import recenter
 from spheremesh.kernel.surfaces.triangulated import SampleShape, triangulated_surface

@@ -122,7 +122,7 @@ def test_a_step_lowers_the_model_as_far_as_it_goes(damping: float) -> None:
 def test_the_matrix_is_factorised_where_iterations_do_not_settle(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(normal_equations, "MAX_ITERATIONS", 3)
+    monkeypatch.setattr(normal_equations, "MAX_PRODUCTS", 3)
     pattern, residuals, entries = stiff_problem(200)
     problem = linearization(pattern, residuals, entries)
     dense = problem.jacobian.toarray()

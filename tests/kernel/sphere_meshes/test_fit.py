@@ -15,20 +15,23 @@ from spheremesh.kernel.meshes.mesh import face_normals, local_corners, mean_edge
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
 from spheremesh.kernel.spheres.circles import face_circles
-from spheremesh.kernel.spheres.rows import center_radius, evaluate, minkowski, normals
+from spheremesh.kernel.spheres.incidence import evaluate, normals
+from spheremesh.kernel.spheres.minkowski import minkowski
+from spheremesh.kernel.spheres.rows import center_radius
+from spheremesh.kernel.tolerances import CIRCULAR
 
 POINTS = arrays(float, 3, elements=st.floats(-4, 4))
 NETS = ["torus", "ellipsoid", "egg", "catenoid", "vase", "enneper", "roof"]
 
 
-def rough_ball(radius: float = 1.0) -> Mesh:
+def rough_ball(radius: float = 1.0, roughness: float = 0.05) -> Mesh:
     """Quads whose corners lie on a sphere but on no circles."""
     rng = np.random.default_rng(4)
     n_around, n_across = 9, 5
     u, v = np.meshgrid(
         np.linspace(0.2, 2.0, n_around), np.linspace(-0.7, 0.7, n_across), indexing="ij"
     )
-    u, v = u + rng.uniform(-0.05, 0.05, u.shape), v + rng.uniform(-0.05, 0.05, u.shape)
+    u, v = (a + rng.uniform(-roughness, roughness, u.shape) for a in (u, v))
     points = radius * np.stack([np.cos(v) * np.cos(u), np.cos(v) * np.sin(u), np.sin(v)], -1)
     return Mesh(points.reshape(-1, 3), grid_faces(n_around, n_across))
 
@@ -92,6 +95,26 @@ def test_law_d6_exact_on_circular_faces_of_a_sphere(
 def test_law_d6_exact_on_planes(ring: int, assert_spheres_close: Callable[..., None]) -> None:
     found = fit_spheres(rough_sheet(), ring)
     assert_spheres_close(found.spheres, np.array([0, 0, 0, 1.0, 0]), 1e-9, oriented=True)
+
+
+@pytest.mark.parametrize("roughness", [1e-1, 1e-2, 1e-3, 1e-4, 1e-5])
+@pytest.mark.parametrize("radius", [1e-3, 1.0, 1e4])
+def test_law_d6_a_fit_loses_no_more_digits_than_its_corners(
+    radius: float, roughness: float
+) -> None:
+    """
+    Four corners tell their sphere by how far they miss a common circle.
+
+    The error is the rounding over this miss, not over its square.
+    """
+    mesh = rough_ball(radius, roughness)
+    _, miss = face_circles(mesh)
+    edge = mean_edge_length(mesh)
+    is_free = miss > CIRCULAR * edge
+    assert is_free.mean() > 0.8
+    found = fit_spheres(mesh, ring=0).spheres - np.array([-0.5 / radius, 0, 0, 0, radius / 2])
+    error = np.abs(found * [radius, 1, 1, 1, 1 / radius]).max(axis=1)
+    assert (error * miss)[is_free].max() < 1e-14 * edge
 
 
 @pytest.mark.parametrize("distance", [0.0, 1e3, 1e6])

@@ -11,10 +11,10 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, IntArray, dot, norm, unit
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import face_normals, local_corners, mean_edge_length
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
-from spheremesh.kernel.sphere_meshes.mobius_maps import map_sphere_mesh, map_spheres
+from spheremesh.kernel.sphere_meshes.mobius import map_sphere_mesh
 from spheremesh.kernel.sphere_meshes.model_change import (
     SIGNS,
     Branch,
@@ -26,14 +26,19 @@ from spheremesh.kernel.sphere_meshes.model_change import (
 )
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles, vertex_error
 from spheremesh.kernel.sphere_meshes.support_type import support_type
-from spheremesh.kernel.spheres.mobius import compose, inversion, rotation_about, similarity
+from spheremesh.kernel.spheres.incidence import evaluate, normals
+from spheremesh.kernel.spheres.minkowski import minkowski
+from spheremesh.kernel.spheres.mobius_group import (
+    compose,
+    inversion,
+    rotation_about,
+    similarity,
+)
+from spheremesh.kernel.spheres.mobius_images import map_spheres
 from spheremesh.kernel.spheres.rows import (
     center_radius,
-    evaluate,
     from_center_radius,
-    minkowski,
     normalize,
-    normals,
     recenter,
 )
 from spheremesh.kernel.support.beam_tilt import beam_tilt
@@ -191,7 +196,9 @@ def test_law_e7_the_branches_are_reflections_of_each_other(
     if geometry == "elliptic":
         turn.append(similarity(1.0, -np.eye(3), 2 * CENTER))
     mapped = map_sphere_mesh(inner, compose(turn))
-    np.testing.assert_allclose(mapped.mesh.vertices, outer.mesh.vertices, rtol=1e-12)
+    # A coordinate near 0 is rounded as its vertex is: the turn of a map mixes all three.
+    differences = norm(mapped.mesh.vertices - outer.mesh.vertices)
+    assert (differences / norm(outer.mesh.vertices)).max() < 1e-13
     np.testing.assert_array_equal(mapped.mesh.corners, outer.mesh.corners)
     np.testing.assert_allclose(mapped.spheres, outer.spheres, atol=1e-12)
 

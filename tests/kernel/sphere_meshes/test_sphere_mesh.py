@@ -16,7 +16,9 @@ from spheremesh.kernel.meshes.mesh import (
 )
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles, vertex_error
-from spheremesh.kernel.spheres.rows import evaluate, minkowski, recenter
+from spheremesh.kernel.spheres.incidence import evaluate
+from spheremesh.kernel.spheres.minkowski import minkowski
+from spheremesh.kernel.spheres.rows import recenter
 
 NETS = ["torus", "ellipsoid", "egg", "catenoid", "vase", "enneper", "roof"]
 

@@ -17,7 +17,8 @@ from spheremesh.kernel.spheres.arcs import (
     sphere_arcs,
 )
 from spheremesh.kernel.spheres.circles import Circles, circle_pencils, pencil_spheres
-from spheremesh.kernel.spheres.rows import evaluate, normals, project, recenter
+from spheremesh.kernel.spheres.incidence import evaluate, normals, project
+from spheremesh.kernel.spheres.rows import recenter
 
 TAU = np.linspace(-1, 1, 9)
 UNIT_SPHERE = np.array([-0.5, 0, 0, 0, 0.5])

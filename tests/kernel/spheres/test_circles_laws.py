@@ -23,16 +23,14 @@ from spheremesh.kernel.spheres.circles import (
     pencil_spheres,
     sphere_through_points,
 )
+from spheremesh.kernel.spheres.incidence import evaluate, project
+from spheremesh.kernel.spheres.minkowski import angle, minkowski
 from spheremesh.kernel.spheres.rows import (
-    angle,
     center_radius,
-    evaluate,
     from_center_radius,
     from_plane,
     kind,
-    minkowski,
     normalize,
-    project,
     recenter,
     rescale,
 )

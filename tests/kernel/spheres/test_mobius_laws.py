@@ -12,43 +12,47 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import face_normals
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
-from spheremesh.kernel.sphere_meshes.mobius_maps import (
-    map_arcs,
-    map_circles,
-    map_mesh,
-    map_points,
-    map_sphere_mesh,
-    map_spheres,
-    sent_to_infinity,
-)
+from spheremesh.kernel.sphere_meshes.mobius import map_mesh, map_sphere_mesh
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles, vertex_error
 from spheremesh.kernel.spheres.arcs import Arcs, arc_points, sphere_arcs
-from spheremesh.kernel.spheres.circles import Circles, circle_pencils, intersection_circles
-from spheremesh.kernel.spheres.lorentz import SIGNATURE
-from spheremesh.kernel.spheres.mobius import (
+from spheremesh.kernel.spheres.circles import (
+    Circles,
+    PencilKind,
+    circle_pencils,
+    intersection_circles,
+    pencil_kind,
+)
+from spheremesh.kernel.spheres.incidence import evaluate, project
+from spheremesh.kernel.spheres.minkowski import (
+    angle,
+    is_orthogonal,
+    minkowski,
+    minkowski_gradient,
+)
+from spheremesh.kernel.spheres.mobius_group import (
     check_transform,
     compose,
     inverse,
     inversion,
-    is_orthogonal,
-    is_tangent,
-    polar_hyperplane,
     reflection,
     rotation_about,
     similarity,
 )
+from spheremesh.kernel.spheres.mobius_images import (
+    map_arcs,
+    map_circles,
+    map_points,
+    map_spheres,
+    sent_to_infinity,
+)
+from spheremesh.kernel.spheres.pentaspherical import SIGNATURE, pentaspherical
 from spheremesh.kernel.spheres.rows import (
-    angle,
-    evaluate,
     from_center_radius,
     from_plane,
     lift_points,
-    minkowski,
     normalize,
-    pentaspherical,
-    project,
     recenter,
 )
 
@@ -109,8 +113,10 @@ def test_law_a7_orthogonal_and_tangent() -> None:
     through, beside = from_plane(np.eye(3)[:2], np.array([0.0, 1.0]))
     rows = np.stack([ball, upright, touching, within, through, beside])
     assert is_orthogonal(ball, rows).tolist() == [False, True, False, False, True, False]
-    assert is_tangent(ball, rows).tolist() == [True, False, True, True, False, True]
-    assert (is_tangent(-3 * ball, rows) == is_tangent(ball, rows)).all()
+    is_tangent = pencil_kind(ball, rows) == PencilKind.PARABOLIC
+    assert is_tangent.tolist() == [True, False, True, True, False, True]
+    turned = pencil_kind(-3 * ball, rows) == PencilKind.PARABOLIC
+    assert (turned == is_tangent).all()
 
 
 @given(transform=MAPS)
@@ -127,9 +133,9 @@ def test_law_a7_both_are_kept_by_maps(transform: FloatArray) -> None:
 @given(omega=arrays(float, 5, elements=st.floats(-3, 3)), center=POINTS)
 def test_law_a7_polar_hyperplane(omega: FloatArray, center: FloatArray) -> None:
     row = from_center_radius(center, np.array(1.7))
-    covector = polar_hyperplane(omega)
+    covector = minkowski_gradient(omega)
     np.testing.assert_allclose(covector @ row, minkowski(row, omega), atol=1e-11)
-    point = polar_hyperplane(lift_points(center))
+    point = minkowski_gradient(lift_points(center))
     np.testing.assert_allclose(point @ row, -2 * evaluate(row, center), atol=1e-11)
 
 

@@ -10,28 +10,26 @@ from hypothesis.extra.numpy import arrays
 
 from spheremesh.kernel.arrays import FloatArray, dot, norm
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.spheres.rows import (
-    Kind,
-    angle,
-    center_radius,
-    evaluate,
-    from_center_radius,
+from spheremesh.kernel.spheres.incidence import evaluate, normals, project, signed_distance
+from spheremesh.kernel.spheres.minkowski import angle, minkowski
+from spheremesh.kernel.spheres.pentaspherical import (
     from_pentaspherical,
-    from_plane,
     inverse_stereographic,
-    kind,
-    lift_points,
-    minkowski,
-    normalize,
-    normals,
-    offset,
     pentaspherical,
     pole,
-    project,
+    stereographic,
+)
+from spheremesh.kernel.spheres.rows import (
+    Kind,
+    center_radius,
+    from_center_radius,
+    from_plane,
+    kind,
+    lift_points,
+    normalize,
+    offset,
     recenter,
     rescale,
-    signed_distance,
-    stereographic,
 )
 
 POINTS = arrays(float, 3, elements=st.floats(-4, 4))

@@ -12,19 +12,12 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, IntArray, dot, norm
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
-from spheremesh.kernel.optimization.pencil import minimize_angles
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.spheres.arcs import arc_points
-from spheremesh.kernel.spheres.rows import (
-    center_radius,
-    evaluate,
-    from_center_radius,
-    normalize,
-    normals,
-    rescale,
-    signed_distance,
-)
+from spheremesh.kernel.spheres.incidence import evaluate, normals, signed_distance
+from spheremesh.kernel.spheres.rows import center_radius, from_center_radius, normalize, rescale
 from spheremesh.kernel.support.annuli import Annuli, annulus_arcs, corner_mismatch
 from spheremesh.kernel.support.annulus_support import annulus_report, annulus_support
 from spheremesh.kernel.support.node_axes import support_structure

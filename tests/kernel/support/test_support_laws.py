@@ -10,20 +10,14 @@ from hypothesis import strategies as st
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, IntArray, dot, norm, unit
-from spheremesh.kernel.congruences.envelopes import mirror_points
+from spheremesh.kernel.congruences.discrete_envelopes import mirror_points
 from spheremesh.kernel.meshes.mesh import face_centroids, mean_edge_length
-from spheremesh.kernel.optimization.pencil import minimize_angles
-from spheremesh.kernel.sphere_meshes.central import central_spheres
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
+from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
-from spheremesh.kernel.spheres.rows import (
-    evaluate,
-    from_center_radius,
-    from_plane,
-    normalize,
-    rescale,
-    signed_distance,
-)
+from spheremesh.kernel.spheres.incidence import evaluate, signed_distance
+from spheremesh.kernel.spheres.rows import from_center_radius, from_plane, normalize, rescale
 from spheremesh.kernel.support.node_axes import (
     SupportStructure,
     arc_planes,

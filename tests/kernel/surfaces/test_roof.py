@@ -3,7 +3,7 @@ import pytest
 
 from spheremesh.kernel.arrays import norm
 from spheremesh.kernel.meshes.mesh import face_normals, mean_edge_length
-from spheremesh.kernel.optimization.pencil import minimize_angles
+from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles
 from spheremesh.kernel.spheres.circles import face_circles

@@ -21,6 +21,7 @@ from spheremesh.nodes import (
     warn,
 )
 from spheremesh.nodes.graphs.cache import Cache
+from spheremesh.nodes.graphs.node import running_graph
 
 
 class Split(NamedTuple):
@@ -434,3 +435,129 @@ def test_a_writer_that_has_not_written_runs_again(tmp_path: Path) -> None:
     g.run(step)
     g.run(step)
     assert calls["forget"] == 2
+
+
+def test_relative_paths_are_written_to_a_folder(tmp_path: Path) -> None:
+    g = sm.Graph()
+    written = g.add("write_number", value=g.param("k", 7), path="out.txt")
+    again = g.add("add", a=g.add("read_number", path=written))
+    here = Path.cwd()
+    for folder, value in (("first", 7), ("second", 8), ("first", 7)):
+        (tmp_path / folder).mkdir(exist_ok=True)
+        g.set(k=value)
+        assert g.run(written, again, write_to=tmp_path / folder) == ("out.txt", value)
+        assert [path.name for path in (tmp_path / folder).iterdir()] == ["out.txt"]
+    assert float((tmp_path / "second" / "out.txt").read_text()) == 8
+    assert Path.cwd() == here
+    assert not Path("out.txt").exists()
+    assert calls["write_number"] == 2
+    (tmp_path / "first" / "out.txt").unlink()
+    g.run(again, write_to=tmp_path / "first")
+    assert calls["write_number"] == 3
+
+
+def test_files_are_read_from_a_folder_and_absolute_ones_from_where_they_are(
+    tmp_path: Path,
+) -> None:
+    for folder in ("in", "out"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / "in" / "a.txt").write_text("1")
+    (tmp_path / "b.txt").write_text("2")
+    g = sm.Graph()
+    a = g.add("read_number", path="a.txt")
+    b = g.add("read_number", path=tmp_path / "b.txt")
+    written = g.add("write_number", value=3, path=str(tmp_path / "out" / "c.txt"))
+    c = g.add("read_number", path=written)
+    folders = {"read_from": tmp_path / "in", "write_to": tmp_path}
+    assert g.run(a, b, c, **folders) == (1, 2, 3)
+    assert g.run(written, **folders) == str(tmp_path / "out" / "c.txt")
+
+
+def test_a_file_that_was_written_is_read_there_whatever_else_is_read_from(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "in").mkdir()
+    g = sm.Graph()
+    c = g.add("read_number", path=g.add("write_number", value=3, path="c.txt"))
+    assert g.run(c, read_from=tmp_path / "in") == 3
+
+
+def test_all_paths_that_a_writer_returns_are_as_given(tmp_path: Path) -> None:
+    class Files(NamedTuple):
+        first: Path
+        others: list[str]
+
+    @node
+    def write_some(paths: list[str], path: WritePath) -> Files:
+        warn(f"wrote {path}")
+        Path(path).write_text("")
+        return Files(Path(path), [str(path), *paths])
+
+    g = sm.Graph()
+    step = g.add(write_some, paths=["a"], path="sub/x.txt")
+    (tmp_path / "sub").mkdir()
+    with pytest.warns(NodeWarning):
+        assert g.run(step, write_to=tmp_path) == (Path("sub/x.txt"), ["sub/x.txt", "a"])
+    assert g.messages == {"write_some": (f"wrote {Path('sub/x.txt')}",)}
+    mapped = g.add("write_number", value=sm.each([1, 2]), path=sm.each(["a.txt", "b.txt"]))
+    assert g.run(mapped, write_to=tmp_path) == ["a.txt", "b.txt"]
+    assert (tmp_path / "b.txt").exists()
+
+
+def test_a_failure_names_the_path_as_given(tmp_path: Path) -> None:
+    @node
+    def refuse(path: WritePath) -> str:
+        raise ValueError(f"cannot write {path}")
+
+    g = sm.Graph()
+    with pytest.raises(NodeError, match=r"failed: cannot write out\.txt$") as error:
+        g.run(g.add(refuse, path="out.txt"), write_to=tmp_path)
+    assert error.value.reason == "cannot write out.txt"
+
+
+def test_a_run_has_its_own_values_and_steps() -> None:
+    g = sm.Graph("mine")
+    k = g.param("k", 1)
+    sizes = [1.0, 2.0]
+    listed = g.param("sizes", sizes)
+    total = g.add("total", values=listed)
+    target = g.add("add", a=g.add("number", value=k), b=k)
+    texts: list[str] = []
+
+    def meddle(name: str, state: str) -> None:
+        if (name, state) == ("number", "done"):
+            g.set(k=100)
+            g.add("number", "another", value=3)
+            texts.append(running_graph())
+
+    assert g.run(target, on_step=meddle) == 2
+    assert '"value": 1' in texts[0]
+    assert "another" not in texts[0]
+    assert g.run(target) == 200
+    g.set(k=1)
+    assert g.run(target) == 2
+    sizes.append(5.0)
+    g.params["sizes"].value.append(5.0)
+    g.run(listed).append(5.0)
+    assert g.run(total) == 3
+
+
+def test_names_of_many_steps_are_found_at_once() -> None:
+    class Counted(dict[str, Any]):
+        asked = 0
+
+        def __contains__(self, key: object) -> bool:
+            Counted.asked += 1
+            return super().__contains__(key)
+
+    g = sm.Graph()
+    g._steps = Counted()
+    for _ in range(500):
+        g.add("number")
+    assert list(g.steps)[::250] == ["number", "number_251"]
+    assert Counted.asked < 4 * 500
+    g.add("number", "number_502")
+    g.add("number")
+    g.add("number")
+    assert list(g.steps)[-3:] == ["number_502", "number_501", "number_503"]

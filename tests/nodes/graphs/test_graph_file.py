@@ -2,6 +2,8 @@
 
 import difflib
 import json
+import subprocess
+import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -12,6 +14,7 @@ from numpy.typing import NDArray
 
 import spheremesh as sm
 from spheremesh.nodes import GraphError, node
+from spheremesh.nodes.graphs import file
 from spheremesh.nodes.graphs.node import running_graph
 
 
@@ -260,3 +263,34 @@ def test_what_is_no_graph_file(tmp_path: Path, data: bytes, message: str) -> Non
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(GraphError, match=r"none\.json: No such file"):
         sm.Graph.load(tmp_path / "none.json")
+
+
+def test_ports_of_old_files_are_read_by_their_present_names(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    text = example().to_json()
+    old = text.replace('"weights":', '"loads":').replace('"value": {', '"number": {')
+    old = old.replace("split.high", "split.upper")
+    with pytest.raises(GraphError, match=r"steps\.split: .* has no input 'number'"):
+        sm.Graph.from_json(old)
+    renamed = {"mix": {"loads": "weights"}, "split": {"number": "value", "upper": "high"}}
+    monkeypatch.setattr(file, "RENAMED_PORTS", renamed)
+    assert sm.Graph.from_json(old).to_json() == text
+    # a present name is never taken for an old one
+    monkeypatch.setattr(
+        file, "RENAMED_PORTS", {"mix": {"a": "limit"}, "split": {"low": "high"}}
+    )
+    assert sm.Graph.from_json(text).to_json() == text
+
+
+def test_the_table_of_renamed_ports_names_present_ports() -> None:
+    code = """
+from spheremesh.nodes.graphs.file import RENAMED_PORTS
+from spheremesh.nodes.graphs.node import find_node
+for name, ports in RENAMED_PORTS.items():
+    found = find_node(name)
+    for old, new in ports.items():
+        assert new in found.inputs or new in found.outputs, (name, new)
+        assert old not in found.inputs or old not in found.outputs, (name, old)
+"""
+    subprocess.run([sys.executable, "-c", code], check=True)

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 import spheremesh as sm
-from spheremesh.nodes import GraphError, Port, ReadPath, Units, WritePath, node
+from spheremesh.nodes import GraphError, NodeWarning, Port, ReadPath, Units, WritePath, node
 from spheremesh.nodes.graphs.node import REGISTRY, find_node
 from spheremesh.nodes.graphs.ports import REQUIRED
 
@@ -199,7 +199,7 @@ def test_two_nodes_of_one_name() -> None:
         node(other)
 
 
-def test_a_node_defined_anew_does_not_get_old_results() -> None:
+def test_a_function_defined_anew_is_seen() -> None:
     def define(factor: float) -> Any:  # noqa: ANN401
         @node
         def scale(a: float) -> float:
@@ -209,13 +209,28 @@ def test_a_node_defined_anew_does_not_get_old_results() -> None:
 
     g = sm.Graph()
     old = define(2)
-    assert g.run(g.add(old, a=1)) == 2
+    step = g.add(old, a=1)
+    after = g.add("scale", "after", a=step)
+    assert g.run(step) == 2
+    assert g.messages == {}
+    key = g._cache._entries.copy().keys()
     new = define(3)
-    assert g.run(g.add(new, a=1)) == 3
+    with pytest.warns(NodeWarning, match=r"step 'scale': its function scale was replaced"):
+        assert g.run(step) == 2
+    assert g._cache._entries.keys() == key, "the old step keeps its key"
+    assert list(g.messages) == ["scale"]
+    assert "add it again to use the new one" in g.messages["scale"][0]
+    added = g.add(new, a=1)
+    assert g.run(added) == 3
+    assert list(g.messages) == ["scale"], "of the old step alone"
+    with pytest.warns(NodeWarning, match="its function scale was replaced") as told:
+        assert g.run(after) == 4
+    assert [str(w.message).partition(":")[0] for w in told] == ["step 'scale'", "step 'after'"]
     with pytest.raises(
         GraphError, match="scale is not a node: decorate its present definition"
     ):
         g.add(old, a=1)
+    assert sm.Graph.from_json(g.to_json()).run("scale") == 3
 
 
 def test_a_plain_function_is_no_node() -> None:

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from spheremesh import Mesh, SphereMesh
-from spheremesh.kernel.congruences.smooth import sphere_congruence
+from spheremesh.kernel.congruences.curvature_spheres import sphere_congruence
 from spheremesh.kernel.errors import ConvergenceError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
-from spheremesh.kernel.remesh.field.directions import conjugate_directions
+from spheremesh.kernel.remesh.field.conjugate_directions import conjugate_directions
 from spheremesh.kernel.remesh.planar import planarize
 from spheremesh.kernel.surfaces.triangulated import triangulated_surface
 from spheremesh.nodes import planarize_p4, relax_congruence

@@ -154,7 +154,7 @@ def test_a_mesh_that_cannot_be_remeshed_is_one_clear_error() -> None:
     imaginary = spheres.copy()
     imaginary[[3, 7]] = [1.0, 0, 0, 0, 50.0]
     cases = [
-        (quads, around, "needs triangles.*use triangulate first"),
+        (quads, around, "no triangles: triangulate the mesh first"),
         (mesh, imaginary, r"vertices \[3, 7\] are imaginary"),
         (two, np.tile(spheres, (2, 1)), "2 separate pieces: remesh them one by one"),
     ]

@@ -1,0 +1,131 @@
+"""
+Reads mesh files: polygons in the order of the file; the suffix names the format.
+
+The parsers are ours because a face is a panel: trimesh cuts polygons into triangles; meshio
+5.3.5 reads only triangles from OFF, mistakes negative OBJ numbers, fails on ``vertex_index``
+in PLY, and leaves the program when it cannot read a file.
+"""
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Final
+
+from ...kernel.errors import InputError
+from ...kernel.meshes.mesh import Mesh
+from ..polygons import Polygons, to_mesh
+from ..rhino.reader import read_3dm
+from ..rhino.surface_reader import GridSize
+from .obj import read_obj
+from .off import read_off
+from .ply import read_ply
+from .stl import read_stl
+
+_READERS: Final[dict[str, Callable[[bytes], Polygons]]] = {
+    ".off": read_off,
+    ".ply": read_ply,
+    ".stl": read_stl,
+}
+SUFFIXES: Final = (".obj", *_READERS, ".3dm")
+"""The formats of mesh files, by suffix; capitals do."""
+
+
+def read_mesh(
+    path: str | os.PathLike[str], layer: str = "", n_u: int = 24, n_v: int = 24
+) -> Mesh:
+    """
+    Read a mesh with faces of mixed degree from an OBJ, OFF, PLY, STL or Rhino .3dm file.
+
+    Surfaces of a .3dm are read as grids of quads whose vertices lie exactly on them.
+
+    Parameters
+    ----------
+    path : path
+        The file; its suffix names the format.
+    layer : str
+        Read only a part of the file. OBJ: the groups and objects whose name starts so. .3dm:
+        the layer of this full path (``Roof::Panels``) with its sublayers. The other formats
+        have no layers. Empty reads all.
+    n_u, n_v : int
+        Quads along u and v of each face where a .3dm holds surfaces or polysurfaces and no
+        meshes. Faces trimmed by other than four edges take even numbers; faces of a
+        polysurface meet where the numbers along their common edge agree.
+
+    Returns
+    -------
+    Mesh
+        Faces in the order of the file. OBJ, OFF and PLY keep the vertex numbers of the file,
+        unused vertices included; reading a layer keeps the vertices of its faces. STL and
+        .3dm share coincident corners. Units are those of the file.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or is no orientable manifold mesh; the message names the
+        file, the line (of text files) or the faces, and what to do. Faces are never flipped.
+    """
+    source = Path(path)
+    suffix = mesh_suffix(source, "read")
+    if layer and suffix in _READERS:
+        raise InputError(f"cannot read {source}: {suffix} files have no layers; drop {layer!r}")
+    if min(n_u, n_v) < 1:
+        raise InputError(f"a grid of {n_u} by {n_v} quads has no faces; ask for at least 1")
+    data = _read_bytes(source)
+    try:
+        if suffix == ".3dm":
+            return to_mesh(read_3dm(data, layer, GridSize(n_u, n_v)))
+        if suffix == ".obj":
+            return to_mesh(read_obj(data, layer))
+        return to_mesh(_READERS[suffix](data))
+    except InputError as error:
+        raise InputError(f"cannot read {source}: {error}") from error
+
+
+def mesh_suffix(path: Path, verb: str) -> str:
+    """
+    The format of a mesh file.
+
+    Parameters
+    ----------
+    path : Path
+    verb : str
+        What is to be done with it, for the message.
+
+    Returns
+    -------
+    str
+        Its suffix, one of `SUFFIXES`.
+
+    Raises
+    ------
+    InputError
+        If it is a folder, no file can have that name, or the format is not known.
+    """
+    suffix = path.suffix.lower()
+    try:
+        is_folder = path.is_dir()
+    except (OSError, ValueError) as error:
+        raise InputError(f"cannot {verb} {path}: {error}; check the path") from error
+    if is_folder:
+        raise InputError(f"cannot {verb} {path}: it is a folder; name a file in it")
+    if suffix not in SUFFIXES:
+        raise InputError(
+            f"cannot {verb} {path}: {suffix or 'no suffix'} is not a mesh format; use one of "
+            f"{', '.join(SUFFIXES)}"
+        )
+    return suffix
+
+
+def _read_bytes(path: Path) -> bytes:
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        raise InputError(f"cannot read {path}: there is no such file; check the path") from None
+    except PermissionError:
+        raise InputError(f"cannot read {path}: you may not; change its permissions") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"cannot read {path}: {reason}; check the path") from error
+    if not data.strip():
+        raise InputError(f"cannot read {path}: the file is empty; export the mesh again")
+    return data

@@ -1,0 +1,255 @@
+"""Reads the byte stream of openNURBS objects: where numbers and checksums stand."""
+
+import struct
+import zlib
+from collections.abc import Generator
+from contextlib import contextmanager
+from typing import NamedTuple
+
+from . import stream_codes as codes
+
+
+class UnreadableError(Exception):
+    """A stream that is not what it should be; the message says where."""
+
+
+class BufferPlace(NamedTuple):
+    """A buffer: where its bytes stand, and whether they are deflated."""
+
+    start: int
+    stop: int
+    is_deflated: bool
+
+
+class StreamReader:
+    """
+    Reads a stream from front to back.
+
+    Every method that reads raises `UnreadableError` where the stream ends too early or holds
+    something else.
+
+    Parameters
+    ----------
+    data : bytes
+
+    Attributes
+    ----------
+    position : int
+        Where the next byte is.
+    checksums : list of Checksum
+        Checksums passed so far.
+    numbers : list of (int, int)
+        Places and counts of the float64 numbers passed so far.
+    """
+
+    def __init__(self, data: bytes) -> None:
+        self.data = data
+        self.position = 0
+        self.limit = len(data)
+        self.checksums: list[codes.Checksum] = []
+        self.own: list[tuple[int, int]] = []
+        self.begin = 0
+        self.numbers: list[tuple[int, int]] = []
+
+    def take(self, count: int) -> int:
+        """
+        Pass bytes.
+
+        Parameters
+        ----------
+        count : int
+
+        Returns
+        -------
+        int
+            Where they begin.
+        """
+        start = self.position
+        if not 0 <= count <= self.limit - start:
+            raise UnreadableError(f"the stream is cut short at byte {start}")
+        self.position += count
+        return start
+
+    def ints(self, count: int) -> tuple[int, ...]:
+        """
+        Read int32 numbers.
+
+        Parameters
+        ----------
+        count : int
+
+        Returns
+        -------
+        tuple of int
+            The numbers.
+        """
+        return struct.unpack_from(f"<{count}i", self.data, self.take(4 * count))
+
+    def doubles(self, count: int) -> int:
+        """
+        Pass float64 numbers.
+
+        Parameters
+        ----------
+        count : int
+
+        Returns
+        -------
+        int
+            Where they begin.
+        """
+        start = self.take(8 * count)
+        self.numbers.append((start, count))
+        return start
+
+    def counted_ints(self) -> tuple[int, ...]:
+        """
+        Read int32 numbers that follow their count.
+
+        Returns
+        -------
+        tuple of int
+            The numbers.
+        """
+        return self.ints(self.ints(1)[0])
+
+    def expect(self, expected: bytes, name: str) -> None:
+        """
+        Pass known bytes.
+
+        Parameters
+        ----------
+        expected : bytes
+        name : str
+            What they are, for the message.
+        """
+        start = self.take(len(expected))
+        if self.data[start : self.position] != expected:
+            raise UnreadableError(f"{name} expected at byte {start}")
+
+    @contextmanager
+    def chunk(self, typecode: int) -> Generator[None]:
+        """
+        Read a chunk; the block must consume its body.
+
+        Parameters
+        ----------
+        typecode : int
+            What it must be.
+
+        Yields
+        ------
+        None
+            With the cursor at its body.
+        """
+        start = self.take(codes.CHUNK_HEADER.size)
+        found, length = codes.CHUNK_HEADER.unpack_from(self.data, start)
+        if found != typecode:
+            raise UnreadableError(f"chunk {typecode:#x} expected at byte {start}")
+        tail = codes.CRC.size if typecode & codes.CRC_FLAG else 0
+        if not tail <= length <= self.limit - self.position:
+            raise UnreadableError(f"the chunk at byte {start} reaches beyond its end")
+        outer_limit, outer_own = self.limit, [*self.own, (self.begin, start)]
+        self.limit = self.position + length - tail
+        self.own, self.begin = [], self.position
+        yield
+        if self.position != self.limit:
+            raise UnreadableError(f"the chunk at byte {start} has bytes left over")
+        if tail:
+            ranges = (*self.own, (self.begin, self.position))
+            self.checksums.append(codes.Checksum(self.position, ranges))
+        self.limit, self.own = outer_limit, outer_own
+        self.take(tail)
+        self.begin = self.position
+
+    @contextmanager
+    def object(self) -> Generator[bytes]:
+        """
+        Read an object; the block must consume it.
+
+        Yields
+        ------
+        bytes
+            Id of its class.
+        """
+        with self.chunk(codes.CLASS):
+            with self.chunk(codes.CLASS_UUID):
+                start = self.take(16)
+            with self.chunk(codes.CLASS_DATA):
+                yield self.data[start : start + 16]
+            self.expect(codes.CHUNK_HEADER.pack(codes.CLASS_END, 0), "the end of an object")
+
+    @contextmanager
+    def table(self, minor: int = 0) -> Generator[int]:
+        """
+        Read a table of records; the block must consume them.
+
+        Parameters
+        ----------
+        minor : int
+            Highest version 1.`minor` known.
+
+        Yields
+        ------
+        int
+            Number of records.
+        """
+        with self.chunk(codes.ANONYMOUS):
+            version = self.data[self.take(1)]
+            if version not in range(16, 17 + minor):
+                raise UnreadableError(f"a table of unknown version before {self.position}")
+            yield self.ints(1)[0]
+
+    def buffer(self, size: int) -> BufferPlace:
+        """
+        Pass a buffer.
+
+        Parameters
+        ----------
+        size : int
+            What it must hold, in bytes.
+
+        Returns
+        -------
+        BufferPlace
+            Where its bytes stand.
+        """
+        begin = self.position
+        if self.ints(1)[0] != size:
+            raise UnreadableError(f"the buffer at byte {begin} does not hold {size} bytes")
+        if size == 0:
+            return BufferPlace(self.position, self.position, is_deflated=False)
+        place = self.take(codes.CRC.size)
+        method = self.data[self.take(1)]
+        if method == 0:
+            start = self.take(size)
+            self.checksums.append(codes.Checksum(place, ((start, self.position),)))
+            return BufferPlace(start, self.position, is_deflated=False)
+        with self.chunk(codes.ANONYMOUS):
+            start = self.take(self.limit - self.position)
+            found = BufferPlace(start, self.position, is_deflated=True)
+        content = inflated(self.data, found)
+        (checksum,) = codes.CRC.unpack_from(self.data, place)
+        if len(content) != size or checksum != zlib.crc32(content):
+            raise UnreadableError(f"the buffer at byte {begin} does not inflate to its content")
+        return found
+
+
+def inflated(data: bytes, buffer: BufferPlace) -> bytes:
+    """
+    Content of a deflated buffer.
+
+    Parameters
+    ----------
+    data : bytes
+    buffer : BufferPlace
+
+    Returns
+    -------
+    bytes
+        The content; empty if the bytes are damaged.
+    """
+    try:
+        return zlib.decompress(data[buffer.start : buffer.stop])
+    except zlib.error:
+        return b""

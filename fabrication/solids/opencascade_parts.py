@@ -1,0 +1,249 @@
+"""
+Parts of OpenCASCADE shapes: vertices, edges, faces and solids, built directly and shared.
+
+This module imports OCP, which takes more than a second: others import it inside functions.
+"""
+
+from collections.abc import Iterable
+
+import numpy as np
+from OCP.BRep import BRep_Builder
+from OCP.Geom import Geom_Circle, Geom_Curve, Geom_Line, Geom_Surface
+from OCP.Geom2d import Geom2d_BSplineCurve
+from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Pnt2d, gp_Trsf, gp_Vec
+from OCP.TColgp import TColgp_Array1OfPnt2d
+from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
+from OCP.TopAbs import TopAbs_Orientation
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import (
+    TopoDS_Edge,
+    TopoDS_Face,
+    TopoDS_Shape,
+    TopoDS_Shell,
+    TopoDS_Solid,
+    TopoDS_Vertex,
+    TopoDS_Wire,
+)
+
+from ...kernel.arrays import FloatArray, norm
+from ...kernel.spheres.arcs import ArcCircles, Arcs, circle_axes
+
+BUILDER = BRep_Builder()
+"""Builder of all shapes; it has no state."""
+
+
+def placement(origin: list[float]) -> TopLoc_Location:
+    """
+    A translation.
+
+    Parameters
+    ----------
+    origin : list of 3 float
+        Where the origin of a shape goes.
+
+    Returns
+    -------
+    TopLoc_Location
+        For `TopoDS_Shape.Located`.
+    """
+    translation = gp_Trsf()
+    translation.SetTranslation(gp_Vec(*origin))
+    return TopLoc_Location(translation)
+
+
+def make_vertex(point: list[float], tolerance: float) -> TopoDS_Vertex:
+    """
+    A vertex.
+
+    Parameters
+    ----------
+    point : list of 3 float
+    tolerance : float
+
+    Returns
+    -------
+    TopoDS_Vertex
+        To be shared by the edges that meet there.
+    """
+    vertex = TopoDS_Vertex()
+    BUILDER.MakeVertex(vertex, gp_Pnt(*point), tolerance)
+    return vertex
+
+
+def make_edge(
+    curve: Geom_Curve,
+    start: TopoDS_Vertex,
+    end: TopoDS_Vertex,
+    length: float,
+    tolerance: float,
+    first: float = 0.0,
+) -> TopoDS_Edge:
+    """
+    An edge between two vertices.
+
+    Parameters
+    ----------
+    curve : Geom_Curve
+    start, end : TopoDS_Vertex
+    length : float
+        Length of the range of parameters.
+    tolerance : float
+    first : float
+        Parameter of the start.
+
+    Returns
+    -------
+    TopoDS_Edge
+        To be shared by the faces on its sides.
+    """
+    edge = TopoDS_Edge()
+    BUILDER.MakeEdge(edge, curve, tolerance)
+    BUILDER.Add(edge, start.Oriented(TopAbs_Orientation.TopAbs_FORWARD))
+    BUILDER.Add(edge, end.Oriented(TopAbs_Orientation.TopAbs_REVERSED))
+    BUILDER.Range(edge, first, first + length)
+    return edge
+
+
+def make_face(
+    surface: Geom_Surface, ring: Iterable[TopoDS_Shape], tolerance: float
+) -> TopoDS_Face:
+    """
+    Face to the left of a closed chain of oriented edges.
+
+    Parameters
+    ----------
+    surface : Geom_Surface
+    ring : iterable of TopoDS_Shape
+        Oriented edges, counter-clockwise about the normal of the surface.
+    tolerance : float
+
+    Returns
+    -------
+    TopoDS_Face
+        With the normal of the surface.
+    """
+    wire = TopoDS_Wire()
+    BUILDER.MakeWire(wire)
+    for edge in ring:
+        BUILDER.Add(wire, edge)
+    wire.Closed(theIsClosed=True)
+    face = TopoDS_Face()
+    BUILDER.MakeFace(face, surface, tolerance)
+    BUILDER.Add(face, wire)
+    return face
+
+
+def make_solid(faces: Iterable[TopoDS_Shape]) -> TopoDS_Solid:
+    """
+    Solid in a closed shell.
+
+    Parameters
+    ----------
+    faces : iterable of TopoDS_Shape
+        Faces that share their edges, normals outwards.
+
+    Returns
+    -------
+    TopoDS_Solid
+        What the faces enclose.
+    """
+    shell = TopoDS_Shell()
+    BUILDER.MakeShell(shell)
+    for face in faces:
+        BUILDER.Add(shell, face)
+    shell.Closed(theIsClosed=True)
+    solid = TopoDS_Solid()
+    BUILDER.MakeSolid(solid)
+    BUILDER.Add(solid, shell)
+    return solid
+
+
+def arc_curves(arcs: Arcs, circles: ArcCircles) -> tuple[list[Geom_Curve], list[float]]:
+    """
+    Curves from parameter 0 at the starts of arcs, and the parameters of their ends.
+
+    Parameters
+    ----------
+    arcs : Arcs
+        H arcs.
+    circles : ArcCircles
+
+    Returns
+    -------
+    curves : list of Geom_Curve
+        H circles, or lines where arcs are straight.
+    lengths : list of float
+        H parameters: angles, or lengths.
+    """
+    starts, chords = arcs.starts, arcs.ends - arcs.starts
+    x_axes, _ = circle_axes(arcs, circles)
+    curves: list[Geom_Curve] = []
+    for start, chord, center, axis, x, radius in zip(
+        starts.tolist(), chords.tolist(), circles.centers.tolist(), circles.axes.tolist(),
+        x_axes.tolist(), circles.radii.tolist(), strict=True,
+    ):  # fmt: skip
+        if radius == np.inf:
+            curves.append(Geom_Line(gp_Pnt(*start), gp_Dir(*chord)))
+        else:
+            axes = gp_Ax2(gp_Pnt(*center), gp_Dir(*axis), gp_Dir(*x))
+            curves.append(Geom_Circle(axes, radius))
+    lengths = np.where(np.isinf(circles.radii), norm(chords), circles.sweeps)
+    return curves, lengths.tolist()
+
+
+def quintic_poles(nodes: FloatArray, steps: FloatArray) -> FloatArray:
+    """
+    Poles of quintic splines with triple inner knots, through n + 1 nodes.
+
+    With the Bézier points b₃, b₄ before an inner node and b₂ after it, the three poles of its
+    knot are b₃, 2 b₄ - b₃, b₂. The first and last three poles are Bézier points.
+
+    Parameters
+    ----------
+    nodes : (3, H, n + 1, 2) float array
+        Values and first two derivatives.
+    steps : (H,) float array
+        Distances of the knots.
+
+    Returns
+    -------
+    (H, 3n + 3, 2) float array
+        For `make_spline`.
+    """
+    value, rate, bend = nodes
+    rate = rate * steps[:, None, None]
+    bend = bend * steps[:, None, None] ** 2
+    before = value - 0.4 * rate + 0.05 * bend
+    after = value + 0.4 * rate + 0.05 * bend
+    middle = 2 * (value - 0.2 * rate) - before
+    ring = np.stack([before, middle, after], 2)
+    ring[:, 0] = np.stack([value, value + 0.2 * rate, after], 2)[:, 0]
+    ring[:, -1] = np.stack([before, value - 0.2 * rate, value], 2)[:, -1]
+    return ring.reshape(len(steps), -1, 2)
+
+
+def make_spline(knots: list[float], poles: list[list[float]]) -> Geom2d_BSplineCurve:
+    """
+    A quintic spline in the parameters of a surface.
+
+    Parameters
+    ----------
+    knots : list of n + 1 float
+    poles : list of 3n + 3 points
+
+    Returns
+    -------
+    Geom2d_BSplineCurve
+        Triple at its inner knots.
+    """
+    points = TColgp_Array1OfPnt2d(1, len(poles))
+    for i, pole in enumerate(poles, 1):
+        points.SetValue(i, gp_Pnt2d(*pole))
+    values = TColStd_Array1OfReal(1, len(knots))
+    multiplicities = TColStd_Array1OfInteger(1, len(knots))
+    for i, knot in enumerate(knots, 1):
+        values.SetValue(i, knot)
+        multiplicities.SetValue(i, 3)
+    multiplicities.SetValue(1, 6)
+    multiplicities.SetValue(len(knots), 6)
+    return Geom2d_BSplineCurve(points, values, multiplicities, 5)

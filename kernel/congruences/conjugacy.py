@@ -1,0 +1,43 @@
+"""How far parametrisations and nets are from conjugate (Def. 2.2)."""
+
+import numpy as np
+
+from ..arrays import FloatArray, norm
+from ..tolerances import EPSILON
+
+
+def conjugacy_residuals(
+    along_u: FloatArray, along_v: FloatArray, mixed: FloatArray, lift: FloatArray | None = None
+) -> FloatArray:
+    """
+    How far a parametrisation or a net is from conjugate: distance of f_uv from a span.
+
+    Parameters
+    ----------
+    along_u, along_v : (..., n) float array
+        First derivatives; of a net the differences along the two sides of a face.
+    mixed : (..., n) float array
+        Derivative f_uv; of a net the difference of the differences.
+    lift : (..., n) float array, optional
+        The map itself where it is projective, for example rows of spheres, of any scale.
+
+    Returns
+    -------
+    (...) float array
+        Distance of f_uv from ``[f_u, f_v]``, or from ``[f, f_u, f_v]`` with a lift; in the
+        unit of f_uv. Zero means conjugate, in every coordinate system; other values depend on
+        the parametrisation, and with a lift on its scale and coordinates.
+
+    References
+    ----------
+    Meshes with Spherical Faces, Def. 2.2 and below.
+    """
+    vectors = [along_u, along_v] if lift is None else [lift, along_u, along_v]
+    lengths = [norm(vector)[..., None] for vector in vectors]
+    scaled = [
+        v / np.where(size > 0, size, 1.0) for v, size in zip(vectors, lengths, strict=True)
+    ]
+    frames, values, _ = np.linalg.svd(np.stack(scaled, -1), full_matrices=False)
+    used = values > 8 * EPSILON * values[..., :1]
+    shares = np.where(used, np.einsum("...ij,...i->...j", frames, mixed), 0.0)
+    return norm(mixed - np.einsum("...ij,...j->...i", frames, shares))

@@ -1,0 +1,108 @@
+"""Pentaspherical coordinates, and the stereographic image of space on the unit 3-sphere."""
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, dot, norm
+from ..tolerances import EPSILON
+
+SIGNATURE = np.diag([1.0, 1.0, 1.0, 1.0, -1.0])
+"""J: the Minkowski product of pentaspherical coordinates s and t is ``sᵀ J t``."""
+
+
+def pentaspherical(rows: FloatArray) -> FloatArray:
+    """
+    Pentaspherical coordinates ``(B, C - A, C + A)``, of signature (+, +, +, +, -).
+
+    Parameters
+    ----------
+    rows : (..., 5) float array
+
+    Returns
+    -------
+    (..., 5) float array
+        Coordinates with the same Minkowski product.
+    """
+    a, c = rows[..., :1], rows[..., 4:]
+    return np.concatenate([rows[..., 1:4], c - a, c + a], axis=-1)
+
+
+def from_pentaspherical(coordinates: FloatArray) -> FloatArray:
+    """
+    Rows of pentaspherical coordinates.
+
+    Parameters
+    ----------
+    coordinates : (..., 5) float array
+        Coordinates ``(B, C - A, C + A)``.
+
+    Returns
+    -------
+    (..., 5) float array
+        Rows.
+    """
+    minus, plus = coordinates[..., 3:4], coordinates[..., 4:5]
+    return np.concatenate(
+        [(plus - minus) / 2, coordinates[..., :3], (plus + minus) / 2], axis=-1
+    )
+
+
+def stereographic(points: FloatArray) -> FloatArray:
+    """
+    Stereographic image of points of space on the unit 3-sphere, from the north pole.
+
+    Parameters
+    ----------
+    points : (..., 3) float array
+
+    Returns
+    -------
+    (..., 4) float array
+        Points of norm 1.
+    """
+    square = dot(points, points)[..., None]
+    return np.concatenate([2 * points, square - 1], axis=-1) / (square + 1)
+
+
+def inverse_stereographic(points: FloatArray) -> FloatArray:
+    """
+    Central projection from the north pole of the 3-sphere back to space.
+
+    Parameters
+    ----------
+    points : (..., 4) float array
+        Points of R⁴; of the unit 3-sphere, or poles of spheres (then centres come out).
+
+    Returns
+    -------
+    (..., 3) float array
+        Points; infinite for the north pole itself.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return points[..., :3] / (1 - points[..., 3:])
+
+
+def pole(rows: FloatArray) -> tuple[FloatArray, BoolArray]:
+    """
+    Pole, with respect to the unit 3-sphere, of the stereographic image of a sphere.
+
+    Parameters
+    ----------
+    rows : (..., 5) float array
+        Rows of any scale.
+
+    Returns
+    -------
+    pole : (..., 4) float array
+        ``(B, C - A) / (C + A)``; where the pole is at infinity, its direction.
+    is_infinite : (...) bool array
+        Where ``C + A = 0``: the image is a great sphere.
+
+    References
+    ----------
+    Meshes with Spherical Faces, eq. (2).
+    """
+    coordinates = pentaspherical(rows)
+    last = coordinates[..., 4]
+    is_infinite = np.abs(last) <= EPSILON * norm(coordinates)
+    divisor = np.where(is_infinite, 1.0, last)[..., None]
+    return coordinates[..., :4] / divisor, is_infinite
