@@ -112,7 +112,6 @@ class Graph:
         Parameters
         ----------
         name : str
-            A name that is free.
         value : object
         min, max : float, optional
             Range of a number, the ends included.
@@ -126,7 +125,7 @@ class Graph:
         Raises
         ------
         GraphError
-            If the name is taken or the value is not allowed.
+            If the name is taken or the value not allowed.
         """
         if name in self._params:
             raise GraphError(f"there is a param {name!r} already; change it with set")
