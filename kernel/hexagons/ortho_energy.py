@@ -48,7 +48,7 @@ def ortho_residuals(
 
     Parameters
     ----------
-    points, normals, triangles, offsets
+    points, normals, triangles, offsets : arrays
         As for `axis_deviations`.
     bound : float
         Angle allowed between axis and normal, in radians.

@@ -148,12 +148,7 @@ def _check_vertex_fans(
 
 
 def previous_corners(topology: Topology) -> IntArray:
-    """The corner before each corner in its face: inverse of `Topology.next_corners`.
-
-    Returns
-    -------
-    (H,) int array
-    """
+    """The corner (H,) before each corner in its face: inverse of `Topology.next_corners`."""
     result = np.empty_like(topology.next_corners)
     result[topology.next_corners] = np.arange(len(result))
     return result
