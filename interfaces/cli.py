@@ -1,5 +1,4 @@
-"""
-The command line.
+"""The command line.
 
 The docstrings of the commands are their help: click adds the options.
 
@@ -7,6 +6,7 @@ Exit codes: 0 done, 1 a library of the system is missing, 2 usage, 3 bad input, 
 5 finished but a quality gate failed. An error is one line on standard error.
 """
 
+import inspect
 import json
 import math
 import sys
@@ -97,8 +97,7 @@ def panel(  # numpydoc ignore=PR01
     as_json: bool,
     **options: Any,  # noqa: ANN401
 ) -> None:
-    """
-    Panel a MESH with spheres and write CAD files, schedule and report.
+    """Panel a MESH with spheres and write CAD files, schedule and report.
 
     Reads OBJ, OFF, PLY, STL and .3dm. Without MESH, a demonstration roof is panelled.
     """
@@ -133,8 +132,7 @@ def run(  # numpydoc ignore=PR01
     graph_file: Path, settings: tuple[str, ...], targets: tuple[str, ...], out: Path, *,
     strict: bool, as_json: bool,
 ) -> None:  # fmt: skip
-    """
-    Run a graph: all of it, or what a target needs.
+    """Run a graph: all of it, or what a target needs.
 
     Relative paths are read from the working directory and written to the output folder. The
     graph of a panel job writes its report and itself anew.
@@ -318,12 +316,18 @@ def _print_audit(audit: Mapping[str, Any]) -> None:
 
 
 def _print_node(node: "Node") -> None:
+    from ..kernel.reports import Report
+
     click.echo(f"{click.style(node.name, bold=True)} ({node.category})\n\n{node.summary}")
     for title, ports in (("Inputs", node.inputs), ("Outputs", node.outputs)):
         click.echo(f"\n{click.style(title, bold=True)}")
         for port in ports.values():
             click.echo(f"  {port.name} : {_port_facts(port)}")
-            click.echo(textwrap.indent(textwrap.fill(port.help, 84), "      "))
+            if port.help:
+                click.echo(textwrap.indent(textwrap.fill(port.help, 84), "      "))
+            if isinstance(port.type, type) and issubclass(port.type, Report):
+                fields = (inspect.getdoc(port.type) or "").partition("-\n")[2]
+                click.echo(textwrap.indent(fields, "        "))
 
 
 def _port_facts(port: "Port") -> str:

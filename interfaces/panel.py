@@ -22,8 +22,7 @@ _LAYERS = {"constant": "offset", "power": "power"}
 
 @dataclass(frozen=True)
 class PanelOptions:
-    """
-    What the main job is asked to do.
+    """What the main job is asked to do.
 
     Attributes
     ----------
@@ -76,8 +75,7 @@ class PanelOptions:
 
 
 def panel_graph(options: PanelOptions) -> Graph:
-    """
-    The graph of the main job.
+    """The graph of the main job.
 
     Parameters
     ----------
@@ -196,13 +194,7 @@ def _beams(graph: Graph, options: PanelOptions, spheres: Wire) -> dict[str, Step
 
 
 def is_panel_job(graph: Graph) -> bool:
-    """
-    Whether a graph is the main job, perhaps with other values and further steps.
-
-    Parameters
-    ----------
-    graph : Graph
-        A graph.
+    """Whether a graph is the main job, perhaps with other values and further steps.
 
     Returns
     -------
@@ -217,8 +209,7 @@ def is_panel_job(graph: Graph) -> bool:
 def run_job(
     graph: Graph, folder: Path, progress: Progress
 ) -> tuple[dict[str, Any], tuple[str, ...]]:
-    """
-    Run the main job and write all of its files, or none.
+    """Run the main job and write all of its files, or none.
 
     Parameters
     ----------
@@ -239,7 +230,7 @@ def run_job(
     Raises
     ------
     InputError, ConvergenceError, NodeError, GraphError
-        If the input cannot be used, the optimisation does not come to rest, or no panel can be
+        If the input cannot be used, the optimisation does not converge, or no panel can be
         made; nothing is written then.
     """
     began = time.perf_counter()
@@ -285,7 +276,7 @@ def _refuse_unfinished(optimum: Mapping[str, Any]) -> None:
     if not optimum["converged"]:
         stage = optimum["stages"][-1]
         raise ConvergenceError(
-            f"the optimisation did not come to rest in {stage['iterations']} iterations of "
+            f"the optimisation did not converge in {stage['iterations']} iterations of "
             f"its stage {stage['name']!r}: allow more tolerance, or look for nearly degenerate "
             "faces"
         )

@@ -1,5 +1,4 @@
-"""
-Beams as solids of OpenCASCADE: planes, cylinders, lines, circles and ellipses, all exact.
+"""Beams as solids of OpenCASCADE: planes, cylinders, lines, circles and ellipses, all exact.
 
 A beam has two plane sides, an outer and an inner face - cylinders, or planes where the arcs
 are straight - and one or two plane faces at each end. A plane cuts a cylinder in an ellipse, or
@@ -32,7 +31,7 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape, TopoDS_Vertex
 
 from ...kernel.arrays import FloatArray, dot, norm
 from ...kernel.beams.beams import Beams, scale_beams
-from ...kernel.beams.end_edges import CutEdges
+from ...kernel.beams.end_edges import EndEdges
 from ...kernel.spheres.arcs import circle_axes
 from . import opencascade_parts as occ
 from .beam_geometry import LEVELS, BeamGeometry, beam_geometry
@@ -76,12 +75,10 @@ class _Block:
 
 
 def beam_shapes(beams: Beams, scale: float = 1.0) -> list[TopoDS_Shape]:
-    """
-    A closed solid per beam.
+    """A closed solid per beam.
 
     Parameters
     ----------
-    beams : Beams
     scale : float
         Units of the shapes per model unit; OpenCASCADE's tolerances suit millimetres.
 
@@ -139,7 +136,7 @@ def _sides(numbers: BeamGeometry, level: int) -> _Sides:
 
 
 def _cut_parameters(
-    cuts: CutEdges, centers: FloatArray, radii: FloatArray, frames: FloatArray
+    cuts: EndEdges, centers: FloatArray, radii: FloatArray, frames: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Knots (B, 2, 2, n + 1) and poles of the ellipses in the parameters of the cylinders."""
     lengths = np.where(cuts.is_line, 0.0, cuts.lengths)

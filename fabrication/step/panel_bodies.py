@@ -1,5 +1,4 @@
-"""
-Panels as bodies of STEP files: spheres, planes, circles and lines, all exact.
+"""Panels as bodies of STEP files: spheres, planes, circles and lines, all exact.
 
 Every body is made about the rounded origin of its panel, wherever the model stands on the site:
 the remainder is in its own numbers, and no digit is lost. The sphere of a face has its axes
@@ -9,7 +8,7 @@ turned so that the panel lies away from the seam and the poles.
 import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray, unit
-from ...kernel.panels.panels import Panels, inner_panel_arcs, panel_arcs
+from ...kernel.panels.panels import Panels, panel_arcs
 from ...kernel.spheres.arcs import Arcs, arc_circles
 from ...kernel.spheres.rows import center_radius
 from ..solids.panel_geometry import surface_frames
@@ -25,8 +24,7 @@ from .bodies import (
 
 
 def panel_bodies(panels: Panels) -> list[Body]:
-    """
-    A face per panel, or a closed solid where panels have a thickness.
+    """A face per panel, or a closed solid where panels have a thickness.
 
     Parameters
     ----------
@@ -45,7 +43,7 @@ def panel_bodies(panels: Panels) -> list[Body]:
     outer = _Layer(panels, panels.spheres, panel_arcs(panels))
     if not panels.thickness > 0:
         return bodies_by_kind(_kinds(panels, [outer]), lambda ids: _surfaces(outer, ids))
-    inner = _Layer(panels, panels.inner_spheres, inner_panel_arcs(panels))
+    inner = _Layer(panels, panels.inner_spheres, panel_arcs(panels, "inner"))
     return bodies_by_kind(
         _kinds(panels, [outer, inner]), lambda ids: _solids(panels, outer, inner, ids)
     )

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray, norm
 from ..spheres.arcs import Arcs, arc_circles, arc_lengths, arc_reaches
-from ..support.annuli import axis_angles, corner_mismatch, end_depths
+from ..support.annuli import corner_mismatch, end_depths, twist_angles
 from ..tolerances import MITRE_LIMIT
 from .beams import Beams, beam_lengths, beam_volumes, level_arcs, section_arcs
 from .contours import beam_contours
@@ -15,8 +15,7 @@ from .cutting import neighbor_angles
 
 @dataclass(frozen=True)
 class BeamFacts:
-    """
-    Measures of beams, in the unit of the beams; points in model coordinates.
+    """Measures of beams, in the unit of the beams; points in model coordinates.
 
     Arcs are those of the contour: in the middle of the thickness, between the cuts of the ends.
 
@@ -76,19 +75,7 @@ class BeamFacts:
 
 
 def beam_facts(beams: Beams) -> BeamFacts:
-    """
-    Measure beams.
-
-    Parameters
-    ----------
-    beams : Beams
-        B beams.
-
-    Returns
-    -------
-    BeamFacts
-        The measures.
-    """
+    """Measure beams."""
     annuli, contours = beams.annuli, beam_contours(beams)
     outer, inner = section_arcs(beams)
     return BeamFacts(
@@ -105,7 +92,7 @@ def beam_facts(beams: Beams) -> BeamFacts:
         sizes=_rectangle_sizes(beams),
         bevels=contours.bevels,
         tilts=annuli.tilt,
-        twists=axis_angles(annuli),
+        twists=twist_angles(annuli),
         mismatches=corner_mismatch(annuli),
         clearances=_clearances(beams),
         ends=annuli.corners[:, :, 0] + annuli.origins[:, None],

@@ -10,15 +10,14 @@ from ..spheres.arcs import ArcCircles, Arcs, arc_circles
 from ..spheres.incidence import normals, project
 from ..tolerances import ENCLOSING
 from .congruent import CongruentPanels
-from .panels import Panels, inner_panel_arcs, panel_arcs
+from .panels import Panels, boundaries
 
 _MAX_STEPS = 100
 
 
 @dataclass(frozen=True)
 class PanelCaps:
-    """
-    Smallest caps of the moulds that hold both faces of panels.
+    """Smallest caps of the moulds that hold both faces of panels.
 
     Attributes
     ----------
@@ -44,8 +43,7 @@ class PanelCaps:
 
 @dataclass(frozen=True)
 class MouldBlanks:
-    """
-    Blanks per mould: one size that holds every panel of the mould, or a few sizes.
+    """Blanks per mould: one size that holds every panel of the mould, or a few sizes.
 
     Attributes
     ----------
@@ -75,13 +73,7 @@ class MouldBlanks:
 
 
 def panel_caps(panels: Panels) -> PanelCaps:
-    """
-    Smallest cap of each panel's mould over which both of its faces lie.
-
-    Parameters
-    ----------
-    panels : Panels
-        P panels.
+    """Smallest cap of each panel's mould over which both of its faces lie.
 
     Returns
     -------
@@ -126,9 +118,13 @@ def panel_caps(panels: Panels) -> PanelCaps:
     return PanelCaps(centers, axes, radii, sagittas, 2 * np.arcsin(sine))
 
 
-def mould_blanks(panels: Panels, same: CongruentPanels, size_step: float = 0.0) -> MouldBlanks:
-    """
-    How many blanks of which size every mould must give.
+def mould_blanks(
+    panels: Panels,
+    same: CongruentPanels,
+    size_step: float = 0.0,
+    caps: PanelCaps | None = None,
+) -> MouldBlanks:
+    """How many blanks of which size every mould must give.
 
     Parameters
     ----------
@@ -139,6 +135,8 @@ def mould_blanks(panels: Panels, same: CongruentPanels, size_step: float = 0.0) 
     size_step : float
         Blanks come in diameters that are multiples of this length, in model units; 0 for one
         size per mould, that of its largest panel.
+    caps : PanelCaps, optional
+        `panel_caps` of the panels, where they are known.
 
     Returns
     -------
@@ -153,7 +151,7 @@ def mould_blanks(panels: Panels, same: CongruentPanels, size_step: float = 0.0) 
     if not (np.isfinite(size_step) and size_step >= 0):
         raise InputError(f"the step of blank sizes must be at least 0, not {size_step}")
     members = np.flatnonzero(panels.labels >= 0)
-    labels, diameters = panels.labels[members], 2 * panel_caps(panels).radii[members]
+    labels, diameters = panels.labels[members], 2 * (caps or panel_caps(panels)).radii[members]
     moulds, which = np.unique(labels, return_inverse=True)
     curvatures = 2 * np.abs(panels.design_spheres[members, 0])
     # Small panels of a very large mould are built as planes; the mould is no flatter for it.
@@ -187,12 +185,10 @@ def mould_blanks(panels: Panels, same: CongruentPanels, size_step: float = 0.0) 
 
 def _arcs_on_moulds(panels: Panels) -> tuple[Arcs, IntArray]:
     """Edges of both faces carried along the radii onto the moulds, and their panels."""
-    layers = [(panels.spheres, panel_arcs(panels))]
-    if panels.thickness > 0:
-        layers.append((panels.inner_spheres, inner_panel_arcs(panels)))
+    faces = boundaries(panels)
     owners, mould = panels.corner_panels, panels.design_spheres
     carried: list[Arcs] = []
-    for rows, arcs in layers:
+    for rows, arcs in faces:
         # Concentric spheres are scaled by the ratio of their radii, planes by 1.
         scale = np.ones(panels.n_panels)
         np.divide(rows[:, 0], mould[:, 0], out=scale, where=mould[:, 0] != 0)
@@ -206,7 +202,7 @@ def _arcs_on_moulds(panels: Panels) -> tuple[Arcs, IntArray]:
             for name in ("starts", "ends", "rises", "sagittas")
         )
     )
-    return joined, np.concatenate([owners] * len(layers))
+    return joined, np.concatenate([owners] * len(faces))
 
 
 def _first_of_each(owners: IntArray, count: int) -> IntArray:

@@ -1,5 +1,4 @@
-"""
-Panels: pieces of spheres cut out by planes, exact each in itself.
+"""Panels: pieces of spheres cut out by planes, exact each in itself.
 
 A panel is its sphere, one cutting plane per edge, and the corners where the sphere meets two
 consecutive planes. All geometry is local to the panel (its origin is the centroid of the mesh
@@ -7,6 +6,7 @@ face), so the site's coordinates cost no digits. `kernel.cutting` makes panels.
 """
 
 from dataclasses import dataclass, field, replace
+from typing import Literal
 
 import numpy as np
 
@@ -14,14 +14,13 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, unit
 from ..parts.records import PER_CORNER
 from ..spheres.arcs import Arcs, patch_areas, sphere_arcs
 from ..spheres.incidence import meet_lines
-from ..spheres.rows import offset, recenter, rescale
+from ..spheres.rows import recenter, rescale
 from ..tolerances import PARALLEL_PLANES
 
 
 @dataclass(frozen=True)
 class Panels:
-    """
-    Panels that can be made, in the order of their faces.
+    """Panels that can be made, in the order of their faces.
 
     Attributes
     ----------
@@ -83,8 +82,7 @@ class Panels:
 
     @property
     def element_ids(self) -> IntArray:
-        """
-        Face of each panel.
+        """Face of each panel.
 
         Returns
         -------
@@ -95,20 +93,12 @@ class Panels:
 
     @property
     def n_panels(self) -> int:
-        """
-        Number of panels.
-
-        Returns
-        -------
-        int
-            P.
-        """
+        """Number of panels."""
         return len(self.face_ids)
 
     @property
     def degrees(self) -> IntArray:
-        """
-        Number of corners of each panel, (P,).
+        """Number of corners of each panel, (P,).
 
         Returns
         -------
@@ -119,8 +109,7 @@ class Panels:
 
     @property
     def corner_panels(self) -> IntArray:
-        """
-        Panel of each corner, (H,).
+        """Panel of each corner, (H,).
 
         Returns
         -------
@@ -131,8 +120,7 @@ class Panels:
 
     @property
     def next_corners(self) -> IntArray:
-        """
-        Following corner in the same panel, (H,).
+        """Following corner in the same panel, (H,).
 
         Returns
         -------
@@ -155,8 +143,7 @@ def corner_points(
     offsets: IntArray,
     references: FloatArray,
 ) -> tuple[FloatArray, BoolArray]:
-    """
-    Points in which spheres meet two consecutive cutting planes, nearest to references.
+    """Points in which spheres meet two consecutive cutting planes, nearest to references.
 
     Parameters
     ----------
@@ -204,13 +191,7 @@ def corner_points(
 
 
 def panel_ids(n_faces: int) -> tuple[str, ...]:
-    """
-    Stable names of the panels of a mesh.
-
-    Parameters
-    ----------
-    n_faces : int
-        Number of faces.
+    """Stable names of the panels of a mesh.
 
     Returns
     -------
@@ -222,13 +203,7 @@ def panel_ids(n_faces: int) -> tuple[str, ...]:
 
 
 def opposite_corners(panels: Panels) -> IntArray:
-    """
-    The other panel's side of each edge.
-
-    Parameters
-    ----------
-    panels : Panels
-        P panels with H corners.
+    """The other panel's side of each edge.
 
     Returns
     -------
@@ -246,13 +221,7 @@ def opposite_corners(panels: Panels) -> IntArray:
 
 
 def neighbor_ids(panels: Panels) -> list[str | None]:
-    """
-    Panel beyond each edge, by name.
-
-    Parameters
-    ----------
-    panels : Panels
-        P panels with H corners.
+    """Panel beyond each edge, by name.
 
     Returns
     -------
@@ -264,13 +233,10 @@ def neighbor_ids(panels: Panels) -> list[str | None]:
 
 
 def scale_panels(panels: Panels, factor: float) -> Panels:
-    """
-    Panels in another unit of length.
+    """Panels in another unit of length.
 
     Parameters
     ----------
-    panels : Panels
-        P panels.
     factor : float
         Positive number of new units in an old one.
 
@@ -295,13 +261,10 @@ def scale_panels(panels: Panels, factor: float) -> Panels:
 
 
 def move_origins(panels: Panels, origins: FloatArray) -> Panels:
-    """
-    The same panels in coordinates local to other points.
+    """The same panels in coordinates local to other points.
 
     Parameters
     ----------
-    panels : Panels
-        P panels.
     origins : (P, 3) float array
         New origins, in model coordinates, near the old ones.
 
@@ -324,53 +287,44 @@ def move_origins(panels: Panels, origins: FloatArray) -> Panels:
     )
 
 
-def panel_arcs(panels: Panels) -> Arcs:
-    """
-    Edges of the outer faces, in local coordinates.
+def panel_arcs(panels: Panels, face: Literal["outer", "inner"] = "outer") -> Arcs:
+    """Edges of the outer or inner faces, in local coordinates.
 
     Parameters
     ----------
-    panels : Panels
-        P panels with H corners.
+    face : {"outer", "inner"}
 
     Returns
     -------
     Arcs
         H arcs, arc h from corner h to the next.
     """
-    return _layer_arcs(panels, panels.spheres, panels.corners)
+    if face == "outer":
+        return _face_arcs(panels, panels.spheres, panels.corners)
+    return _face_arcs(panels, panels.inner_spheres, panels.inner_corners)
 
 
-def inner_panel_arcs(panels: Panels) -> Arcs:
-    """
-    Edges of the inner faces, in local coordinates.
-
-    Parameters
-    ----------
-    panels : Panels
-        P panels with H corners.
+def boundaries(panels: Panels) -> list[tuple[FloatArray, Arcs]]:
+    """Faces of panels and their edges: outer ones, and inner ones if there is a thickness.
 
     Returns
     -------
-    Arcs
-        H arcs, arc h from inner corner h to the next.
+    list of ((P, 5) float array, Arcs)
+        Spheres, and H arcs on them.
     """
-    return _layer_arcs(panels, panels.inner_spheres, panels.inner_corners)
+    outer = panels.spheres, panel_arcs(panels)
+    if panels.thickness == 0:
+        return [outer]
+    return [outer, (panels.inner_spheres, panel_arcs(panels, "inner"))]
 
 
-def _layer_arcs(panels: Panels, rows: FloatArray, corners: FloatArray) -> Arcs:
+def _face_arcs(panels: Panels, rows: FloatArray, corners: FloatArray) -> Arcs:
     ends = corners[panels.next_corners]
     return sphere_arcs(rows[panels.corner_panels], panels.plane_normals, corners, ends)
 
 
 def panel_areas(panels: Panels) -> FloatArray:
-    """
-    Areas of the outer faces, in closed form.
-
-    Parameters
-    ----------
-    panels : Panels
-        P panels.
+    """Areas of the outer faces, in closed form.
 
     Returns
     -------
@@ -378,33 +332,3 @@ def panel_areas(panels: Panels) -> FloatArray:
         Areas, in squared model units.
     """
     return patch_areas(panels.spheres, panel_arcs(panels), panels.corner_panels)
-
-
-_LAYERS, _LAYER_WEIGHTS = np.polynomial.legendre.leggauss(16)
-
-
-def panel_volumes(panels: Panels) -> FloatArray:
-    """
-    Volumes between the outer and inner faces.
-
-    Parameters
-    ----------
-    panels : Panels
-        P panels.
-
-    Returns
-    -------
-    (P,) float array
-        Volumes, in cubed model units: the areas of the parallel layers between the two faces,
-        integrated over the thickness with 16 Gauss points.
-    """
-    total = np.zeros(panels.n_panels)
-    for node, weight in zip(_LAYERS, _LAYER_WEIGHTS, strict=True):
-        rows = offset(panels.spheres, -panels.thicknesses * (1 + node) / 2)
-        corners, _ = corner_points(
-            rows[panels.corner_panels], panels.plane_normals, panels.plane_offsets,
-            panels.offsets, panels.corners,
-        )  # fmt: skip
-        arcs = _layer_arcs(panels, rows, corners)
-        total += weight * patch_areas(rows, arcs, panels.corner_panels)
-    return total * panels.thicknesses / 2

@@ -1,5 +1,4 @@
-"""
-Triangles for pictures and viewers: points and normals exact, only the faces between flat.
+"""Triangles for pictures and viewers: points and normals exact, only the faces between flat.
 
 A panel is triangulated as a fan about its middle, in the stereographic chart of its sphere: the
 chart keeps circles, so its outline stays as simple as the panel. Rings of points divide the
@@ -14,15 +13,14 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..errors import InputError
 from ..spheres.arcs import Arcs, arc_points
 from ..spheres.incidence import normals, project
-from .panels import Panels, inner_panel_arcs, panel_arcs
+from .panels import Panels, boundaries, panel_arcs
 
 MAX_STEPS = 32
 
 
 @dataclass(frozen=True)
 class PanelTriangles:
-    """
-    Triangulated panels.
+    """Triangulated panels.
 
     Attributes
     ----------
@@ -50,13 +48,7 @@ class PanelTriangles:
 
 
 def surface_rows(panels: Panels) -> FloatArray:
-    """
-    All surfaces that bound panels, oriented outwards.
-
-    Parameters
-    ----------
-    panels : Panels
-        P panels with H corners.
+    """All surfaces that bound panels, oriented outwards.
 
     Returns
     -------
@@ -72,13 +64,10 @@ def surface_rows(panels: Panels) -> FloatArray:
 def tessellate(
     panels: Panels, tolerance: float = 0.002, *, solid: bool = True
 ) -> PanelTriangles:
-    """
-    Triangulate panels.
+    """Triangulate panels.
 
     Parameters
     ----------
-    panels : Panels
-        The panels.
     tolerance : float
         Largest distance of a triangle from its surface, relative to the radius of the panel
         (its farthest corner); reached by at most `MAX_STEPS` steps per edge.
@@ -104,20 +93,18 @@ def tessellate(
     """
     if not tolerance > 0:
         raise InputError(f"the tolerance must be positive, not {tolerance}")
-    layers = [(panels.spheres, panel_arcs(panels))]
-    if solid and panels.thickness > 0:
-        layers.append((panels.inner_spheres, inner_panel_arcs(panels)))
-    steps = _steps(panels, layers[0][1], tolerance)
+    sides = boundaries(panels) if solid else [(panels.spheres, panel_arcs(panels))]
+    steps = _steps(panels, sides[0][1], tolerance)
     pieces: list[_Piece] = []
     kinds = np.unique(np.stack([panels.degrees, steps], 1), axis=0)
     for degree, count in kinds.tolist():
         members = np.flatnonzero((panels.degrees == degree) & (steps == count))
         edges = panels.offsets[members][:, None] + np.arange(int(degree))
-        rims = [_rim_points(arcs, edges, count) for _, arcs in layers]
-        for side, (rows, arcs) in enumerate(layers):
+        rims = [_rim_points(arcs, edges, count) for _, arcs in sides]
+        for side, (rows, arcs) in enumerate(sides):
             faces = _face_pieces(rows[members], arcs, edges, rims[side], members)
             pieces += faces if side == 0 else [_inside_out(piece, panels) for piece in faces]
-        if len(layers) == 2:
+        if len(sides) == 2:
             pieces.append(_wall_piece(panels, edges, rims, members))
     return _join(panels, pieces)
 
@@ -253,8 +240,7 @@ def _numbered(piece: _Piece) -> IntArray:
 
 
 def _fan(degree: int, steps: int) -> IntArray:
-    """
-    Triangles of a fan of `degree` sectors, each divided in ``steps²``.
+    """Triangles of a fan of `degree` sectors, each divided in ``steps²``.
 
     Point 0 is the middle; ring j of ``degree * j`` points follows ring j - 1.
     """
@@ -278,8 +264,7 @@ def _fan(degree: int, steps: int) -> IntArray:
 
 @dataclass(frozen=True)
 class _Chart:
-    """
-    Stereographic charts of spheres, planes included.
+    """Stereographic charts of spheres, planes included.
 
     A point d from the middle has the chart coordinates ``(d·x, d·y) / (1 - A d·N)``.
     """
@@ -317,8 +302,7 @@ def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def cut_ears(outline: FloatArray) -> IntArray:
-    """
-    Triangulate a simple polygon by its ears.
+    """Triangulate a simple polygon by its ears.
 
     Parameters
     ----------

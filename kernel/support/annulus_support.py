@@ -1,5 +1,4 @@
-"""
-Finding the annuli of a sphere mesh: planes, circles, ends, and what cannot be made.
+"""Finding the annuli of a sphere mesh: planes, circles, ends, and what cannot be made.
 
 The outer arc of an annulus is the circle in which the spheres of its two faces meet. The inner
 one is either concentric with constant power ``R² - r² = κ``, so that all annuli of a node meet
@@ -7,7 +6,6 @@ in the same two points (Lemma 4.4), or lies at a constant depth, measured on the
 """
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -18,6 +16,7 @@ from ..panels.cutting import flatten_nearly_plane
 from ..panels.panels import panel_ids
 from ..parts.findings import rejected_report
 from ..parts.records import RejectedPart, reject_parts
+from ..reports import Report
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.incidence import evaluate, meet_lines, normals
 from ..spheres.minkowski import minkowski
@@ -25,10 +24,10 @@ from ..spheres.rows import recenter
 from ..tolerances import BEAM_TILT, DEGENERATE
 from .annuli import (
     Annuli,
-    axis_angles,
     beam_ids,
     corner_mismatch,
     end_depths,
+    twist_angles,
 )
 from .annulus_checks import NO_ANNULUS, inner_reasons, standing_reasons
 from .node_axes import SupportStructure, arc_planes, support_structure
@@ -36,8 +35,7 @@ from .node_axes import SupportStructure, arc_planes, support_structure
 
 @dataclass(frozen=True)
 class AnnulusSupport:
-    """
-    The annuli of a sphere mesh, and what cannot be made of it.
+    """The annuli of a sphere mesh, and what cannot be made of it.
 
     Attributes
     ----------
@@ -61,13 +59,10 @@ def annulus_support(
     kappa: float | None = None,
     max_tilt: float = BEAM_TILT,
 ) -> AnnulusSupport:
-    """
-    Annuli under all edges, of constant depth or of constant power.
+    """Annuli under all edges, of constant depth or of constant power.
 
     Parameters
     ----------
-    sphere_mesh : SphereMesh
-        The sphere mesh.
     depth : float, optional
         Length of the ends, along the node axes to the inner side, in model units.
     kappa : float, optional
@@ -213,8 +208,7 @@ def _panel_ids_beside(
 def _great_spheres(
     left: FloatArray, right: FloatArray, plane_normals: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
-    """
-    Unit rows orthogonal to planes through the origin, through the circles of rows there.
+    """Unit rows orthogonal to planes through the origin, through the circles of rows there.
 
     Of the two spheres, that which stands more upright on the plane tells the circle better.
     """
@@ -287,44 +281,58 @@ def _with_depth(annuli: Annuli, depth: float) -> Annuli:
     return replace(annuli, inner=inner, corners=corners, depth=depth)
 
 
-def annulus_report(support: AnnulusSupport, size: float) -> dict[str, Any]:
-    """
-    What a user must know about annuli.
+@dataclass(frozen=True, eq=False)
+class AnnuliReport(Report):
+    """What a user must know about annuli.
 
-    Parameters
+    Attributes
     ----------
-    support : AnnulusSupport
-        The annuli and what was rejected.
-    size : float
-        Mean edge of the mesh, in model units.
-
-    Returns
-    -------
-    dict
-        ``kappa_max`` (None where all arcs are straight), ``tilt_deg`` (p95 and max) of the
-        annuli made, ``corner_mismatch`` (max, relative_to_edge) between ends at a node,
-        ``axis_angle_deg`` (the largest angle between a node axis and a plane), ``end_depth``
-        (min and max length of the ends), ``outward`` (how many ends reach to the outer side),
-        ``made`` and ``rejected`` (id, code and reason).
+    kappa_max : float or None
+        Largest admissible power; None where all arcs are straight.
+    tilt_deg : dict
+        ``p95`` and ``max`` of the annuli made.
+    corner_mismatch : dict
+        Between the ends at a node: ``max`` in model units and ``relative_to_edge``.
+    axis_angle_deg : float
+        Largest angle between a node axis and a plane.
+    end_depth : dict
+        ``min`` and ``max`` length of the ends.
+    outward : int
+        Ends that reach to the outer side.
+    rejected : list of dict
+        ``id``, ``code`` and ``reason`` of each annulus that cannot be made.
     """
+
+    kappa_max: float | None
+    tilt_deg: dict[str, float]
+    corner_mismatch: dict[str, float]
+    axis_angle_deg: float
+    end_depth: dict[str, float]
+    outward: int
+    made: int
+    rejected: list[dict[str, str]]
+
+
+def annulus_report(support: AnnulusSupport, size: float) -> AnnuliReport:
+    """The report of annuli."""
     annuli = support.annuli
     tilt = np.degrees(annuli.tilt)
     steps = annuli.corners[:, :, 1] - annuli.corners[:, :, 0]
     lengths = end_depths(annuli)
     mismatch = float(corner_mismatch(annuli).max(initial=0.0)) if annuli.n_annuli else 0.0
-    return {
-        "kappa_max": support.kappa_max if np.isfinite(support.kappa_max) else None,
-        "tilt_deg": {
+    return AnnuliReport(
+        kappa_max=support.kappa_max if np.isfinite(support.kappa_max) else None,
+        tilt_deg={
             "p95": float(np.percentile(tilt, 95)) if len(tilt) else 0.0,
             "max": float(tilt.max(initial=0.0)),
         },
-        "corner_mismatch": {"max": mismatch, "relative_to_edge": mismatch / size},
-        "axis_angle_deg": float(np.degrees(axis_angles(annuli).max(initial=0.0))),
-        "end_depth": {
+        corner_mismatch={"max": mismatch, "relative_to_edge": mismatch / size},
+        axis_angle_deg=float(np.degrees(twist_angles(annuli).max(initial=0.0))),
+        end_depth={
             "min": float(lengths.min()) if lengths.size else 0.0,
             "max": float(lengths.max(initial=0.0)),
         },
-        "outward": int((dot(steps, annuli.end_directions) < 0).sum()),
-        "made": annuli.n_annuli,
-        "rejected": rejected_report(support.rejected),
-    }
+        outward=int((dot(steps, annuli.end_directions) < 0).sum()),
+        made=annuli.n_annuli,
+        rejected=rejected_report(support.rejected),
+    )

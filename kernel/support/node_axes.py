@@ -1,5 +1,4 @@
-"""
-Support structures: the axes of nodes, and whether the beams that meet there share them.
+"""Support structures: the axes of nodes, and whether the beams that meet there share them.
 
 Neighbouring spheres meet in a circle, and a beam along their edge lies in the plane of that
 circle. The node at a vertex is free of torsion if the planes of its beams have a line in
@@ -18,6 +17,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray, batches_by_count, dot, norm, sum_by, unit
 from ..meshes.mesh import Mesh, local_corners, mean_edge_length
 from ..panels.cutting import flatten_nearly_plane
+from ..reports import Report
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.incidence import signed_distance
 from ..spheres.minkowski import angle
@@ -36,8 +36,7 @@ from .rim_axes import rim_axes
 
 @dataclass(frozen=True)
 class ArcPlanes:
-    """
-    Planes of the circles in which neighbouring spheres meet, one per interior edge.
+    """Planes of the circles in which neighbouring spheres meet, one per interior edge.
 
     Attributes
     ----------
@@ -56,8 +55,7 @@ class ArcPlanes:
 
 @dataclass(frozen=True)
 class SupportStructure:
-    """
-    The nodes of a support structure, one per vertex.
+    """The nodes of a support structure, one per vertex.
 
     Attributes
     ----------
@@ -92,8 +90,7 @@ class SupportStructure:
 
 
 def arc_planes(sphere_mesh: SphereMesh) -> ArcPlanes:
-    """
-    Planes of the circles in which neighbouring spheres meet.
+    """Planes of the circles in which neighbouring spheres meet.
 
     Parameters
     ----------
@@ -135,13 +132,7 @@ def arc_planes(sphere_mesh: SphereMesh) -> ArcPlanes:
 
 
 def support_structure(sphere_mesh: SphereMesh) -> SupportStructure:
-    """
-    Node axes, and how far the nodes are from being free of torsion.
-
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
-        The sphere mesh.
+    """Node axes, and how far the nodes are from being free of torsion.
 
     Returns
     -------
@@ -239,13 +230,7 @@ def _fourth_value(rows: FloatArray, corners: IntArray, n_vertices: int) -> Float
 
 
 def node_reasons(structure: SupportStructure) -> dict[int, str]:
-    """
-    Why nodes are not valid; of several reasons the first.
-
-    Parameters
-    ----------
-    structure : SupportStructure
-        The nodes.
+    """Why nodes are not valid; of several reasons the first.
 
     Returns
     -------
@@ -270,13 +255,7 @@ def node_reasons(structure: SupportStructure) -> dict[int, str]:
 
 
 def axis_lean(structure: SupportStructure) -> FloatArray:
-    """
-    Angles between the axes and the normals of the vertices.
-
-    Parameters
-    ----------
-    structure : SupportStructure
-        The nodes.
+    """Angles between the axes and the normals of the vertices.
 
     Returns
     -------
@@ -287,27 +266,38 @@ def axis_lean(structure: SupportStructure) -> FloatArray:
     return 2 * np.arctan2(norm(inward - normal), norm(inward + normal))
 
 
-def support_report(sphere_mesh: SphereMesh, structure: SupportStructure) -> dict[str, Any]:
-    """
-    What a user must know about the nodes and beams of a sphere mesh.
+@dataclass(frozen=True, eq=False)
+class NodesReport(Report):
+    """What a user must know about the nodes and beams of a sphere mesh.
 
-    Parameters
+    Attributes
     ----------
-    sphere_mesh : SphereMesh
-        The sphere mesh.
-    structure : SupportStructure
-        Its nodes.
-
-    Returns
-    -------
-    dict
-        ``torsion_deg`` (mean and max over the interior vertices, max over the boundary),
-        ``mirror_miss`` (the largest distance of a mirror point from its spheres, in mean
-        edges, over the interior nodes of at least three faces), ``beam_tilt_deg`` (p95 and
-        max), ``axes_without_mirror`` (how many axes end one mean edge inside),
-        ``edges_without_circle`` (neighbours on the same sphere), ``valid`` and ``invalid``
-        (id, vertex and reason of each node).
+    torsion_deg : dict
+        ``mean`` and ``max`` over the interior vertices, ``boundary_max``.
+    mirror_miss : float
+        Largest distance of a mirror point from its spheres, in mean edges, over the interior
+        nodes of at least three faces.
+    beam_tilt_deg : dict
+        ``p95`` and ``max``.
+    axes_without_mirror : int
+        Axes that end one mean edge inside.
+    edges_without_circle : int
+        Neighbours on the same sphere.
+    invalid : list of dict
+        ``id``, ``vertex`` and ``reason`` of each node.
     """
+
+    torsion_deg: dict[str, float]
+    mirror_miss: float
+    beam_tilt_deg: dict[str, float]
+    axes_without_mirror: int
+    edges_without_circle: int
+    valid: int
+    invalid: list[dict[str, Any]]
+
+
+def support_report(sphere_mesh: SphereMesh, structure: SupportStructure) -> NodesReport:
+    """The report of nodes."""
     topology = sphere_mesh.mesh.topology
     inside = ~topology.is_boundary_vertex
     degrees = np.degrees(structure.torsion)
@@ -315,37 +305,29 @@ def support_report(sphere_mesh: SphereMesh, structure: SupportStructure) -> dict
     miss = np.nan_to_num(structure.mirror_miss[inside & enough])
     tilt = np.degrees(beam_tilt(sphere_mesh))
     reasons = node_reasons(structure)
-    return {
-        "torsion_deg": {
+    return NodesReport(
+        torsion_deg={
             "mean": float(degrees[inside].mean()) if inside.any() else 0.0,
             "max": float(degrees[inside].max(initial=0.0)),
             "boundary_max": float(degrees[~inside].max(initial=0.0)),
         },
-        "mirror_miss": float(miss.max(initial=0.0)) / mean_edge_length(sphere_mesh.mesh),
-        "beam_tilt_deg": {
+        mirror_miss=float(miss.max(initial=0.0)) / mean_edge_length(sphere_mesh.mesh),
+        beam_tilt_deg={
             "p95": float(np.percentile(tilt, 95)) if len(tilt) else 0.0,
             "max": float(tilt.max(initial=0.0)),
         },
-        "axes_without_mirror": int((~structure.has_mirror).sum()),
-        "edges_without_circle": int(
-            (~arc_planes(flatten_nearly_plane(sphere_mesh)).exists).sum()
-        ),
-        "valid": len(inside) - len(reasons),
-        "invalid": [
+        axes_without_mirror=int((~structure.has_mirror).sum()),
+        edges_without_circle=int((~arc_planes(flatten_nearly_plane(sphere_mesh)).exists).sum()),
+        valid=len(inside) - len(reasons),
+        invalid=[
             {"id": node_name(vertex), "vertex": vertex, "reason": reason}
             for vertex, reason in reasons.items()
         ],
-    }
+    )
 
 
 def node_name(vertex: int) -> str:
-    """
-    Stable name of a node.
-
-    Parameters
-    ----------
-    vertex : int
-        Its vertex.
+    """Stable name of a node.
 
     Returns
     -------

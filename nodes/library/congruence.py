@@ -74,8 +74,7 @@ def sphere_congruence(
     offset: float | VertexDistances | None = None,
     which: Literal["first", "second"] = "first",
 ) -> VertexSpheres:
-    """
-    A sphere at every vertex of a surface mesh, touching the surface there.
+    """A sphere at every vertex of a surface mesh, touching the surface there.
 
     Parameters
     ----------
@@ -95,12 +94,18 @@ def sphere_congruence(
     (V, 5) float array
         Rows (A, Bx, By, Bz, C), planes included. The curvatures are estimates: where 48 faces
         make a full turn they are off by about 2 %, with 96 by a quarter of that.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import sphere_congruence, torus_mesh
+    >>> sphere_congruence(torus_mesh(12, 6), "principal").shape
+    (72, 5)
     """
     spheres, is_fitted = congruence.sphere_congruence(mesh, kind, offset, which)
     if not is_fitted.all():
         warn(
-            f"{_share(~is_fitted)} of the vertices have too few neighbours to tell the "
-            "curvature and get their tangent plane: refine the mesh there"
+            f"{_share(~is_fitted)} of the vertices have too few neighbours to estimate the "
+            "curvature, and get their tangent plane: refine the mesh there"
         )
     return spheres
 
@@ -109,8 +114,7 @@ def sphere_congruence(
 def envelope(
     mesh: Mesh, spheres: VertexSpheres, order: Literal["nearest", "oriented"] = "nearest"
 ) -> Envelope:
-    """
-    Points in which the spheres at the corners of each face meet: the two enveloped surfaces.
+    """Points in which the spheres at the corners of each face meet: the two enveloped surfaces.
 
     Parameters
     ----------
@@ -129,6 +133,14 @@ def envelope(
         infinite where one is at infinity, as for planes.
     is_real : (F,) bool array
         Whether the spheres of the face meet in two real points.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import envelope, tangent_spheres, torus_mesh, triangulate
+    >>> mesh = triangulate(torus_mesh(24, 12))
+    >>> found = envelope(mesh, tangent_spheres(mesh, 0.9))
+    >>> found.points_plus.shape, bool(found.is_real.all())
+    ((576, 3), True)
     """
     result = discrete_envelopes.envelope(mesh, spheres, order)
     if not result.is_real.all():
@@ -156,8 +168,7 @@ def smooth_envelope(
     radii_u: FloatArray,
     radii_v: FloatArray,
 ) -> SmoothEnvelope:
-    """
-    Points in which the spheres of a smooth congruence touch the two surfaces they envelop.
+    """Points in which the spheres of a smooth congruence touch the two surfaces they envelop.
 
     Parameters
     ----------
@@ -192,8 +203,7 @@ def conjugacy(
     mixed: FloatArray,
     lift: FloatArray | None = None,
 ) -> FloatArray:
-    """
-    How far a parametrisation or a net is from conjugate: distance of f_uv from a span.
+    """How far a parametrisation or a net is from conjugate: distance of f_uv from a span.
 
     Parameters
     ----------
@@ -219,8 +229,7 @@ def conjugacy(
 
 @node
 def mirror_points(sphere_mesh: SphereMesh) -> MirrorPoints:
-    """
-    Points in which the spheres around each vertex meet once more: the second envelope.
+    """Points in which the spheres around each vertex meet once more: the second envelope.
 
     Parameters
     ----------
@@ -250,8 +259,7 @@ def mirror_points(sphere_mesh: SphereMesh) -> MirrorPoints:
 
 @node
 def contact_points(sphere_mesh: SphereMesh) -> ContactPoints:
-    """
-    Points nearest to all spheres around each vertex: the vertices that spheres ask for.
+    """Points nearest to all spheres around each vertex: the vertices that spheres ask for.
 
     Parameters
     ----------
@@ -276,8 +284,7 @@ def contact_points(sphere_mesh: SphereMesh) -> ContactPoints:
 
 @node
 def circular_envelopes(sphere_mesh: SphereMesh) -> CircularEnvelopes:
-    """
-    Test for a discrete Ribaucour congruence: both envelopes of a sphere mesh are circular.
+    """Test for a discrete Ribaucour congruence: both envelopes of a sphere mesh are circular.
 
     Parameters
     ----------

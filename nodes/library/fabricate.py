@@ -1,14 +1,14 @@
 """Panels, and the files that fabricators open."""
 
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal, NamedTuple
+from dataclasses import dataclass
+from typing import Annotated, Literal, NamedTuple
 
 from ...fabrication.drawings import beams as dxf
 from ...fabrication.drawings import moulds as mould_drawings
 from ...fabrication.files import check_suffix, replacing
 from ...fabrication.model import Model, Written
 from ...fabrication.rhino import writer as rhino
-from ...fabrication.schedules import schedule
+from ...fabrication.schedules import writer as schedule
 from ...fabrication.solids.cadquery_assembly import beams_to_cadquery, to_cadquery
 from ...fabrication.step import writer as step
 from ...kernel.beams.beams import Beams
@@ -17,20 +17,42 @@ from ...kernel.meshes.mesh import Mesh
 from ...kernel.panels import cutting
 from ...kernel.panels.panels import Panels
 from ...kernel.parts.findings import rejected_report
+from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...viewer.render import render_image
 from ..graphs.node import node, running_graph, warn
-from ..graphs.ports import Port, Units, WritePath
+from ..graphs.ports import Length, Port, Units, WritePath
 from .arrays import FaceLabels
 
-Length = Annotated[float, Port(min=0)]
+
+@dataclass(frozen=True, eq=False)
+class CutReport(Report):
+    """The panels that can be made, and the others.
+
+    Attributes
+    ----------
+    edge_gap : dict
+        Between the arcs of neighbouring panels, at the ends and in the middle, before the
+        joint: ``max`` and ``mean`` in model units, ``relative_to_edge``, over so many
+        ``edges``.
+    thickness : dict
+        ``min``, ``mean`` and ``max``.
+    written : int
+    rejected : list of dict
+        ``id``, ``code`` and ``reason`` of each panel that cannot be made.
+    """
+
+    edge_gap: dict[str, float]
+    thickness: dict[str, float]
+    written: int
+    rejected: list[dict[str, str]]
 
 
 class PanelSet(NamedTuple):
     """The panels that can be made, and what was found while cutting them."""
 
     panels: Panels
-    report: Mapping[str, Any]
+    report: CutReport
 
 
 @node
@@ -43,13 +65,11 @@ def panels(
     side: Literal["inward", "outward", "centred"] = "inward",
     layer: Literal["offset", "power"] = "offset",
 ) -> PanelSet:
-    """
-    Cut a panel out of the sphere of every face.
+    """Cut a panel out of the sphere of every face.
 
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     edges : {"bisector", "intersection"}
         Cut along each edge by the plane that bisects the two faces (walls stand upright, the
         two arcs of an edge differ by a small gap), or by the plane in which the two spheres
@@ -72,11 +92,15 @@ def panels(
     -------
     panels : Panels
         The panels that can be made.
-    report : mapping
-        ``edge_gap`` (max, mean, relative_to_edge, over so many edges) between the arcs of
-        neighbouring panels, at the ends and in the middle, before the joint; ``thickness``
-        (min, mean, max); ``written`` and ``rejected`` (id, code and reason of each panel that
-        cannot be made).
+    report : CutReport
+        Gaps, thickness, and the panels that cannot be made.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import fit_spheres, panels, vase_mesh
+    >>> made = panels(fit_spheres(vase_mesh(12, 6)), thickness=0.02)
+    >>> made.report["written"], made.report["rejected"]
+    (72, [])
     """
     made, rejected = cutting.cut_panels(
         sphere_mesh, edges, thickness, joint_gap, labels, side, layer
@@ -87,12 +111,12 @@ def panels(
             f"{name_ids([panel.element_id for panel in rejected])} "
             f"({rejected[0].id}: {rejected[0].reason})"
         )
-    report = {
-        "edge_gap": cutting.gap_report(sphere_mesh, edges, made.face_ids),
-        "thickness": cutting.thickness_report(made),
-        "written": made.n_panels,
-        "rejected": rejected_report(rejected),
-    }
+    report = CutReport(
+        edge_gap=cutting.gap_report(sphere_mesh, edges, made.face_ids),
+        thickness=cutting.thickness_report(made),
+        written=made.n_panels,
+        rejected=rejected_report(rejected),
+    )
     return PanelSet(made, report)
 
 
@@ -106,8 +130,7 @@ def write_step(
     copies: Literal["shapes", "instances"] = "shapes",
     beams: Beams | None = None,
 ) -> str:
-    """
-    Write panels and beams to a STEP file: exact solids, or faces without thickness.
+    """Write panels and beams to a STEP file: exact solids, or faces without thickness.
 
     Parameters
     ----------
@@ -116,7 +139,6 @@ def write_step(
     path : path
         Ends in .step or .stp.
     units : str
-        Model units.
     step_units : {"mm", "m"}
         Units of the file.
     schema : {"AP214IS", "AP242DIS"}
@@ -131,6 +153,15 @@ def write_step(
     -------
     str
         The path.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import fit_spheres, panels, vase_mesh, write_step
+    >>> made = panels(fit_spheres(vase_mesh(12, 6)), thickness=0.02)
+    >>> with TemporaryDirectory() as folder:
+    ...     write_step(made.panels, f"{folder}/vase.step").endswith("vase.step")
+    True
     """
     options = step.StepOptions(step_units, schema, copies=copies)
     return _tell(step.write_step(Model(panels, beams, units), path, options))
@@ -140,8 +171,7 @@ def write_step(
 def cadquery_solids(
     panels: Panels | None = None, beams: Beams | None = None, units: Units = "m"
 ) -> object:
-    """
-    Panels and beams as a CadQuery assembly, for further modelling.
+    """Panels and beams as a CadQuery assembly, for further modelling.
 
     Parameters
     ----------
@@ -183,8 +213,7 @@ def write_3dm(
     shape: Literal["panels", "blocks", "shell"] = "panels",
     layers: tuple[Literal["Edges", "Centres", "Moulds"], ...] = ("Edges",),
 ) -> str:
-    """
-    Write panels and beams to a Rhino file: exact trimmed spheres, layers per mould, user text.
+    """Write panels and beams to a Rhino file: exact trimmed spheres, layers, user text.
 
     Parameters
     ----------
@@ -212,6 +241,15 @@ def write_3dm(
     -------
     str
         The path. The document carries the graph that is running.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import fit_spheres, panels, vase_mesh, write_3dm
+    >>> made = panels(fit_spheres(vase_mesh(12, 6)))
+    >>> with TemporaryDirectory() as folder:
+    ...     write_3dm(made.panels, f"{folder}/vase.3dm").endswith("vase.3dm")
+    True
     """
     mesh = reference.mesh if isinstance(reference, SphereMesh) else reference
     graph = running_graph()
@@ -227,17 +265,14 @@ def write_dxf(
     sheet: tuple[float, float] = (3000.0, 1500.0),
     spacing: Length = 10.0,
 ) -> str:
-    """
-    Write cutting drawings of beams: exact contours, nested on sheets, in millimetres.
+    """Write cutting drawings of beams: exact contours, nested on sheets, in millimetres.
 
     Parameters
     ----------
     beams : Beams
-        The beams.
     path : path
         Ends in .dxf.
     units : str
-        Model units.
     sheet : (float, float)
         Width and height of the sheets, in millimetres.
     spacing : float
@@ -248,6 +283,17 @@ def write_dxf(
     str
         The path. Layers: CUT, ENGRAVE (ids, nodes, bevels of the ends in degrees), DRILL
         (drilling marks) and SHEET.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import annulus_support, beams, ellipsoid_mesh, model_change
+    >>> from spheremesh.nodes import write_dxf
+    >>> sphere_mesh = model_change(ellipsoid_mesh(12, 6), radius=4.0)
+    >>> made = beams(annulus_support(sphere_mesh, depth=0.1).annuli, thickness=0.02)
+    >>> with TemporaryDirectory() as folder:
+    ...     write_dxf(made.beams, f"{folder}/beams.dxf").endswith("beams.dxf")
+    True
     """
     options = dxf.SheetOptions(sheet, spacing)
     return _tell(dxf.write_dxf(Model(beams=beams, units=units), path, options))
@@ -260,8 +306,7 @@ def write_schedule(
     units: Units = "m",
     beams: Beams | None = None,
 ) -> str:
-    """
-    Write the list of panels or beams with sizes, edges and neighbours, in millimetres.
+    """Write the list of panels or beams with sizes, edges and neighbours, in millimetres.
 
     Parameters
     ----------
@@ -271,36 +316,51 @@ def write_schedule(
         Ends in .csv (panels or beams), or in .json or .xlsx (both; .xlsx with the extra
         ``excel``).
     units : str
-        Model units.
     beams : Beams, optional
-        The beams.
 
     Returns
     -------
     str
         The path.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import fit_spheres, panels, vase_mesh, write_schedule
+    >>> made = panels(fit_spheres(vase_mesh(12, 6)))
+    >>> with TemporaryDirectory() as folder:
+    ...     path = write_schedule(made.panels, f"{folder}/panels.csv")
+    ...     len(Path(path).read_text("utf-8").splitlines())
+    73
     """
     return _tell(schedule.write_schedule(Model(panels, beams, units), path))
 
 
 @node
 def write_mould_drawings(panels: Panels, path: WritePath, units: Units = "m") -> str:
-    """
-    Draw every panel in the blank of its mould, with radius, sizes and ids, in millimetres.
+    """Draw every panel in the blank of its mould, with radius, sizes and ids, in millimetres.
 
     Parameters
     ----------
     panels : Panels
-        The panels.
     path : path
         Ends in .dxf or .svg.
     units : str
-        Model units.
 
     Returns
     -------
     str
         The path.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import fit_spheres, panels, vase_mesh, write_mould_drawings
+    >>> made = panels(fit_spheres(vase_mesh(12, 6)))
+    >>> with TemporaryDirectory() as folder:
+    ...     write_mould_drawings(made.panels, f"{folder}/panels.svg").endswith("panels.svg")
+    True
     """
     return _tell(mould_drawings.write_mould_drawings(Model(panels, units=units), path))
 
@@ -328,13 +388,11 @@ def render(
     *,
     legend: bool = False,
 ) -> str:
-    """
-    Draw panels into a PNG, from exact spheres and without a graphics card.
+    """Draw panels into a PNG, from exact spheres and without a graphics card.
 
     Parameters
     ----------
     panels : Panels
-        The panels.
     path : path
         Ends in .png.
     color_by : {"mould", "radius", "none"}
@@ -350,6 +408,15 @@ def render(
     -------
     str
         The path.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import fit_spheres, panels, render, vase_mesh
+    >>> made = panels(fit_spheres(vase_mesh(12, 6)))
+    >>> with TemporaryDirectory() as folder:
+    ...     render(made.panels, f"{folder}/vase.png", width=64, height=40).endswith("vase.png")
+    True
     """
     check_suffix(path, ".png")
     image = render_image(

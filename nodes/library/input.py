@@ -10,11 +10,10 @@ from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.surfaces import circular_nets as surfaces
 from ...kernel.surfaces import triangulated
 from ..graphs.node import node
-from ..graphs.ports import Port, ReadPath, WritePath
+from ..graphs.ports import Length, Port, ReadPath, WritePath
 from .arrays import VertexNormals
 
 Count = Annotated[int, Port(min=1, max=2000)]
-Length = Annotated[float, Port(min=0)]
 
 
 class SampledSurface(NamedTuple):
@@ -26,8 +25,7 @@ class SampledSurface(NamedTuple):
 
 @node
 def read_mesh(path: ReadPath, layer: str = "", n_u: Count = 24, n_v: Count = 24) -> Mesh:
-    """
-    Read a mesh from a file.
+    """Read a mesh from a file.
 
     Parameters
     ----------
@@ -42,14 +40,21 @@ def read_mesh(path: ReadPath, layer: str = "", n_u: Count = 24, n_v: Count = 24)
     -------
     Mesh
         The mesh, in the units of the file.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import read_mesh, vase_mesh, write_mesh
+    >>> with TemporaryDirectory() as folder:
+    ...     read_mesh(write_mesh(vase_mesh(12, 6), f"{folder}/vase.obj")).n_faces
+    72
     """
     return reader.read_mesh(path, layer, n_u, n_v)
 
 
 @node
 def write_mesh(mesh: Mesh | SphereMesh, path: WritePath) -> str:
-    """
-    Write a mesh to a file.
+    """Write a mesh to a file.
 
     Parameters
     ----------
@@ -62,6 +67,15 @@ def write_mesh(mesh: Mesh | SphereMesh, path: WritePath) -> str:
     -------
     str
         The path.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import vase_mesh, write_mesh
+    >>> with TemporaryDirectory() as folder:
+    ...     Path(write_mesh(vase_mesh(12, 6), f"{folder}/vase.ply")).read_bytes()[:3]
+    b'ply'
     """
     if isinstance(mesh, SphereMesh):
         mesh = mesh.mesh
@@ -73,8 +87,7 @@ def torus_mesh(
     n_around: Count = 48, n_across: Count = 24, major_radius: Length = 2.0,
     minor_radius: Length = 1.0,
 ) -> Mesh:  # fmt: skip
-    """
-    Closed circular net on a torus.
+    """Closed circular net on a torus.
 
     Parameters
     ----------
@@ -87,6 +100,13 @@ def torus_mesh(
     -------
     Mesh
         Quadrilaterals.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import torus_mesh
+    >>> mesh = torus_mesh(n_around=12, n_across=6)
+    >>> mesh.n_faces, mesh.n_vertices
+    (72, 72)
     """
     return surfaces.torus_net(n_around, n_across, major_radius, minor_radius)
 
@@ -99,8 +119,7 @@ def ellipsoid_mesh(
     height: Length = 1.5,
     latitude: Annotated[float, Port(unit="deg", min=0, max=90)] = 70.0,
 ) -> Mesh:
-    """
-    Circular net on an ellipsoid of revolution, cut off below its poles.
+    """Circular net on an ellipsoid of revolution, cut off below its poles.
 
     Parameters
     ----------
@@ -115,6 +134,12 @@ def ellipsoid_mesh(
     -------
     Mesh
         Quadrilaterals.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import ellipsoid_mesh
+    >>> ellipsoid_mesh(n_around=12, n_across=6).vertices.max(axis=0).round(2)
+    array([1.  , 1.  , 1.41])
     """
     angle = float(np.radians(latitude))
     return surfaces.ellipsoid_net(n_around, n_across, radius, height, angle)
@@ -124,8 +149,7 @@ def ellipsoid_mesh(
 def catenoid_mesh(
     n_around: Count = 32, n_across: Count = 16, waist: Length = 1.0, height: Length = 1.0
 ) -> Mesh:
-    """
-    Circular net on a catenoid.
+    """Circular net on a catenoid.
 
     Parameters
     ----------
@@ -140,14 +164,19 @@ def catenoid_mesh(
     -------
     Mesh
         Quadrilaterals.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import catenoid_mesh
+    >>> catenoid_mesh(n_around=12, n_across=6).n_faces
+    72
     """
     return surfaces.catenoid_net(n_around, n_across, waist, height)
 
 
 @node
 def enneper_mesh(n: Count = 16, size: Length = 0.9) -> Mesh:
-    """
-    Circular net that is a discrete Enneper surface.
+    """Circular net that is a discrete Enneper surface.
 
     Parameters
     ----------
@@ -160,6 +189,12 @@ def enneper_mesh(n: Count = 16, size: Length = 0.9) -> Mesh:
     -------
     Mesh
         Quadrilaterals.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import enneper_mesh
+    >>> enneper_mesh(n=8).n_faces
+    64
     """
     return surfaces.enneper_net(n, size)
 
@@ -172,8 +207,7 @@ def vase_mesh(
     height: Length = 3.0,
     amplitude: Annotated[float, Port(min=-1, max=1)] = 0.3,
 ) -> Mesh:
-    """
-    Circular net on a vase: a cylinder whose radius swings by a sine.
+    """Circular net on a vase: a cylinder whose radius swings by a sine.
 
     Parameters
     ----------
@@ -188,14 +222,20 @@ def vase_mesh(
     -------
     Mesh
         Quadrilaterals.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import vase_mesh
+    >>> mesh = vase_mesh(n_around=12, n_across=6)
+    >>> mesh.n_faces, mesh.n_vertices
+    (72, 84)
     """
     return surfaces.vase_net(n_around, n_across, radius, height, amplitude)
 
 
 @node
 def roof_mesh(n_span: Count = 24, n_length: Count = 60, length: Length = 80.0) -> Mesh:
-    """
-    Circular net of a freeform hall roof, to try things on.
+    """Circular net of a freeform hall roof, to try things on.
 
     Parameters
     ----------
@@ -208,6 +248,12 @@ def roof_mesh(n_span: Count = 24, n_length: Count = 60, length: Length = 80.0) -
     -------
     Mesh
         Quadrilaterals with exact circumcircles, of both signs of Gaussian curvature.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import roof_mesh
+    >>> roof_mesh(n_span=6, n_length=12).n_faces
+    72
     """
     return surfaces.roof_net(n_span, n_length, length)
 
@@ -218,8 +264,7 @@ def triangulated_surface(
     edge_length: Annotated[float, Port(min=0)] = 0.1,
     seed: int | None = None,
 ) -> SampledSurface:
-    """
-    A triangulated sample surface with exact normals, to try remeshing on.
+    """A triangulated sample surface with exact normals, to try remeshing on.
 
     Parameters
     ----------
@@ -237,5 +282,12 @@ def triangulated_surface(
         Triangles.
     normals : (V, 3) float array
         Unit normals of the smooth surface.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import triangulated_surface
+    >>> surface = triangulated_surface("torus", edge_length=0.5)
+    >>> surface.mesh.n_faces, surface.normals.shape
+    (450, (225, 3))
     """
     return SampledSurface(*triangulated.triangulated_surface(shape, edge_length, seed))

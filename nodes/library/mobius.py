@@ -21,8 +21,7 @@ Geometry = TypeVar("Geometry", SphereMesh, Mesh, Circles, Arcs, Points | Spheres
 
 @node
 def inversion(center: Vector, radius: Annotated[float, Port(min=0)] = 1.0) -> Transform:
-    """
-    Inversion in a sphere: turns the model inside out about a point.
+    """Inversion in a sphere: turns the model inside out about a point.
 
     Parameters
     ----------
@@ -35,6 +34,14 @@ def inversion(center: Vector, radius: Annotated[float, Port(min=0)] = 1.0) -> Tr
     -------
     (5, 5) float array
         The transform, for `apply_mobius` and `compose`.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import apply_mobius, inversion
+    >>> apply_mobius([[2.0, 0.0, 0.0]], inversion([0.0, 0.0, 0.0], radius=2.0))
+    array([[2., 0., 0.]])
+    >>> apply_mobius([[4.0, 0.0, 0.0]], inversion([0.0, 0.0, 0.0], radius=2.0))
+    array([[1., 0., 0.]])
     """
     return mobius_group.inversion(center, radius)
 
@@ -45,8 +52,7 @@ def similarity(
     rotation: Vector | Matrix | None = None,
     translation: Vector | None = None,
 ) -> Transform:
-    """
-    Scaling, then rotation, both about the origin, then translation.
+    """Scaling, then rotation, both about the origin, then translation.
 
     Parameters
     ----------
@@ -62,6 +68,12 @@ def similarity(
     -------
     (5, 5) float array
         The transform, for `apply_mobius` and `compose`.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import apply_mobius, similarity
+    >>> apply_mobius([[1.0, 0.0, 0.0]], similarity(2.0, rotation=[0.0, 0.0, 90.0])).round(9)
+    array([[0., 2., 0.]])
     """
     if rotation is not None and np.shape(rotation) == (3,):
         rotation = mobius_group.rotation_about(np.radians(rotation))
@@ -70,8 +82,7 @@ def similarity(
 
 @node
 def reflection(mirror: Sphere) -> Transform:
-    """
-    Reflection in a plane, or inversion in a sphere, given as a row.
+    """Reflection in a plane, or inversion in a sphere, given as a row.
 
     Parameters
     ----------
@@ -94,8 +105,7 @@ def reflection(mirror: Sphere) -> Transform:
 
 @node
 def inverse(transform: Transform) -> Transform:
-    """
-    The transform that undoes another.
+    """The transform that undoes another.
 
     Parameters
     ----------
@@ -117,8 +127,7 @@ def inverse(transform: Transform) -> Transform:
 
 @node
 def sent_to_infinity(points: Points, transform: Transform) -> BoolArray:
-    """
-    Which points a transform sends to infinity: `apply_mobius` refuses them.
+    """Which points a transform sends to infinity: `apply_mobius` refuses them.
 
     Parameters
     ----------
@@ -140,8 +149,7 @@ def sent_to_infinity(points: Points, transform: Transform) -> BoolArray:
 
 @node
 def compose(transforms: list[Transform]) -> Transform:
-    """
-    One transform that does what several do one after another.
+    """One transform that does what several do one after another.
 
     Parameters
     ----------
@@ -152,14 +160,20 @@ def compose(transforms: list[Transform]) -> Transform:
     -------
     (5, 5) float array
         The transform.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import apply_mobius, compose, similarity
+    >>> twice = compose([similarity(scale=2.0), similarity(translation=[1.0, 0.0, 0.0])])
+    >>> apply_mobius([[1.0, 0.0, 0.0]], twice)
+    array([[3., 0., 0.]])
     """
     return mobius_group.compose(transforms)
 
 
 @node
 def apply_mobius(geometry: Geometry, transform: Transform) -> Geometry:
-    """
-    Carry geometry through a transform; the angles between spheres stay as they are.
+    """Carry geometry through a transform; the angles between spheres stay as they are.
 
     Parameters
     ----------
@@ -167,13 +181,18 @@ def apply_mobius(geometry: Geometry, transform: Transform) -> Geometry:
         A sphere mesh, a mesh (its vertices are carried along), circles, arcs, points or rows of
         spheres.
     transform : (5, 5) float array
-        The transform.
 
     Returns
     -------
     SphereMesh, Mesh, Circles, Arcs, (N, 3) or (N, 5) float array
         The same kind, elements in the same order. Where the transform turns right into left,
         as every inversion does, faces run the other way round: outside stays outside.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import apply_mobius, inversion
+    >>> apply_mobius([[2.0, 0.0, 0.0]], inversion([0.0, 0.0, 0.0]))
+    array([[0.5, 0. , 0. ]])
     """
     if isinstance(geometry, SphereMesh):
         return map_sphere_mesh(geometry, transform)
@@ -205,8 +224,7 @@ class Poles(NamedTuple):
 
 @node
 def stereographic(points: Points) -> FloatArray:
-    """
-    Stereographic image of points on the unit 3-sphere, from its north pole.
+    """Stereographic image of points on the unit 3-sphere, from its north pole.
 
     Parameters
     ----------
@@ -227,8 +245,7 @@ def stereographic(points: Points) -> FloatArray:
 
 @node
 def inverse_stereographic(points: FloatArray) -> Points:
-    """
-    Central projection from the north pole of the unit 3-sphere back to space.
+    """Central projection from the north pole of the unit 3-sphere back to space.
 
     Parameters
     ----------
@@ -250,8 +267,7 @@ def inverse_stereographic(points: FloatArray) -> Points:
 
 @node
 def poles(spheres: Spheres) -> Poles:
-    """
-    Poles of the stereographic images of spheres: the points of projective four-space.
+    """Poles of the stereographic images of spheres: the points of projective four-space.
 
     Parameters
     ----------
@@ -277,8 +293,7 @@ def poles(spheres: Spheres) -> Poles:
 
 @node
 def pentaspherical_coordinates(spheres: Spheres) -> FloatArray:
-    """
-    Coordinates (B, C - A, C + A) of spheres, on which Möbius transforms act as matrices.
+    """Coordinates (B, C - A, C + A) of spheres, on which Möbius transforms act as matrices.
 
     Parameters
     ----------
@@ -300,8 +315,7 @@ def pentaspherical_coordinates(spheres: Spheres) -> FloatArray:
 
 @node
 def polar_hyperplanes(spheres: Spheres) -> FloatArray:
-    """
-    Coefficients of the rows that are orthogonal to spheres.
+    """Coefficients of the rows that are orthogonal to spheres.
 
     Parameters
     ----------

@@ -273,7 +273,7 @@ def test_where_no_annulus_stands_all_are_listed() -> None:
         assert found.annuli.n_annuli + len(found.rejected) == 40
         report = annulus_report(found, 1.0)
         assert report["made"] == found.annuli.n_annuli
-        assert json.loads(json.dumps(report, allow_nan=False)) == report
+        assert json.loads(json.dumps(dict(report), allow_nan=False)) == report
 
 
 def test_annuli_deeper_than_their_radius_are_listed(ball: Mesh) -> None:
@@ -322,7 +322,7 @@ def test_the_boundary_has_annuli(nets: dict[str, Mesh]) -> None:
 
 def test_the_report_is_plain(torus: SphereMesh) -> None:
     report = annulus_report(annulus_support(torus, depth=0.1), 1.0)
-    assert json.loads(json.dumps(report, allow_nan=False)) == report
+    assert json.loads(json.dumps(dict(report), allow_nan=False)) == report
     assert abs(report["end_depth"]["max"] - 0.1) < 1e-12
     assert report["corner_mismatch"]["max"] < 1e-12
 
