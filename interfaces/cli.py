@@ -7,6 +7,7 @@ Exit codes: 0 done, 1 a library of the system is missing, 2 usage, 3 bad input, 
 5 finished but a quality gate failed. An error is one line on standard error.
 """
 
+import inspect
 import json
 import math
 import sys
@@ -318,12 +319,18 @@ def _print_audit(audit: Mapping[str, Any]) -> None:
 
 
 def _print_node(node: "Node") -> None:
+    from ..kernel.reports import Report
+
     click.echo(f"{click.style(node.name, bold=True)} ({node.category})\n\n{node.summary}")
     for title, ports in (("Inputs", node.inputs), ("Outputs", node.outputs)):
         click.echo(f"\n{click.style(title, bold=True)}")
         for port in ports.values():
             click.echo(f"  {port.name} : {_port_facts(port)}")
-            click.echo(textwrap.indent(textwrap.fill(port.help, 84), "      "))
+            if port.help:
+                click.echo(textwrap.indent(textwrap.fill(port.help, 84), "      "))
+            if isinstance(port.type, type) and issubclass(port.type, Report):
+                fields = (inspect.getdoc(port.type) or "").partition("-\n")[2]
+                click.echo(textwrap.indent(fields, "        "))
 
 
 def _port_facts(port: "Port") -> str:

@@ -239,7 +239,7 @@ def run_job(
     Raises
     ------
     InputError, ConvergenceError, NodeError, GraphError
-        If the input cannot be used, the optimisation does not come to rest, or no panel can be
+        If the input cannot be used, the optimisation does not converge, or no panel can be
         made; nothing is written then.
     """
     began = time.perf_counter()
@@ -285,7 +285,7 @@ def _refuse_unfinished(optimum: Mapping[str, Any]) -> None:
     if not optimum["converged"]:
         stage = optimum["stages"][-1]
         raise ConvergenceError(
-            f"the optimisation did not come to rest in {stage['iterations']} iterations of "
+            f"the optimisation did not converge in {stage['iterations']} iterations of "
             f"its stage {stage['name']!r}: allow more tolerance, or look for nearly degenerate "
             "faces"
         )

@@ -17,6 +17,7 @@ panels         Panels: pieces of spheres cut out by planes, what is known of the
                moulds.
 parts          What panels, beams and nodes are called, and what is said of them.
 remesh         Quadrilateral sphere meshes from congruences of spheres (Sec. 6.4).
+reports        Reports: records that read like dictionaries.
 solvers        Solvers of least-squares problems and of the linear systems in them.
 sphere_meshes  Meshes with a sphere for every face: fit, central spheres, maps, changes of
                model (Sec. 3, 5, 6.1).

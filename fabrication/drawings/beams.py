@@ -89,7 +89,7 @@ def write_dxf(
 
     Notes
     -----
-    The contour is that in the middle of the thickness (`kernel.contours`). The same beams give
+    The contour is that in the middle of the thickness (`beam_contours`). The same beams give
     the same bytes: the dates in the file are fixed.
     """
     target = Path(path)

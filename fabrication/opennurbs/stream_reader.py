@@ -140,7 +140,7 @@ class StreamReader:
         Yields
         ------
         None
-            With the cursor at its body.
+            With the reader at its body.
         """
         start = self.take(codes.CHUNK_HEADER.size)
         found, length = codes.CHUNK_HEADER.unpack_from(self.data, start)

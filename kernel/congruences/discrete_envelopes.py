@@ -215,9 +215,7 @@ def mirror_points(sphere_mesh: SphereMesh) -> MirrorPoints:
     """
     mesh = sphere_mesh.mesh
     size = mean_edge_length(mesh)
-    rows = recenter(
-        sphere_mesh.local_spheres[mesh.topology.corner_faces], local_corners(mesh)
-    ) * np.array([size, 1.0, 1.0, 1.0, 1 / size])
+    rows = _rows_at_vertices(sphere_mesh, size)
     relative = np.full((mesh.n_vertices, 3), np.nan)
     for vertices, corners in batches_by_count(mesh.corners, mesh.n_vertices):
         if corners.shape[1] < 3:
@@ -238,6 +236,13 @@ def mirror_points(sphere_mesh: SphereMesh) -> MirrorPoints:
     np.maximum.at(residuals, mesh.corners, distances)
     residuals = np.where(is_valid, residuals * size, np.nan)
     return MirrorPoints(mesh.vertices + size * relative, residuals, is_valid)
+
+
+def _rows_at_vertices(sphere_mesh: SphereMesh, size: float) -> FloatArray:
+    """Rows (H, 5) of the faces seen from their corners, in the unit `size`."""
+    mesh = sphere_mesh.mesh
+    rows = recenter(sphere_mesh.local_spheres[mesh.topology.corner_faces], local_corners(mesh))
+    return rows * np.array([size, 1.0, 1.0, 1.0, 1 / size])
 
 
 def contact_points(sphere_mesh: SphereMesh) -> tuple[FloatArray, FloatArray]:
@@ -263,9 +268,7 @@ def contact_points(sphere_mesh: SphereMesh) -> tuple[FloatArray, FloatArray]:
     """
     mesh = sphere_mesh.mesh
     size = mean_edge_length(mesh)
-    rows = recenter(
-        sphere_mesh.local_spheres[mesh.topology.corner_faces], local_corners(mesh)
-    ) * np.array([size, 1.0, 1.0, 1.0, 1 / size])
+    rows = _rows_at_vertices(sphere_mesh, size)
     moved = np.zeros((mesh.n_vertices, 3))
     cost, step = _contact_step(mesh, rows, moved)
     share = np.ones(mesh.n_vertices)

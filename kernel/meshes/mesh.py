@@ -311,6 +311,22 @@ def reversed_corners(mesh: Mesh) -> IntArray:
     return mesh.corners[firsts + place]
 
 
+def edge_middles(mesh: Mesh) -> FloatArray:
+    """
+    Middles of the interior edges.
+
+    Parameters
+    ----------
+    mesh : Mesh
+
+    Returns
+    -------
+    (E, 3) float array
+        Means of the two vertices.
+    """
+    return mesh.vertices[mesh.topology.edge_vertices].mean(axis=1)
+
+
 def corner_edges(mesh: Mesh) -> IntArray:
     """
     Edge that leaves each corner, boundary edges included.

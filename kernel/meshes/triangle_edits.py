@@ -28,7 +28,7 @@ from .triangle_edges import (
     triangle_normals,
 )
 
-LONG, SHORT = 4 / 3, 4 / 5
+TOO_LONG, TOO_SHORT = 4 / 3, 4 / 5
 STRAY = 0.1
 Number = TypeVar("Number", np.int64, np.float64)
 LEAST_COSINE = 0.5
@@ -50,7 +50,7 @@ def split_long_edges(triangles: Triangles) -> Triangles:
     """
     while True:
         edges = find_edges(triangles)
-        is_long = exceeds(edge_lengths(triangles, edges), LONG)
+        is_long = exceeds(edge_lengths(triangles, edges), TOO_LONG)
         is_long[edges.line_edges[strays(triangles)]] = True
         if not is_long.any():
             return triangles
@@ -145,7 +145,7 @@ def collapse_short_edges(triangles: Triangles, max_batches: int = 12) -> Triangl
     for _ in range(max_batches):
         edges = find_edges(triangles)
         lengths = edge_lengths(triangles, edges)
-        candidates = np.flatnonzero(exceeds(SHORT, lengths) & ~np.isin(edges.keys, refused))
+        candidates = np.flatnonzero(exceeds(TOO_SHORT, lengths) & ~np.isin(edges.keys, refused))
         candidates = candidates[_may_merge(triangles, edges, candidates)]
         chosen = candidates[_independent(edges, candidates, lengths[candidates], reach=2)]
         if not len(chosen):
@@ -225,7 +225,7 @@ def _keeps_shape(triangles: Triangles, ends: IntArray, places: FloatArray) -> Bo
     after = unit(triangle_normals(moved))
     sides = norm(np.roll(moved, -1, axis=1) - moved)
     sides_before = norm(np.roll(corners, -1, axis=1) - corners)
-    grown = exceeds(sides, LONG) & exceeds(sides, sides_before)
+    grown = exceeds(sides, TOO_LONG) & exceeds(sides, sides_before)
     is_thin = exceeds(np.minimum(thickness_before, SLIVER), thickness(moved))
     # The normal of a sliver turns easily.
     least = np.where(thickness_before < SLIVER, 0.0, LEAST_COSINE)

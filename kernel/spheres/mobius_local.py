@@ -93,20 +93,8 @@ def make_local(
     return LocalMap(origin, image, float(scale), u @ vt, unit(direction), strength)
 
 
-def mirror_matrix(direction: FloatArray) -> FloatArray:
-    """
-    Reflection in the plane across a unit vector.
-
-    Parameters
-    ----------
-    direction : (3,) float array
-        Unit vector n.
-
-    Returns
-    -------
-    (3, 3) float array
-        ``I - 2 n nᵀ``.
-    """
+def _mirror_matrix(direction: FloatArray) -> FloatArray:
+    """Reflection ``I - 2 n nᵀ`` in the plane across a unit vector."""
     return np.eye(3) - 2 * direction[:, None] * direction
 
 
@@ -134,28 +122,15 @@ def bend_vectors(local: LocalMap, points: FloatArray) -> tuple[FloatArray, Float
     return vectors, MAP_ROUNDING * (1 + local.strength * sizes)
 
 
-def move_origin(local: LocalMap, origin: FloatArray) -> LocalMap:
-    """
-    The same map seen from another point.
-
-    Parameters
-    ----------
-    local : LocalMap
-    origin : (3,) float array
-        The point; not sent to infinity.
-
-    Returns
-    -------
-    LocalMap
-        The map.
-    """
+def _move_origin(local: LocalMap, origin: FloatArray) -> LocalMap:
+    """The same map seen from another point, which is not sent to infinity."""
     offset = origin - local.origin
     vector, _ = bend_vectors(local, origin)
     square = float(vector @ vector)
     bend = local.strength * vector / square
     numerator = offset + (offset @ offset) * local.strength * local.direction
     image = local.image + local.scale * (local.rotation @ numerator) / square
-    rotation = local.rotation @ mirror_matrix(local.direction) @ mirror_matrix(unit(vector))
+    rotation = local.rotation @ _mirror_matrix(local.direction) @ _mirror_matrix(unit(vector))
     return make_local(origin, image, local.scale / square, rotation, bend)
 
 
@@ -181,11 +156,11 @@ def after(second: LocalMap, first: LocalMap) -> LocalMap:
         vector, rounding = bend_vectors(first, origin)
         if norm(vector) <= 1024 * rounding:
             continue
-        start = move_origin(first, origin)
+        start = _move_origin(first, origin)
         vector, rounding = bend_vectors(second, start.image)
         if norm(vector) <= 1024 * rounding:
             continue
-        found = _follow(start, move_origin(second, start.image))
+        found = _follow(start, _move_origin(second, start.image))
         if best is None or found.strength < best.strength / 16:
             best = found
     if best is None:

@@ -106,7 +106,7 @@ def _read_reflection(matrix: FloatArray) -> LocalMap | None:
     if not (np.abs(outer - product) <= MAP_ROUNDING * bounds).all():
         return None
     b, c = mirror[:3], (mirror[3] + mirror[4]) / 2
-    return local_reflection(_leading_coefficient(mirror), b, float(c))
+    return _local_reflection(_leading_coefficient(mirror), b, float(c))
 
 
 def _leading_coefficient(mirror: FloatArray) -> float:
@@ -122,22 +122,8 @@ def _leading_coefficient(mirror: FloatArray) -> float:
     return 0.0 if abs(a) <= 4 * error else float(a)
 
 
-def local_reflection(a: float, b: FloatArray, c: float) -> LocalMap:
-    """
-    Reflection in a unit row, seen from the point of the sphere nearest the origin.
-
-    Parameters
-    ----------
-    a : float
-        Coefficient A of the row; 0 for a plane.
-    b : (3,) float array
-    c : float
-
-    Returns
-    -------
-    LocalMap
-        The reflection, which fixes its origin.
-    """
+def _local_reflection(a: float, b: FloatArray, c: float) -> LocalMap:
+    """Reflection in a unit row, seen from the point of the sphere nearest the origin: fixed."""
     length = float(norm(b))
     if length > 0:
         normal, foot = b / length, 2 * c / (length * (length + 1)) * b

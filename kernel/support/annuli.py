@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, dot, norm, sum_by
-from ..spheres.arcs import Arcs, sphere_arcs
 
 
 @dataclass(frozen=True)
@@ -118,27 +117,6 @@ def beam_ids(n_edges: int) -> tuple[str, ...]:
     """
     width = max(4, len(str(n_edges - 1)))
     return tuple(f"B{edge:0{width}d}" for edge in range(n_edges))
-
-
-def annulus_arcs(annuli: Annuli) -> tuple[Arcs, Arcs]:
-    """
-    Outer and inner arcs, in local coordinates.
-
-    Parameters
-    ----------
-    annuli : Annuli
-
-    Returns
-    -------
-    outer, inner : Arcs
-        B arcs each, from the first to the second end; sagittas count to the outer side.
-    """
-    planes = -annuli.frames[:, 2]
-    outer, inner = (
-        sphere_arcs(rows, planes, annuli.corners[:, 0, k], annuli.corners[:, 1, k])
-        for k, rows in enumerate((annuli.outer, annuli.inner))
-    )
-    return outer, inner
 
 
 def corner_mismatch(annuli: Annuli) -> FloatArray:

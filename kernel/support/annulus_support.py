@@ -7,7 +7,6 @@ in the same two points (Lemma 4.4), or lies at a constant depth, measured on the
 """
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from ..panels.cutting import flatten_nearly_plane
 from ..panels.panels import panel_ids
 from ..parts.findings import rejected_report
 from ..parts.records import RejectedPart, reject_parts
+from ..reports import Report
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.incidence import evaluate, meet_lines, normals
 from ..spheres.minkowski import minkowski
@@ -286,43 +286,72 @@ def _with_depth(annuli: Annuli, depth: float) -> Annuli:
     return replace(annuli, inner=inner, corners=corners, depth=depth)
 
 
-def annulus_report(support: AnnulusSupport, size: float) -> dict[str, Any]:
+@dataclass(frozen=True, eq=False)
+class AnnuliReport(Report):
     """
     What a user must know about annuli.
+
+    Attributes
+    ----------
+    kappa_max : float or None
+        Largest admissible power; None where all arcs are straight.
+    tilt_deg : dict
+        ``p95`` and ``max`` of the annuli made.
+    corner_mismatch : dict
+        Between the ends at a node: ``max`` in model units and ``relative_to_edge``.
+    axis_angle_deg : float
+        Largest angle between a node axis and a plane.
+    end_depth : dict
+        ``min`` and ``max`` length of the ends.
+    outward : int
+        Ends that reach to the outer side.
+    made : int
+    rejected : list of dict
+        ``id``, ``code`` and ``reason`` of each annulus that cannot be made.
+    """
+
+    kappa_max: float | None
+    tilt_deg: dict[str, float]
+    corner_mismatch: dict[str, float]
+    axis_angle_deg: float
+    end_depth: dict[str, float]
+    outward: int
+    made: int
+    rejected: list[dict[str, str]]
+
+
+def annulus_report(support: AnnulusSupport, size: float) -> AnnuliReport:
+    """
+    The report of annuli.
 
     Parameters
     ----------
     support : AnnulusSupport
-        The annuli and what was rejected.
     size : float
 
     Returns
     -------
-    dict
-        ``kappa_max`` (None where all arcs are straight), ``tilt_deg`` (p95 and max) of the
-        annuli made, ``corner_mismatch`` (max, relative_to_edge) between ends at a node,
-        ``axis_angle_deg`` (the largest angle between a node axis and a plane), ``end_depth``
-        (min and max length of the ends), ``outward`` (how many ends reach to the outer side),
-        ``made`` and ``rejected`` (id, code and reason).
+    AnnuliReport
+        Plain values.
     """
     annuli = support.annuli
     tilt = np.degrees(annuli.tilt)
     steps = annuli.corners[:, :, 1] - annuli.corners[:, :, 0]
     lengths = end_depths(annuli)
     mismatch = float(corner_mismatch(annuli).max(initial=0.0)) if annuli.n_annuli else 0.0
-    return {
-        "kappa_max": support.kappa_max if np.isfinite(support.kappa_max) else None,
-        "tilt_deg": {
+    return AnnuliReport(
+        kappa_max=support.kappa_max if np.isfinite(support.kappa_max) else None,
+        tilt_deg={
             "p95": float(np.percentile(tilt, 95)) if len(tilt) else 0.0,
             "max": float(tilt.max(initial=0.0)),
         },
-        "corner_mismatch": {"max": mismatch, "relative_to_edge": mismatch / size},
-        "axis_angle_deg": float(np.degrees(twist_angles(annuli).max(initial=0.0))),
-        "end_depth": {
+        corner_mismatch={"max": mismatch, "relative_to_edge": mismatch / size},
+        axis_angle_deg=float(np.degrees(twist_angles(annuli).max(initial=0.0))),
+        end_depth={
             "min": float(lengths.min()) if lengths.size else 0.0,
             "max": float(lengths.max(initial=0.0)),
         },
-        "outward": int((dot(steps, annuli.end_directions) < 0).sum()),
-        "made": annuli.n_annuli,
-        "rejected": rejected_report(support.rejected),
-    }
+        outward=int((dot(steps, annuli.end_directions) < 0).sum()),
+        made=annuli.n_annuli,
+        rejected=rejected_report(support.rejected),
+    )

@@ -18,6 +18,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray, batches_by_count, dot, norm, sum_by, unit
 from ..meshes.mesh import Mesh, local_corners, mean_edge_length
 from ..panels.cutting import flatten_nearly_plane
+from ..reports import Report
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.incidence import signed_distance
 from ..spheres.minkowski import angle
@@ -286,25 +287,51 @@ def axis_lean(structure: SupportStructure) -> FloatArray:
     return 2 * np.arctan2(norm(inward - normal), norm(inward + normal))
 
 
-def support_report(sphere_mesh: SphereMesh, structure: SupportStructure) -> dict[str, Any]:
+@dataclass(frozen=True, eq=False)
+class NodesReport(Report):
     """
     What a user must know about the nodes and beams of a sphere mesh.
+
+    Attributes
+    ----------
+    torsion_deg : dict
+        ``mean`` and ``max`` over the interior vertices, ``boundary_max``.
+    mirror_miss : float
+        Largest distance of a mirror point from its spheres, in mean edges, over the interior
+        nodes of at least three faces.
+    beam_tilt_deg : dict
+        ``p95`` and ``max``.
+    axes_without_mirror : int
+        Axes that end one mean edge inside.
+    edges_without_circle : int
+        Neighbours on the same sphere.
+    valid : int
+    invalid : list of dict
+        ``id``, ``vertex`` and ``reason`` of each node.
+    """
+
+    torsion_deg: dict[str, float]
+    mirror_miss: float
+    beam_tilt_deg: dict[str, float]
+    axes_without_mirror: int
+    edges_without_circle: int
+    valid: int
+    invalid: list[dict[str, Any]]
+
+
+def support_report(sphere_mesh: SphereMesh, structure: SupportStructure) -> NodesReport:
+    """
+    The report of nodes.
 
     Parameters
     ----------
     sphere_mesh : SphereMesh
     structure : SupportStructure
-        Its nodes.
 
     Returns
     -------
-    dict
-        ``torsion_deg`` (mean and max over the interior vertices, max over the boundary),
-        ``mirror_miss`` (the largest distance of a mirror point from its spheres, in mean
-        edges, over the interior nodes of at least three faces), ``beam_tilt_deg`` (p95 and
-        max), ``axes_without_mirror`` (how many axes end one mean edge inside),
-        ``edges_without_circle`` (neighbours on the same sphere), ``valid`` and ``invalid``
-        (id, vertex and reason of each node).
+    NodesReport
+        Plain values.
     """
     topology = sphere_mesh.mesh.topology
     inside = ~topology.is_boundary_vertex
@@ -313,27 +340,25 @@ def support_report(sphere_mesh: SphereMesh, structure: SupportStructure) -> dict
     miss = np.nan_to_num(structure.mirror_miss[inside & enough])
     tilt = np.degrees(beam_tilt(sphere_mesh))
     reasons = node_reasons(structure)
-    return {
-        "torsion_deg": {
+    return NodesReport(
+        torsion_deg={
             "mean": float(degrees[inside].mean()) if inside.any() else 0.0,
             "max": float(degrees[inside].max(initial=0.0)),
             "boundary_max": float(degrees[~inside].max(initial=0.0)),
         },
-        "mirror_miss": float(miss.max(initial=0.0)) / mean_edge_length(sphere_mesh.mesh),
-        "beam_tilt_deg": {
+        mirror_miss=float(miss.max(initial=0.0)) / mean_edge_length(sphere_mesh.mesh),
+        beam_tilt_deg={
             "p95": float(np.percentile(tilt, 95)) if len(tilt) else 0.0,
             "max": float(tilt.max(initial=0.0)),
         },
-        "axes_without_mirror": int((~structure.has_mirror).sum()),
-        "edges_without_circle": int(
-            (~arc_planes(flatten_nearly_plane(sphere_mesh)).exists).sum()
-        ),
-        "valid": len(inside) - len(reasons),
-        "invalid": [
+        axes_without_mirror=int((~structure.has_mirror).sum()),
+        edges_without_circle=int((~arc_planes(flatten_nearly_plane(sphere_mesh)).exists).sum()),
+        valid=len(inside) - len(reasons),
+        invalid=[
             {"id": node_name(vertex), "vertex": vertex, "reason": reason}
             for vertex, reason in reasons.items()
         ],
-    }
+    )
 
 
 def node_name(vertex: int) -> str:

@@ -63,6 +63,7 @@ class Port:
 
 ReadPath: TypeAlias = Annotated[str | os.PathLike[str], Port(reads=True)]
 WritePath: TypeAlias = Annotated[str | os.PathLike[str], Port(writes=True)]
+Length: TypeAlias = Annotated[float, Port(min=0)]
 Units: TypeAlias = Annotated[Literal["mm", "cm", "m", "in", "ft"], Port(graph_units=True)]
 
 

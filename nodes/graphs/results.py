@@ -56,6 +56,24 @@ def snapshot(array: NDArray[Any]) -> NDArray[Any]:
     return array
 
 
+def remade(several: list[Any] | tuple[Any, ...], items: list[Any]) -> Value:
+    """
+    A list or tuple of the same class with other items.
+
+    Parameters
+    ----------
+    several : list or tuple
+        Also a NamedTuple.
+    items : list
+
+    Returns
+    -------
+    list or tuple
+        Anew.
+    """
+    return getattr(several, "_make", type(several))(items)
+
+
 def own(value: Value, share: Share = locked) -> Value:
     """
     A value that its receiver cannot change for others, nor others for it.
@@ -118,7 +136,7 @@ def _(value: tuple[Any, ...], share: Share, done: dict[int, Value]) -> tuple[Any
     items = [_own(item, share, done) for item in value]
     if all(map(is_, items, value)):
         return value
-    return getattr(value, "_make", type(value))(items)
+    return remade(value, items)
 
 
 @_own.register(list)

@@ -2,7 +2,7 @@
 
 import os
 import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast
@@ -13,7 +13,7 @@ from .errors import GraphError, NodeError
 from .kinds import convert
 from .node import NodeWarning, collected_messages, replaced
 from .ports import Port, check_value
-from .results import own, snapshot
+from .results import own, remade, snapshot
 from .wires import Each, Param, Step, Wire, parents, sources
 
 OnStep = Callable[[str, str], None]
@@ -43,6 +43,8 @@ class Run:
         Keys found so far.
     entries : dict of str to Entry
         Results at hand so far.
+    given : dict of (str, str) to object
+        Literals of steps by input, as they were when first asked for.
     """
 
     steps: Mapping[str, Step]
@@ -54,6 +56,7 @@ class Run:
     write_to: Path | None = None
     keys: dict[str, bytes] = field(default_factory=dict[str, bytes])
     entries: dict[str, Entry] = field(default_factory=dict[str, Entry])
+    given: dict[tuple[str, str], Value] = field(default_factory=dict[tuple[str, str], Value])
 
 
 def run_steps(run: Run, targets: Iterable[str]) -> None:
@@ -63,9 +66,9 @@ def run_steps(run: Run, targets: Iterable[str]) -> None:
     Parameters
     ----------
     run : Run
-        The run; its keys and entries are filled in.
+        Its keys and entries are filled in.
     targets : iterable of str
-        Names of the steps that are wanted.
+        Names of steps.
 
     Raises
     ------
@@ -96,7 +99,6 @@ def output(run: Run, source: Step | Wire | Param) -> Value:
     run : Run
         A run that has reached it.
     source : Step, Wire or Param
-        The target.
 
     Returns
     -------
@@ -146,9 +148,12 @@ def _bring(run: Run, targets: Iterable[str]) -> None:
 
 
 def _given(run: Run, step: Step, port: Port) -> Value:
-    if port.graph_units:
-        return step.inputs.get(port.name, run.units)
-    return step.inputs.get(port.name, port.default)
+    """What an input was given when first asked for: somebody may still write to an array."""
+    at = step.name, port.name
+    if at not in run.given:
+        value = step.inputs.get(port.name, run.units if port.graph_units else port.default)
+        run.given[at] = value if any(sources(value)) else own(value, snapshot)
+    return run.given[at]
 
 
 def _argument(run: Run, step: Step, port: Port) -> Value:
@@ -184,9 +189,9 @@ def _resolve(run: Run, value: Value) -> Value:
         return _resolve(run, value.items)
     if isinstance(value, Wire | Param):
         return output(run, value)
-    if any(True for _ in sources(value)):
+    if any(sources(value)):
         return [_resolve(run, item) for item in value]
-    return own(value, snapshot)  # the caller may still write to it, and the node return it
+    return own(value, snapshot)
 
 
 def _key_part(run: Run, value: Value) -> Value:
@@ -196,7 +201,7 @@ def _key_part(run: Run, value: Value) -> Value:
         return ("each", _key_part(run, value.items))
     if isinstance(value, Param):
         return ("value", run.values[value.name])
-    if any(True for _ in sources(value)):
+    if any(sources(value)):
         return ("list", [_key_part(run, item) for item in value])
     return ("value", value)
 
@@ -256,9 +261,8 @@ def _returned(value: Value, written: Mapping[str, str]) -> Value:
         given = written.get(str(value))
         return value if given is None else type(value)(given)
     if isinstance(value, list | tuple):
-        kind: Any = type(cast("Value", value))
-        items = [_returned(item, written) for item in cast("Sequence[Value]", value)]
-        return getattr(kind, "_make", kind)(items)
+        several = cast("list[Any] | tuple[Any, ...]", value)
+        return remade(several, [_returned(item, written) for item in several])
     return value
 
 

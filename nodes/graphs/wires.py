@@ -308,7 +308,7 @@ def _check_literal(port: Port, value: Value, where: str) -> None:
 
 
 def _has_sources(values: Value) -> bool:
-    return any(isinstance(x, Step | Each) or any(True for _ in sources(x)) for x in values)
+    return any(isinstance(x, Step | Each) or any(sources(x)) for x in values)
 
 
 def _connect_each(place: Place, port: Port, items: Value) -> Value:

@@ -1,13 +1,14 @@
 """Numbers that tell how good a sphere mesh is."""
 
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal, NamedTuple
+from dataclasses import dataclass
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
 from ...kernel import analysis
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.panels import cutting
+from ...kernel.reports import Report
 from ...kernel.sphere_meshes import planarity_circularity as flatness
 from ...kernel.sphere_meshes import sphere_mesh as measures
 from ...kernel.sphere_meshes.fit import face_planes
@@ -29,7 +30,6 @@ def intersection_angles(
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     reference : {"spheres", "planes"}
         Measure between the spheres, or between the planes of the faces, to compare.
 
@@ -37,6 +37,15 @@ def intersection_angles(
     -------
     (E,) float array
         Degrees over the interior edges: 0 smooth, 180 a spike.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import fit_spheres, intersection_angles, vase_mesh
+    >>> sphere_mesh = fit_spheres(vase_mesh(12, 6))
+    >>> for reference in ("spheres", "planes"):
+    ...     print(intersection_angles(sphere_mesh, reference).mean().round(1))
+    15.1
+    24.9
     """
     subject = sphere_mesh if reference == "spheres" else face_planes(sphere_mesh.mesh)
     return np.degrees(measures.intersection_angles(subject))
@@ -50,12 +59,18 @@ def vertex_error(sphere_mesh: SphereMesh) -> VertexDistances:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
 
     Returns
     -------
     (V,) float array
         The largest distance of each vertex, in model units.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import fit_spheres, vase_mesh, vertex_error
+    >>> distances = vertex_error(fit_spheres(vase_mesh(12, 6)))
+    >>> distances.shape, bool((distances < 1e-12).all())
+    ((84,), True)
     """
     return measures.vertex_error(sphere_mesh)
 
@@ -68,12 +83,18 @@ def planarity(sphere_mesh: SphereMesh | Mesh) -> FaceDistances:
     Parameters
     ----------
     sphere_mesh : SphereMesh or Mesh
-        The mesh.
 
     Returns
     -------
     (F,) float array
         Largest distance of a corner of each face, in model units.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import planarity, vase_mesh
+    >>> mesh = vase_mesh(12, 6)
+    >>> planarity(mesh).shape, bool((planarity(mesh) < 1e-12).all())
+    ((72,), True)
     """
     return flatness.planarity(_mesh(sphere_mesh))
 
@@ -86,12 +107,18 @@ def circularity(sphere_mesh: SphereMesh | Mesh) -> FaceDistances:
     Parameters
     ----------
     sphere_mesh : SphereMesh or Mesh
-        The mesh.
 
     Returns
     -------
     (F,) float array
         Largest distance of a corner of each face, in model units.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import circularity, vase_mesh
+    >>> mesh = vase_mesh(12, 6)
+    >>> circularity(mesh).shape, bool((circularity(mesh) < 1e-12).all())
+    ((72,), True)
     """
     return flatness.circularity(_mesh(sphere_mesh))
 
@@ -104,12 +131,18 @@ def beam_tilt(sphere_mesh: SphereMesh) -> EdgeAngles:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
 
     Returns
     -------
     (E,) float array
         Degrees over the interior edges: 0 upright, 90 tangential to the surface.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import beam_tilt, ellipsoid_mesh, model_change
+    >>> tilt = beam_tilt(model_change(ellipsoid_mesh(12, 6), radius=4.0))
+    >>> float(tilt.max().round(1))
+    24.5
     """
     return np.degrees(tilt.beam_tilt(sphere_mesh))
 
@@ -122,7 +155,6 @@ def deviation(sphere_mesh: SphereMesh, mesh: Mesh) -> FaceDistances:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     mesh : Mesh
         The surface to compare with.
 
@@ -130,6 +162,13 @@ def deviation(sphere_mesh: SphereMesh, mesh: Mesh) -> FaceDistances:
     -------
     (F,) float array
         Largest distance of each panel, in model units.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import deviation, face_planes, vase_mesh
+    >>> mesh = vase_mesh(12, 6)
+    >>> bool((deviation(face_planes(mesh), mesh) < 1e-12).all())
+    True
     """
     return analysis.deviation(sphere_mesh, mesh)
 
@@ -142,42 +181,69 @@ def spiky_faces(sphere_mesh: SphereMesh) -> FaceMarks:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
 
     Returns
     -------
     (F,) bool array
         True where a face bulges against its surroundings and makes an edge sharper than the
         planes of the faces would.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import fit_spheres, spiky_faces, vase_mesh
+    >>> int(spiky_faces(fit_spheres(vase_mesh(12, 6))).sum())
+    0
     """
     return analysis.spiky_faces(sphere_mesh)
+
+
+@dataclass(frozen=True, eq=False)
+class HistogramReport(Report):
+    """
+    Numbers of edges by the angle between neighbours.
+
+    Attributes
+    ----------
+    bounds_deg : list of float
+        Bounds of the bins.
+    spheres, planes : list of int
+        Edges in each bin, for the spheres and for the planes of the faces.
+    """
+
+    bounds_deg: list[float]
+    spheres: list[int]
+    planes: list[int]
 
 
 @node
 def angle_histogram(
     sphere_mesh: SphereMesh, n_bins: Annotated[int, Port(min=1, max=1000)] = 20
-) -> Mapping[str, Any]:
+) -> HistogramReport:
     """
     Count the angles between neighbours, for the spheres and for the planes of the faces.
 
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     n_bins : int
         Number of bins.
 
     Returns
     -------
-    mapping
-        ``bounds_deg`` of the bins, and the numbers of edges ``spheres`` and ``planes`` in them.
+    HistogramReport
+        Bounds of the bins, and the numbers of edges in them.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import angle_histogram, fit_spheres, vase_mesh
+    >>> counts = angle_histogram(fit_spheres(vase_mesh(12, 6)), n_bins=3)
+    >>> counts["spheres"], counts["planes"]
+    ([60, 60, 12], [12, 96, 24])
     """
     counts = analysis.angle_histogram(sphere_mesh, n_bins)
-    return {
-        "bounds_deg": np.degrees(counts.bounds).tolist(),
-        "spheres": counts.spheres.tolist(),
-        "planes": counts.planes.tolist(),
-    }
+    return HistogramReport(
+        np.degrees(counts.bounds).tolist(), counts.spheres.tolist(), counts.planes.tolist()
+    )
 
 
 class EdgeArcs(NamedTuple):
@@ -197,7 +263,6 @@ def edge_arcs(
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     mode : {"intersection", "bisector"}
         Circles in which neighbouring spheres meet, or the two circles in the bisecting plane.
 
@@ -207,6 +272,15 @@ def edge_arcs(
         One arc per half-edge (H of them, in the order of the corners), in model coordinates.
     gap : (E,) float array
         Largest distance of the two arcs of each interior edge, in model units.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import edge_arcs, fit_spheres, vase_mesh
+    >>> sphere_mesh = fit_spheres(vase_mesh(12, 6))
+    >>> bool((edge_arcs(sphere_mesh, "intersection").gap < 1e-12).all())
+    True
+    >>> float(edge_arcs(sphere_mesh, "bisector").gap.max().round(3))
+    0.018
     """
     arcs = cutting.edge_arcs(sphere_mesh, mode)
     return EdgeArcs(arcs, cutting.edge_gaps(sphere_mesh, mode))

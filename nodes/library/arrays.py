@@ -12,6 +12,7 @@ from ..graphs.ports import Port
 _DEGREES = Port(unit="deg")
 
 VertexSpheres: TypeAlias = Annotated[FloatArray, ArrayFacts("spheres of vertices", ("V", 5))]
+VertexPoints: TypeAlias = Annotated[FloatArray, ArrayFacts("points of vertices", ("V", 3))]
 VertexNormals: TypeAlias = Annotated[FloatArray, ArrayFacts("normals of vertices", ("V", 3))]
 VertexAxes: TypeAlias = Annotated[FloatArray, ArrayFacts("axes of vertices", ("V", 2, 3))]
 VertexDirections: TypeAlias = Annotated[
@@ -23,6 +24,7 @@ VertexAngles: TypeAlias = Annotated[
 ]
 VertexMarks: TypeAlias = Annotated[BoolArray, ArrayFacts("marks of vertices", ("V",))]
 
+EdgeSpheres: TypeAlias = Annotated[FloatArray, ArrayFacts("spheres of edges", ("E", 5))]
 EdgeWeights: TypeAlias = Annotated[FloatArray, ArrayFacts("weights of edges", ("E",))]
 EdgeAngles: TypeAlias = Annotated[FloatArray, ArrayFacts("angles of edges", ("E",)), _DEGREES]
 EdgeDistances: TypeAlias = Annotated[FloatArray, ArrayFacts("distances of edges", ("E",))]

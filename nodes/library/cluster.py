@@ -1,17 +1,48 @@
 """Few moulds for many panels."""
 
-from collections.abc import Mapping
-from typing import Annotated, Any, NamedTuple
+from dataclasses import dataclass
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from ...kernel.analysis import angle_summary
 from ...kernel.optimization import clustering
+from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.tolerances import COMMON_VERTEX
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
 from .arrays import FaceLabels, MouldRadii
+
+
+@dataclass(frozen=True, eq=False)
+class MouldsReport(Report):
+    """
+    Moulds, and what they cost.
+
+    Attributes
+    ----------
+    count : int
+    radii : list of float or None
+        None for a flat mould.
+    panels_per_mould : list of int
+    angles_deg, unrelaxed_angles_deg : dict
+        ``mean`` and ``max`` in the end, and before vertices moved.
+    reassigned : list of int
+        Faces that are too large for the mould nearest to them.
+    relaxed : bool
+    vertex_move : float
+        In mean edges.
+    """
+
+    count: int
+    radii: list[float | None]
+    panels_per_mould: list[int]
+    angles_deg: dict[str, float]
+    unrelaxed_angles_deg: dict[str, float]
+    reassigned: list[int]
+    relaxed: bool
+    vertex_move: float
 
 
 class Clusters(NamedTuple):
@@ -20,7 +51,7 @@ class Clusters(NamedTuple):
     sphere_mesh: SphereMesh
     labels: FaceLabels
     radii: MouldRadii
-    report: Mapping[str, Any]
+    report: MouldsReport
 
 
 @node
@@ -39,7 +70,6 @@ def cluster_radii(
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     k : int
         Number of moulds.
     relax : bool
@@ -61,10 +91,15 @@ def cluster_radii(
         Mould of each face, 0 the sharpest.
     radii : (k,) float array
         Radii of the moulds, ascending; infinite for a flat one.
-    report : mapping
-        ``count``, ``radii`` (None for a flat mould), ``panels_per_mould``, ``angles_deg``
-        (mean and max), ``unrelaxed_angles_deg``, ``reassigned`` (faces that are too large for
-        the mould nearest to them), ``relaxed`` and ``vertex_move`` (in mean edges).
+    report : MouldsReport
+        The moulds, and the angles with them.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import cluster_radii, fit_spheres, minimize_angles, vase_mesh
+    >>> moulds = cluster_radii(fit_spheres(vase_mesh(12, 6)), k=3, relax=False)
+    >>> moulds.report["panels_per_mould"], moulds.radii.round(2)
+    ([24, 24, 24], array([1.24, 1.85, 8.07]))
     """
     clustered, clusters = clustering.cluster_radii(sphere_mesh, k, seed)
     result, move = clustered, 0.0
@@ -76,22 +111,22 @@ def cluster_radii(
             result, move = relaxed, run.vertex_move
         else:
             warn(
-                f"the vertices do not reach the moulds' spheres within {tolerance:g} mean "
-                "edges: they stay where they were"
+                f"vertices are not moved: within {tolerance:g} mean edges they do not reach "
+                "the spheres of the moulds; allow more tolerance"
             )
     reassigned = np.flatnonzero(clusters.reassigned).tolist()
     if reassigned:
         warn(f"{len(reassigned)} faces are too large for their mould and moved to a larger one")
     if len(clusters.radii) < k:
-        warn(f"{len(clusters.radii)} moulds suffice: no more radii differ")
-    report = {
-        "count": len(clusters.radii),
-        "radii": [float(r) if np.isfinite(r) else None for r in clusters.radii],
-        "panels_per_mould": clusters.counts.tolist(),
-        "angles_deg": angle_summary(result),
-        "unrelaxed_angles_deg": angle_summary(clustered),
-        "reassigned": reassigned,
-        "relaxed": result is not clustered,
-        "vertex_move": move,
-    }
+        warn(f"{len(clusters.radii)} moulds suffice: there are no more different radii")
+    report = MouldsReport(
+        count=len(clusters.radii),
+        radii=[float(r) if np.isfinite(r) else None for r in clusters.radii],
+        panels_per_mould=clusters.counts.tolist(),
+        angles_deg=angle_summary(result),
+        unrelaxed_angles_deg=angle_summary(clustered),
+        reassigned=reassigned,
+        relaxed=result is not clustered,
+        vertex_move=move,
+    )
     return Clusters(result, clusters.labels, clusters.radii, report)

@@ -4,13 +4,29 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from ...kernel.arrays import BoolArray
+from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.congruences import curvature_spheres as congruence
 from ...kernel.congruences import discrete_envelopes
+from ...kernel.congruences.conjugacy import conjugacy_residuals
+from ...kernel.congruences.smooth_envelopes import (
+    SphereJet,
+    envelope_points,
+    has_real_envelopes,
+)
 from ...kernel.meshes.mesh import Mesh, mean_edge_length
+from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.tolerances import VERTEX_MISS
 from ..graphs.node import node, warn
-from .arrays import FaceMarks, FacePoints, VertexDistances, VertexSpheres
+from .arrays import (
+    FaceDistances,
+    FaceMarks,
+    FacePoints,
+    Points,
+    VertexDistances,
+    VertexMarks,
+    VertexPoints,
+    VertexSpheres,
+)
 
 
 class Envelope(NamedTuple):
@@ -19,6 +35,36 @@ class Envelope(NamedTuple):
     points_plus: FacePoints
     points_minus: FacePoints
     is_real: FaceMarks
+
+
+class MirrorPoints(NamedTuple):
+    """The second envelope of a sphere mesh."""
+
+    points: VertexPoints
+    residuals: VertexDistances
+    is_valid: VertexMarks
+
+
+class ContactPoints(NamedTuple):
+    """The points nearest to the spheres around each vertex."""
+
+    points: VertexPoints
+    residuals: VertexDistances
+
+
+class CircularEnvelopes(NamedTuple):
+    """How far the two envelopes of a sphere mesh are from circular nets."""
+
+    plus: FaceDistances
+    minus: FaceDistances
+
+
+class SmoothEnvelope(NamedTuple):
+    """The two surfaces that a smooth congruence envelops."""
+
+    points_plus: Points
+    points_minus: Points
+    is_real: BoolArray
 
 
 @node
@@ -49,12 +95,18 @@ def sphere_congruence(
     (V, 5) float array
         Rows (A, Bx, By, Bz, C), planes included. The curvatures are estimates: where 48 faces
         make a full turn they are off by about 2 %, with 96 by a quarter of that.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import sphere_congruence, torus_mesh
+    >>> sphere_congruence(torus_mesh(12, 6), "principal").shape
+    (72, 5)
     """
     spheres, is_fitted = congruence.sphere_congruence(mesh, kind, offset, which)
     if not is_fitted.all():
         warn(
-            f"{_share(~is_fitted)} of the vertices have too few neighbours to tell the "
-            "curvature and get their tangent plane: refine the mesh there"
+            f"{_share(~is_fitted)} of the vertices have too few neighbours to estimate the "
+            "curvature, and get their tangent plane: refine the mesh there"
         )
     return spheres
 
@@ -83,6 +135,14 @@ def envelope(
         infinite where one is at infinity, as for planes.
     is_real : (F,) bool array
         Whether the spheres of the face meet in two real points.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import envelope, tangent_spheres, torus_mesh, triangulate
+    >>> mesh = triangulate(torus_mesh(24, 12))
+    >>> found = envelope(mesh, tangent_spheres(mesh, 0.9))
+    >>> found.points_plus.shape, bool(found.is_real.all())
+    ((576, 3), True)
     """
     result = discrete_envelopes.envelope(mesh, spheres, order)
     if not result.is_real.all():
@@ -99,6 +159,159 @@ def envelope(
             f"nearest ones miss them by up to {relative:.3g} mean edges"
         )
     return Envelope(result.points_plus, result.points_minus, result.is_real)
+
+
+@node
+def smooth_envelope(
+    centers: Points,
+    radii: FloatArray,
+    centers_u: Points,
+    centers_v: Points,
+    radii_u: FloatArray,
+    radii_v: FloatArray,
+) -> SmoothEnvelope:
+    """
+    Points in which the spheres of a smooth congruence touch the two surfaces they envelop.
+
+    Parameters
+    ----------
+    centers : (N, 3) float array
+    radii : (N,) float array
+    centers_u, centers_v : (N, 3) float array
+        Derivatives of the centres by the two parameters.
+    radii_u, radii_v : (N,) float array
+        Derivatives of the radii.
+
+    Returns
+    -------
+    points_plus, points_minus : (N, 3) float array
+        Mirror images in the tangent plane of the surface of the centres; NaN where not real.
+    is_real : (N,) bool array
+        Whether there are two real points: the radius changes more slowly than the centre.
+
+    Examples
+    --------
+    >>> flat = np.zeros((1, 3)), np.ones(1), np.eye(3)[:1], np.eye(3)[1:2]
+    >>> smooth_envelope(*flat, np.zeros(1), np.zeros(1)).points_plus.tolist()
+    [[0.0, 0.0, 1.0]]
+    """
+    jet = SphereJet(centers, radii, centers_u, centers_v, radii_u, radii_v)
+    return SmoothEnvelope(*envelope_points(jet), has_real_envelopes(jet))
+
+
+@node
+def conjugacy(
+    along_u: FloatArray,
+    along_v: FloatArray,
+    mixed: FloatArray,
+    lift: FloatArray | None = None,
+) -> FloatArray:
+    """
+    How far a parametrisation or a net is from conjugate: distance of f_uv from a span.
+
+    Parameters
+    ----------
+    along_u, along_v : (N, n) float array
+        First derivatives; of a net the differences along two sides of each face.
+    mixed : (N, n) float array
+        Derivative f_uv; of a net the difference of the differences.
+    lift : (N, n) float array, optional
+        The map itself where it is projective, such as rows of spheres; none by default.
+
+    Returns
+    -------
+    (N,) float array
+        Distance of f_uv from the span of f_u and f_v (and f with a lift); zero is conjugate.
+
+    Examples
+    --------
+    >>> conjugacy(np.eye(3)[:1], np.eye(3)[1:2], np.array([[0.0, 1.0, 2.0]])).tolist()
+    [2.0]
+    """
+    return conjugacy_residuals(along_u, along_v, mixed, lift)
+
+
+@node
+def mirror_points(sphere_mesh: SphereMesh) -> MirrorPoints:
+    """
+    Points in which the spheres around each vertex meet once more: the second envelope.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        Its spheres pass through the vertices.
+
+    Returns
+    -------
+    points : (V, 3) float array
+        NaN on the boundary; by least squares around vertices of more than three faces.
+    residuals : (V,) float array
+        Distance from the farthest sphere of the vertex, in model units: zero for a
+        Q-congruence.
+    is_valid : (V,) bool array
+        Whether the point is one of space.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import central_spheres, torus_mesh
+    >>> found = mirror_points(central_spheres(torus_mesh(12, 6, major_radius=3.0)))
+    >>> bool(found.is_valid.all()), bool(found.residuals.max() < 1e-9)
+    (True, True)
+    """
+    found = discrete_envelopes.mirror_points(sphere_mesh)
+    return MirrorPoints(found.points, found.residuals, found.is_valid)
+
+
+@node
+def contact_points(sphere_mesh: SphereMesh) -> ContactPoints:
+    """
+    Points nearest to all spheres around each vertex: the vertices that spheres ask for.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+
+    Returns
+    -------
+    points : (V, 3) float array
+        By least squares of the distances; vertices on fewer than three spheres move no farther
+        than they must.
+    residuals : (V,) float array
+        Distance from the farthest sphere of the vertex, in model units.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import face_planes, torus_mesh
+    >>> bool(contact_points(face_planes(torus_mesh(12, 6))).residuals.max() < 1e-9)
+    True
+    """
+    return ContactPoints(*discrete_envelopes.contact_points(sphere_mesh))
+
+
+@node
+def circular_envelopes(sphere_mesh: SphereMesh) -> CircularEnvelopes:
+    """
+    Test for a discrete Ribaucour congruence: both envelopes of a sphere mesh are circular.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        A Q-congruence, whose `mirror_points` have no residuals.
+
+    Returns
+    -------
+    plus, minus : (F,) float array
+        How far the corners of each face, and their mirror points, are from one circle, relative
+        to the size of the face; NaN where a corner has no mirror point.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import central_spheres, torus_mesh
+    >>> found = circular_envelopes(central_spheres(torus_mesh(12, 6, major_radius=3.0)))
+    >>> bool(found.plus.max() < 1e-9), bool(found.minus.max() < 1e-9)
+    (True, True)
+    """
+    return CircularEnvelopes(*discrete_envelopes.ribaucour_residuals(sphere_mesh))
 
 
 def _share(mask: BoolArray) -> str:

@@ -1,7 +1,7 @@
 """Panels, and the files that fabricators open."""
 
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal, NamedTuple
+from dataclasses import dataclass
+from typing import Annotated, Literal, NamedTuple
 
 from ...fabrication.drawings import beams as dxf
 from ...fabrication.drawings import moulds as mould_drawings
@@ -9,27 +9,51 @@ from ...fabrication.files import check_suffix, replacing
 from ...fabrication.model import Model, Written
 from ...fabrication.rhino import writer as rhino
 from ...fabrication.schedules import writer as schedule
+from ...fabrication.solids.cadquery_assembly import beams_to_cadquery, to_cadquery
 from ...fabrication.step import writer as step
 from ...kernel.beams.beams import Beams
-from ...kernel.errors import name_ids
+from ...kernel.errors import InputError, name_ids
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.panels import cutting
 from ...kernel.panels.panels import Panels
 from ...kernel.parts.findings import rejected_report
+from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...viewer.render import render_image
 from ..graphs.node import node, running_graph, warn
-from ..graphs.ports import Port, Units, WritePath
+from ..graphs.ports import Length, Port, Units, WritePath
 from .arrays import FaceLabels
 
-Length = Annotated[float, Port(min=0)]
+
+@dataclass(frozen=True, eq=False)
+class CutReport(Report):
+    """
+    The panels that can be made, and the others.
+
+    Attributes
+    ----------
+    edge_gap : dict
+        Between the arcs of neighbouring panels, at the ends and in the middle, before the
+        joint: ``max`` and ``mean`` in model units, ``relative_to_edge``, over so many
+        ``edges``.
+    thickness : dict
+        ``min``, ``mean`` and ``max``.
+    written : int
+    rejected : list of dict
+        ``id``, ``code`` and ``reason`` of each panel that cannot be made.
+    """
+
+    edge_gap: dict[str, float]
+    thickness: dict[str, float]
+    written: int
+    rejected: list[dict[str, str]]
 
 
 class PanelSet(NamedTuple):
     """The panels that can be made, and what was found while cutting them."""
 
     panels: Panels
-    report: Mapping[str, Any]
+    report: CutReport
 
 
 @node
@@ -48,7 +72,6 @@ def panels(
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     edges : {"bisector", "intersection"}
         Cut along each edge by the plane that bisects the two faces (walls stand upright, the
         two arcs of an edge differ by a small gap), or by the plane in which the two spheres
@@ -71,11 +94,15 @@ def panels(
     -------
     panels : Panels
         The panels that can be made.
-    report : mapping
-        ``edge_gap`` (max, mean, relative_to_edge, over so many edges) between the arcs of
-        neighbouring panels, at the ends and in the middle, before the joint; ``thickness``
-        (min, mean, max); ``written`` and ``rejected`` (id, code and reason of each panel that
-        cannot be made).
+    report : CutReport
+        Gaps, thickness, and the panels that cannot be made.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import fit_spheres, panels, vase_mesh
+    >>> made = panels(fit_spheres(vase_mesh(12, 6)), thickness=0.02)
+    >>> made.report["written"], made.report["rejected"]
+    (72, [])
     """
     made, rejected = cutting.cut_panels(
         sphere_mesh, edges, thickness, joint_gap, labels, side, layer
@@ -86,12 +113,12 @@ def panels(
             f"{name_ids([panel.element_id for panel in rejected])} "
             f"({rejected[0].id}: {rejected[0].reason})"
         )
-    report = {
-        "edge_gap": cutting.gap_report(sphere_mesh, edges, made.face_ids),
-        "thickness": cutting.thickness_report(made),
-        "written": made.n_panels,
-        "rejected": rejected_report(rejected),
-    }
+    report = CutReport(
+        edge_gap=cutting.gap_report(sphere_mesh, edges, made.face_ids),
+        thickness=cutting.thickness_report(made),
+        written=made.n_panels,
+        rejected=rejected_report(rejected),
+    )
     return PanelSet(made, report)
 
 
@@ -115,7 +142,6 @@ def write_step(
     path : path
         Ends in .step or .stp.
     units : str
-        Model units.
     step_units : {"mm", "m"}
         Units of the file.
     schema : {"AP214IS", "AP242DIS"}
@@ -130,9 +156,54 @@ def write_step(
     -------
     str
         The path.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import fit_spheres, panels, vase_mesh, write_step
+    >>> made = panels(fit_spheres(vase_mesh(12, 6)), thickness=0.02)
+    >>> with TemporaryDirectory() as folder:
+    ...     write_step(made.panels, f"{folder}/vase.step").endswith("vase.step")
+    True
     """
     options = step.StepOptions(step_units, schema, copies=copies)
     return _tell(step.write_step(Model(panels, beams, units), path, options))
+
+
+@node
+def cadquery_solids(
+    panels: Panels | None = None, beams: Beams | None = None, units: Units = "m"
+) -> object:
+    """
+    Panels and beams as a CadQuery assembly, for further modelling.
+
+    Parameters
+    ----------
+    panels : Panels, optional
+        The panels; these or beams are needed.
+    beams : Beams, optional
+        The beams; of beams and panels the former are an assembly within the latter.
+    units : str
+        Model units; the assembly is in millimetres.
+
+    Returns
+    -------
+    cadquery.Assembly
+        A solid (without thickness a face) for every part, named by its id.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import fit_spheres, torus_mesh
+    >>> torus = panels(fit_spheres(torus_mesh(8, 6)), thickness=0.02).panels
+    >>> len(cadquery_solids(torus).children)
+    48
+    """
+    if panels is None:
+        if beams is None:
+            raise InputError("cadquery_solids needs panels or beams")
+        return beams_to_cadquery(beams, units)
+    assembly = to_cadquery(panels, units)
+    return assembly if beams is None else assembly.add(beams_to_cadquery(beams, units))
 
 
 @node
@@ -175,6 +246,15 @@ def write_3dm(
     -------
     str
         The path. The document carries the graph that is running.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import fit_spheres, panels, vase_mesh, write_3dm
+    >>> made = panels(fit_spheres(vase_mesh(12, 6)))
+    >>> with TemporaryDirectory() as folder:
+    ...     write_3dm(made.panels, f"{folder}/vase.3dm").endswith("vase.3dm")
+    True
     """
     mesh = reference.mesh if isinstance(reference, SphereMesh) else reference
     graph = running_graph()
@@ -196,11 +276,9 @@ def write_dxf(
     Parameters
     ----------
     beams : Beams
-        The beams.
     path : path
         Ends in .dxf.
     units : str
-        Model units.
     sheet : (float, float)
         Width and height of the sheets, in millimetres.
     spacing : float
@@ -211,6 +289,17 @@ def write_dxf(
     str
         The path. Layers: CUT, ENGRAVE (ids, nodes, bevels of the ends in degrees), DRILL
         (drilling marks) and SHEET.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import annulus_support, beams, ellipsoid_mesh, model_change
+    >>> from spheremesh.nodes import write_dxf
+    >>> sphere_mesh = model_change(ellipsoid_mesh(12, 6), radius=4.0)
+    >>> made = beams(annulus_support(sphere_mesh, depth=0.1).annuli, thickness=0.02)
+    >>> with TemporaryDirectory() as folder:
+    ...     write_dxf(made.beams, f"{folder}/beams.dxf").endswith("beams.dxf")
+    True
     """
     options = dxf.SheetOptions(sheet, spacing)
     return _tell(dxf.write_dxf(Model(beams=beams, units=units), path, options))
@@ -234,14 +323,23 @@ def write_schedule(
         Ends in .csv (panels or beams), or in .json or .xlsx (both; .xlsx with the extra
         ``excel``).
     units : str
-        Model units.
     beams : Beams, optional
-        The beams.
 
     Returns
     -------
     str
         The path.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import fit_spheres, panels, vase_mesh, write_schedule
+    >>> made = panels(fit_spheres(vase_mesh(12, 6)))
+    >>> with TemporaryDirectory() as folder:
+    ...     path = write_schedule(made.panels, f"{folder}/panels.csv")
+    ...     len(Path(path).read_text("utf-8").splitlines())
+    73
     """
     return _tell(schedule.write_schedule(Model(panels, beams, units), path))
 
@@ -254,16 +352,23 @@ def write_mould_drawings(panels: Panels, path: WritePath, units: Units = "m") ->
     Parameters
     ----------
     panels : Panels
-        The panels.
     path : path
         Ends in .dxf or .svg.
     units : str
-        Model units.
 
     Returns
     -------
     str
         The path.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import fit_spheres, panels, vase_mesh, write_mould_drawings
+    >>> made = panels(fit_spheres(vase_mesh(12, 6)))
+    >>> with TemporaryDirectory() as folder:
+    ...     write_mould_drawings(made.panels, f"{folder}/panels.svg").endswith("panels.svg")
+    True
     """
     return _tell(mould_drawings.write_mould_drawings(Model(panels, units=units), path))
 
@@ -297,7 +402,6 @@ def render(
     Parameters
     ----------
     panels : Panels
-        The panels.
     path : path
         Ends in .png.
     color_by : {"mould", "radius", "none"}
@@ -313,6 +417,15 @@ def render(
     -------
     str
         The path.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import fit_spheres, panels, render, vase_mesh
+    >>> made = panels(fit_spheres(vase_mesh(12, 6)))
+    >>> with TemporaryDirectory() as folder:
+    ...     render(made.panels, f"{folder}/vase.png", width=64, height=40).endswith("vase.png")
+    True
     """
     check_suffix(path, ".png")
     image = render_image(

@@ -10,11 +10,10 @@ from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.surfaces import circular_nets as surfaces
 from ...kernel.surfaces import triangulated
 from ..graphs.node import node
-from ..graphs.ports import Port, ReadPath, WritePath
+from ..graphs.ports import Length, Port, ReadPath, WritePath
 from .arrays import VertexNormals
 
 Count = Annotated[int, Port(min=1, max=2000)]
-Length = Annotated[float, Port(min=0)]
 
 
 class SampledSurface(NamedTuple):
@@ -42,6 +41,14 @@ def read_mesh(path: ReadPath, layer: str = "", n_u: Count = 24, n_v: Count = 24)
     -------
     Mesh
         The mesh, in the units of the file.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import read_mesh, vase_mesh, write_mesh
+    >>> with TemporaryDirectory() as folder:
+    ...     read_mesh(write_mesh(vase_mesh(12, 6), f"{folder}/vase.obj")).n_faces
+    72
     """
     return reader.read_mesh(path, layer, n_u, n_v)
 
@@ -62,6 +69,15 @@ def write_mesh(mesh: Mesh | SphereMesh, path: WritePath) -> str:
     -------
     str
         The path.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import vase_mesh, write_mesh
+    >>> with TemporaryDirectory() as folder:
+    ...     Path(write_mesh(vase_mesh(12, 6), f"{folder}/vase.ply")).read_bytes()[:3]
+    b'ply'
     """
     if isinstance(mesh, SphereMesh):
         mesh = mesh.mesh
@@ -87,6 +103,13 @@ def torus_mesh(
     -------
     Mesh
         Quadrilaterals.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import torus_mesh
+    >>> mesh = torus_mesh(n_around=12, n_across=6)
+    >>> mesh.n_faces, mesh.n_vertices
+    (72, 72)
     """
     return surfaces.torus_net(n_around, n_across, major_radius, minor_radius)
 
@@ -115,6 +138,12 @@ def ellipsoid_mesh(
     -------
     Mesh
         Quadrilaterals.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import ellipsoid_mesh
+    >>> ellipsoid_mesh(n_around=12, n_across=6).vertices.max(axis=0).round(2)
+    array([1.  , 1.  , 1.41])
     """
     angle = float(np.radians(latitude))
     return surfaces.ellipsoid_net(n_around, n_across, radius, height, angle)
@@ -140,6 +169,12 @@ def catenoid_mesh(
     -------
     Mesh
         Quadrilaterals.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import catenoid_mesh
+    >>> catenoid_mesh(n_around=12, n_across=6).n_faces
+    72
     """
     return surfaces.catenoid_net(n_around, n_across, waist, height)
 
@@ -160,6 +195,12 @@ def enneper_mesh(n: Count = 16, size: Length = 0.9) -> Mesh:
     -------
     Mesh
         Quadrilaterals.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import enneper_mesh
+    >>> enneper_mesh(n=8).n_faces
+    64
     """
     return surfaces.enneper_net(n, size)
 
@@ -188,6 +229,13 @@ def vase_mesh(
     -------
     Mesh
         Quadrilaterals.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import vase_mesh
+    >>> mesh = vase_mesh(n_around=12, n_across=6)
+    >>> mesh.n_faces, mesh.n_vertices
+    (72, 84)
     """
     return surfaces.vase_net(n_around, n_across, radius, height, amplitude)
 
@@ -208,6 +256,12 @@ def roof_mesh(n_span: Count = 24, n_length: Count = 60, length: Length = 80.0) -
     -------
     Mesh
         Quadrilaterals with exact circumcircles, of both signs of Gaussian curvature.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import roof_mesh
+    >>> roof_mesh(n_span=6, n_length=12).n_faces
+    72
     """
     return surfaces.roof_net(n_span, n_length, length)
 
@@ -237,5 +291,12 @@ def triangulated_surface(
         Triangles.
     normals : (V, 3) float array
         Unit normals of the smooth surface.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import triangulated_surface
+    >>> surface = triangulated_surface("torus", edge_length=0.5)
+    >>> surface.mesh.n_faces, surface.normals.shape
+    (450, (225, 3))
     """
     return SampledSurface(*triangulated.triangulated_surface(shape, edge_length, seed))

@@ -31,6 +31,12 @@ def triangulate(mesh: Mesh) -> Mesh:
     -------
     Mesh
         Triangles on the same vertices; those of a face follow each other.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import triangulate, vase_mesh
+    >>> triangulate(vase_mesh(12, 6)).n_faces
+    144
     """
     return triangulation.triangulate(mesh)
 
@@ -47,7 +53,6 @@ def subdivide(
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     scheme : {"loop", "catmull-clark", "midpoint"}, optional
         Smooth for triangles, smooth for faces of any degree (quadrilaterals come out), or
         without a change of shape. By default loop for triangles and catmull-clark for others.
@@ -58,6 +63,12 @@ def subdivide(
     -------
     Mesh
         The finer mesh; the smooth schemes draw it inwards, its boundary to a smooth curve.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import subdivide, vase_mesh
+    >>> subdivide(vase_mesh(12, 6)).n_faces
+    288
     """
     if scheme is None:
         scheme = "loop" if (mesh.degrees == 3).all() else "catmull-clark"
@@ -91,6 +102,13 @@ def remesh_triangles(
     -------
     Mesh
         Triangles with their vertices on the surface.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import remesh_triangles, vase_mesh
+    >>> mesh = remesh_triangles(vase_mesh(12, 6), edge_length=0.6, iterations=3)
+    >>> set(mesh.degrees.tolist())
+    {3}
     """
     result = remeshing.remesh_triangles(
         mesh, edge_length, iterations, float(np.radians(crease_angle))
@@ -99,7 +117,7 @@ def remesh_triangles(
     if iterations and share < MOSTLY_EVEN:
         warn(
             f"only {100 * share:.0f} % of the edges are between 0.5 and 1.6 times as long as "
-            "asked for: details, corners or creases of the mesh are closer than that; choose "
-            "shorter edges or a larger crease angle"
+            "asked for: the mesh has finer details, corners or creases; choose shorter "
+            "edges or a larger crease angle"
         )
     return result

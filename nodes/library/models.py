@@ -1,6 +1,6 @@
 """Sphere meshes with a support structure by construction, and how to recognise them."""
 
-from typing import Annotated, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -9,10 +9,8 @@ from ...kernel.sphere_meshes import model_change as models
 from ...kernel.sphere_meshes import support_type as support
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ..graphs.node import node
-from ..graphs.ports import Port
+from ..graphs.ports import Length
 from .arrays import Sphere, Vector
-
-Length = Annotated[float, Port(min=0)]
 
 
 class SupportType(NamedTuple):
@@ -53,6 +51,13 @@ def model_change(
     -------
     SphereMesh
         Vertices and faces keep their ids; the mesh has a support structure without torsion.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import ellipsoid_mesh, model_change, support_type
+    >>> sphere_mesh = model_change(ellipsoid_mesh(12, 6), radius=4.0)
+    >>> support_type(sphere_mesh).kind
+    'real'
     """
     origin = np.zeros(3) if center is None else center
     return models.change_model(mesh, geometry, radius, origin, branch)
@@ -76,6 +81,12 @@ def sphere_bundle(mesh: Mesh, center: Vector, radius: Length = 1.0) -> SphereMes
     -------
     SphereMesh
         Vertices and faces keep their ids; the mesh has a support structure without torsion.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import sphere_bundle, support_type, vase_mesh
+    >>> support_type(sphere_bundle(vase_mesh(12, 6), center=[0.0, 0.0, 5.0])).kind
+    'point'
     """
     return models.sphere_bundle(mesh, center, radius)
 
@@ -88,7 +99,6 @@ def support_type(sphere_mesh: SphereMesh) -> SupportType:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
 
     Returns
     -------
@@ -101,6 +111,14 @@ def support_type(sphere_mesh: SphereMesh) -> SupportType:
         nearest. The planes and axes of the support structure pass through its centre.
     residual : float
         How far the spheres miss it: 0 exact, above 0.0003 none.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import fit_spheres, sphere_bundle, support_type, vase_mesh
+    >>> support_type(fit_spheres(vase_mesh(12, 6))).kind
+    'none'
+    >>> support_type(sphere_bundle(vase_mesh(12, 6), center=[0.0, 0.0, 5.0])).kind
+    'point'
     """
     found = support.support_type(sphere_mesh)
     return SupportType(found.kind, found.omega, found.residual)

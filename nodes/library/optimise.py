@@ -1,6 +1,6 @@
 """Spheres that meet smoothly, at a given angle, or along strips."""
 
-from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
@@ -11,6 +11,7 @@ from ...kernel.meshes.mesh import Mesh, mean_edge_length
 from ...kernel.optimization import angle_minimization, strips
 from ...kernel.optimization import whole_energy as optimization
 from ...kernel.optimization.energies.table import EnergyWeights
+from ...kernel.reports import Report
 from ...kernel.sphere_meshes.fit import face_planes
 from ...kernel.sphere_meshes.planarity_circularity import circularity
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
@@ -22,11 +23,70 @@ from .arrays import EdgeWeights, FaceRadii, FaceVectors, Vector
 Weight = Annotated[float, Port(min=0)]
 
 
+@dataclass(frozen=True, eq=False)
+class OptimumReport(Report):
+    """How an optimum was reached: the kinds of report that `panel_report` starts from."""
+
+
+@dataclass(frozen=True, eq=False)
+class AnglesReport(OptimumReport):
+    """
+    How the smallest angles were reached.
+
+    Attributes
+    ----------
+    converged : bool
+    iterations : list of int
+        Of the two stages.
+    energies : list of float
+    angles_deg : dict
+        ``planar`` and ``spherical``: ``mean`` and ``max`` of the planes and of the spheres.
+    vertex_error : dict
+        ``max`` in model units and ``relative_to_edge``, the mean edge.
+    circle_miss : float
+        How far vertices lie from the circles of their faces, in mean edges.
+    """
+
+    converged: bool
+    iterations: list[int]
+    energies: list[float]
+    angles_deg: dict[str, dict[str, float]]
+    vertex_error: dict[str, float]
+    circle_miss: float
+
+
+@dataclass(frozen=True, eq=False)
+class EnergyReport(OptimumReport):
+    """
+    How the least energy was reached.
+
+    Attributes
+    ----------
+    converged : bool
+    stages : list of dict
+        ``name``, ``status``, ``iterations`` and ``energies`` of each term.
+    corners : str
+        ``soft`` (vertices stay, spheres pass near them), ``common`` (all spheres of a vertex
+        pass through it) or ``own`` (each within the tolerance of it).
+    vertex_move : float
+        In mean edges.
+    angles_deg, vertex_error : dict
+        As in `AnglesReport`.
+    """
+
+    converged: bool
+    stages: list[dict[str, Any]]
+    corners: str
+    vertex_move: float
+    angles_deg: dict[str, dict[str, float]]
+    vertex_error: dict[str, float]
+
+
 class Optimum(NamedTuple):
     """An optimised sphere mesh and how it was reached."""
 
     sphere_mesh: SphereMesh
-    report: Mapping[str, Any]
+    report: OptimumReport
 
 
 @node
@@ -55,17 +115,22 @@ def minimize_angles(
     -------
     sphere_mesh : SphereMesh
         The optimum. Faces whose vertices lie on no circle keep their best-fit circle.
-    report : mapping
-        ``converged``, ``iterations`` of the two stages, ``energies``, ``angles_deg`` (mean and
-        max, of the planes and of the spheres), ``vertex_error`` (max, and relative to the mean
-        edge) and ``circle_miss`` (relative to the mean edge).
+    report : AnglesReport
+        The angles before and after, and how far vertices lie off.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import fit_spheres, minimize_angles, vase_mesh
+    >>> report = minimize_angles(fit_spheres(vase_mesh(12, 6))).report
+    >>> {kind: round(found["mean"], 1) for kind, found in report["angles_deg"].items()}
+    {'planar': 24.9, 'spherical': 15.6}
     """
     result, run = angle_minimization.minimize_angles(
         sphere_mesh, np.radians(target_angle), edge_weights
     )
     if not run.converged:
         raise ConvergenceError(
-            f"the angles did not come to rest in {sum(run.iterations)} steps (last step "
+            f"the angles did not converge in {sum(run.iterations)} steps (last step "
             f"{run.step:.1e} rad): look for nearly degenerate faces"
         )
     if max_miss is not None and run.circle_miss > max(max_miss, CIRCULAR):
@@ -73,25 +138,25 @@ def minimize_angles(
         faces = np.flatnonzero(misses > max(max_miss, CIRCULAR)).tolist()
         raise ConvergenceError(
             f"the vertices of faces {name_ids(faces)} lie on no circle: they miss it by up to "
-            f"{run.circle_miss:.3g} mean edges and {max_miss:g} is allowed; let vertices move "
-            "by a tolerance of about as much"
+            f"{run.circle_miss:.3g} mean edges and {max_miss:g} is allowed; give a tolerance "
+            "of about that size"
         )
     outcome = _outcome(result, sphere_mesh.mesh)
     relative = outcome["vertex_error"]["relative_to_edge"]
     if relative > VERTEX_MISS:
         warn(
             f"vertices miss their spheres by up to {relative:.3g} mean edges: the faces are "
-            "not circular; panels are exact, but their corners move off the mesh by as much"
+            "not circular; panels are exact, but their corners are off the mesh by as much"
         )
     if target_angle == 0:
         _warn_of_little_gain(outcome)
-    report = {
-        "converged": run.converged,
-        "iterations": list(run.iterations),
-        "energies": list(run.energies),
+    report = AnglesReport(
+        converged=run.converged,
+        iterations=list(run.iterations),
+        energies=list(run.energies),
         **outcome,
-        "circle_miss": run.circle_miss,
-    }
+        circle_miss=run.circle_miss,
+    )
     return Optimum(result, report)
 
 
@@ -153,12 +218,15 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     -------
     sphere_mesh : SphereMesh
         The optimum, on moved vertices if they may move.
-    report : mapping
-        ``converged``; ``stages`` (name, status, iterations, energies of each term);
-        ``corners``: ``soft`` (vertices stay, spheres pass near them), ``common`` (all spheres
-        of a vertex pass through it) or ``own`` (each within the tolerance of it);
-        ``vertex_move`` in mean edges; ``angles_deg`` (mean and max, of the planes and of the
-        spheres) and ``vertex_error`` (max, and relative to the mean edge).
+    report : EnergyReport
+        The angles before and after, the stages, and how far vertices moved.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import fit_spheres, optimize_spheres, vase_mesh
+    >>> optimum = optimize_spheres(fit_spheres(vase_mesh(8, 4)), angle=0.01)
+    >>> optimum.report["converged"], optimum.report["corners"]
+    (True, 'soft')
     """
     weights = EnergyWeights(
         sphericity=sphericity, angle=angle, regularity=regularity, support=support,
@@ -188,22 +256,8 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
         )
     if target_angle == 0 and support == 0:
         _warn_of_little_gain(outcome)
-    stages = [
-        {
-            "name": stage.name,
-            "status": stage.status,
-            "iterations": stage.iterations,
-            "energies": {name: list(map(float, e)) for name, e in stage.energies.items()},
-        }
-        for stage in run.stages
-    ]
-    report = {
-        "converged": run.converged,
-        "stages": stages,
-        "corners": run.corners,
-        "vertex_move": run.vertex_move,
-        **outcome,
-    }
+    stages = [_stage(stage) for stage in run.stages]
+    report = EnergyReport(run.converged, stages, run.corners, run.vertex_move, **outcome)
     return Optimum(result, report)
 
 
@@ -225,6 +279,13 @@ def strip_weights(mesh: Mesh, direction: int | Vector | FaceVectors = 0) -> Edge
     (E,) float array
         1 on the edges between neighbours of a strip, 0 on all others: for `minimize_angles`
         and `optimize_spheres`.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import strip_weights, vase_mesh
+    >>> weights = strip_weights(vase_mesh(12, 6), direction=0)
+    >>> len(weights), int(weights.sum())
+    (132, 72)
     """
     if not isinstance(direction, int | np.integer):
         return strips.strip_weights_along(mesh, direction)
@@ -233,7 +294,16 @@ def strip_weights(mesh: Mesh, direction: int | Vector | FaceVectors = 0) -> Edge
     return strips.strip_weights(mesh, "second" if direction else "first")
 
 
-def _outcome(sphere_mesh: SphereMesh, design: Mesh) -> dict[str, Any]:
+def _stage(stage: optimization.Stage) -> dict[str, Any]:
+    return {
+        "name": stage.name,
+        "status": stage.status,
+        "iterations": stage.iterations,
+        "energies": {name: list(map(float, e)) for name, e in stage.energies.items()},
+    }
+
+
+def _outcome(sphere_mesh: SphereMesh, design: Mesh) -> dict[str, dict[str, Any]]:
     """What came out, against flat panels on the mesh as it was designed."""
     miss = float(vertex_error(sphere_mesh).max())
     return {
@@ -248,7 +318,7 @@ def _outcome(sphere_mesh: SphereMesh, design: Mesh) -> dict[str, Any]:
     }
 
 
-def _warn_of_little_gain(outcome: Mapping[str, Any]) -> None:
+def _warn_of_little_gain(outcome: dict[str, dict[str, Any]]) -> None:
     planar, spherical = (
         outcome["angles_deg"][kind]["mean"] for kind in ("planar", "spherical")
     )

@@ -1,12 +1,10 @@
 """Nets of spheres with a support structure, along the conjugate directions of a congruence."""
 
-from collections.abc import Mapping
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from ...kernel.analysis import deviation
-from ...kernel.arrays import IntArray
 from ...kernel.errors import ConvergenceError, name_ids
 from ...kernel.meshes.mesh import Mesh, mean_edge_length
 from ...kernel.remesh import pipeline, reports
@@ -43,14 +41,14 @@ class Directions(NamedTuple):
 
     directions: VertexDirections
     is_real: VertexMarks
-    report: Mapping[str, Any]
+    report: reports.DirectionsReport
 
 
 class Remeshed(NamedTuple):
     """A net of spheres and how it was reached."""
 
     sphere_mesh: SphereMesh
-    report: Mapping[str, Any]
+    report: reports.RemeshingReport
 
 
 @node
@@ -79,27 +77,20 @@ def conjugate_directions(
         Two unit tangents at every vertex, without sign.
     is_real : (V,) bool array
         False where the directions are complex; the two given ones then coincide.
-    report : mapping
-        ``complex_share`` and ``umbilic_share`` (where all directions are all but conjugate) of
-        the area, ``singular`` vertices with their ``half_turns``,
-        ``node_axis_deg`` (angle between normal and expected node axis: median, p95 and max),
-        ``radius_to_edge`` (radii relative to the mean edge of the mesh: min and median) and
-        ``largest_edge`` (longest edge of a net whose nodes are real on 95 % of the vertices,
-        ``sqrt(2)`` times the radius) and ``degree`` of the polynomials. None stands for
-        infinite.
+    report : DirectionsReport
+        Where they are complex or turn, and how large the edges of a net may be.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import conjugate_directions, tangent_spheres, triangulated_surface
+    >>> mesh = triangulated_surface("annulus", edge_length=0.3).mesh
+    >>> found = conjugate_directions(mesh, tangent_spheres(mesh, -2.0))
+    >>> found.directions.shape, found.report["singular"]
+    ((140, 2, 3), [])
     """
     found = directions.conjugate_directions(mesh, spheres, degree, rings)
     _warn_of_directions(found.complex_share, found.umbilic_share)
-    radii = reports.sphere_radii(found.curvatures)
-    report = {
-        "complex_share": found.complex_share,
-        "umbilic_share": found.umbilic_share,
-        "singular": _singular(found.singular, found.indices),
-        "node_axis_deg": reports.angle_report(found.axis_angles),
-        "radius_to_edge": reports.radius_report(radii / mean_edge_length(mesh)),
-        "largest_edge": reports.finite(np.sqrt(2) * np.quantile(radii, 0.05, method="lower")),
-        "degree": found.degree,
-    }
+    report = reports.directions_report(found, mesh)
     return Directions(found.directions, found.is_real, report)
 
 
@@ -143,21 +134,16 @@ def p4_remesh(
     sphere_mesh : SphereMesh
         Mostly quadrilaterals, cut by the boundary where that does not follow the directions;
         around every interior node the spheres meet in two points.
-    report : mapping
-        ``faces`` (count, and how many of each degree), ``irregular_nodes`` (inner vertices
-        whose valence is not 4), ``singular`` points with their ``half_turns``,
-        ``complex_share``, ``umbilic_share`` and ``moved_share`` of the area, ``edges``
-        (target, mean and min length), ``folded`` and ``flipped`` triangles of the map before
-        and after unfolding,
-        ``aligned_sides`` of the boundary, ``contracted_edges`` and ``lost_cells`` along it,
-        ``digons`` (cells of two corners around singular points, which became edges),
-        ``covered_holes`` (too small for the edges),
-        ``node_axis_deg`` (angle between normal and expected node axis: median, p95 and max)
-        and ``radius_to_edge`` (min and median; below 0.71 nodes are not real). None stands for
-        infinite. ``planarized`` is the report of `planarize_p4`, which comes last; None if it
-        failed, and the net keeps some torsion. ``distance``, in mean edges of the net, of the
-        ``nodes`` inside and of ``boundary_nodes`` from the smooth surface through the vertices,
-        and of ``panels`` (``panels_p95``: of 95 % of them) from the given mesh.
+    report : RemeshingReport
+        Faces, edges and nodes of the net, and how near it is to the surface.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import p4_remesh, tangent_spheres, triangulated_surface
+    >>> mesh = triangulated_surface("annulus", edge_length=0.3).mesh
+    >>> net, report = p4_remesh(mesh, tangent_spheres(mesh, -2.0), edge_length=0.8)
+    >>> report["faces"]
+    {'count': 22, 'degrees': {'4': 22}}
     """
     done = pipeline.remesh(
         mesh, spheres, edge_length, smoothing, float(np.radians(least_angle)), degree, rings
@@ -198,8 +184,8 @@ def p4_remesh(
             "on it, edges would shrink or faces turn over; choose a smaller edge length or "
             "larger spheres"
         )
-    report = reports.remeshing_report(done, net.mesh, edge_length)
-    return Remeshed(net, {**report, "planarized": planar, "distance": distances})
+    report = reports.remeshing_report(done, net.mesh, edge_length, planar, distances)
+    return Remeshed(net, report)
 
 
 def _distances(sphere_mesh: SphereMesh, mesh: Mesh, surface: SmoothSurface) -> dict[str, float]:
@@ -218,15 +204,15 @@ def _distances(sphere_mesh: SphereMesh, mesh: Mesh, surface: SmoothSurface) -> d
 def _warn_of_directions(complex_share: float, umbilic_share: float) -> None:
     if umbilic_share > COMPLEX_SHARE:
         warn(
-            f"on {_percent(umbilic_share)} of the area the spheres do not tell the conjugate "
-            "directions, as if they touched one sphere: there noise chooses the net; much "
-            "smoothing, over 5 edges or more, makes it even"
+            f"on {_percent(umbilic_share)} of the area the spheres do not determine the "
+            "conjugate directions (they nearly touch one sphere), and noise does: set "
+            "smoothing to 5 or more"
         )
     if complex_share > COMPLEX_SHARE:
         warn(
             f"the conjugate directions are complex on {_percent(complex_share)} of the area: "
-            "no real net follows these spheres there; relax_congruence makes it real, and "
-            "tangent spheres of constant offset have a real one"
+            "these spheres have no real net there; relax the spheres with relax_congruence, or "
+            "use tangent spheres of constant offset"
         )
 
 
@@ -238,20 +224,15 @@ def _warn_of_nodes(done: pipeline.Remeshing, edge_length: float) -> None:
     if small > 0:
         warn(
             f"the spheres at {_percent(small)} of the vertices have radii below "
-            f"{smallest:.3g}, 0.71 edges: around a node they do not meet; choose larger "
+            f"{smallest:.3g}, 0.71 edges: they do not meet around a node; choose larger "
             f"spheres, or an edge length of {np.sqrt(2) * radii.min():.3g} at most"
         )
     lean = reports.angle_report(done.axis_angles)["p95"]
     if lean is not None and lean > LEANING:
         warn(
-            f"node axes will lean from the normals, by more than {lean:.3g} degrees at 5 % of "
-            "the vertices: beams lie down; relax_congruence sets them up"
+            f"node axes will lean from the normals by more than {lean:.3g} degrees at 5 % of "
+            "the vertices, and beams will lie flat: relax_congruence makes them upright"
         )
-
-
-def _singular(vertices: IntArray, indices: IntArray) -> list[dict[str, int]]:
-    pairs = zip(vertices.tolist(), indices.tolist(), strict=True)
-    return [{"vertex": vertex, "half_turns": index} for vertex, index in pairs]
 
 
 def _percent(share: float) -> str:
@@ -262,7 +243,7 @@ class Planarized(NamedTuple):
     """A torsion-free sphere mesh and how it was reached."""
 
     sphere_mesh: SphereMesh
-    report: Mapping[str, Any]
+    report: reports.PlanarizationReport
 
 
 @node
@@ -285,15 +266,15 @@ def planarize_p4(
     sphere_mesh : SphereMesh
         Moved nodes and changed spheres on the same faces: around every interior node the
         spheres pass through the node and through one more common point.
-    report : mapping
-        ``status``, ``iterations``; ``planarity`` (largest fourth singular
-        value of the spheres around a node, relative to the first), ``corner_gap`` (largest
-        distance of a node from its spheres, in mean edges), ``real_nodes`` (share of the
-        interior nodes whose spheres meet in two real points) and ``shortest_edge`` (in mean
-        edges), each ``before`` and ``after``; ``axis_angles_deg`` (``p95`` and ``max`` of the
-        angles between node axes and normals, null if there is no axis), ``moved`` (``max`` and
-        ``mean`` over the nodes, in mean edges), ``nodes_without_axis`` and ``turned_faces``
-        (ids; faces that were turned over).
+    report : PlanarizationReport
+        How planar the nodes are, and how far they moved.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import ellipsoid_mesh, model_change, planarize_p4
+    >>> report = planarize_p4(model_change(ellipsoid_mesh(12, 6), radius=4.0)).report
+    >>> report["planarity"]["after"] < 1e-9, report["real_nodes"]["after"]
+    (True, 1.0)
     """
     return _planarized(sphere_mesh, planarize(sphere_mesh, fairness))
 
@@ -313,7 +294,7 @@ def _planarized(sphere_mesh: SphereMesh, result: Planarization) -> Planarized:
     return Planarized(result.sphere_mesh, report)
 
 
-def _warn_of_damage(report: Mapping[str, Any]) -> None:
+def _warn_of_damage(report: reports.PlanarizationReport) -> None:
     """What planar nodes cost."""
     if report["nodes_without_axis"]:
         warn(
@@ -325,8 +306,8 @@ def _warn_of_damage(report: Mapping[str, Any]) -> None:
         warn(
             f"the shortest edge measures {shortest:.2g} of the mean, and the number of faces "
             f"that turned over is {len(report['turned_faces'])}: nodes moved by up to "
-            f"{report['moved']['max']:.2g} edges to become planar; larger spheres of more even "
-            "size need smaller moves, and singular points close to each other a coarser net"
+            f"{report['moved']['max']:.2g} edges to become planar; choose larger spheres "
+            "of more even size, or a coarser net where singular points are close to each other"
         )
 
 
@@ -334,7 +315,7 @@ class Relaxed(NamedTuple):
     """A congruence that can be remeshed, and how far it is from the given one."""
 
     spheres: VertexSpheres
-    report: Mapping[str, Any]
+    report: reports.RelaxationReport
 
 
 @node
@@ -367,9 +348,15 @@ def relax_congruence(
     -------
     spheres : (V, 5) float array
         The given spheres if they are fit.
-    report : mapping
-        ``blend`` (share of the spheres of constant radius), ``radius`` of those,
-        ``complex_share`` and ``axis_angle_p95_deg``, each ``before`` and ``after``.
+    report : RelaxationReport
+        How much was blended in, and what it mended.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import relax_congruence, tangent_spheres, triangulated_surface
+    >>> mesh = triangulated_surface("annulus", edge_length=0.3).mesh
+    >>> relax_congruence(mesh, tangent_spheres(mesh, -2.0)).report["blend"]
+    0.0
     """
     target = CongruenceQuality(max_complex, float(np.radians(max_axis_angle)))
     result = relax.relax_congruence(
@@ -379,14 +366,4 @@ def relax_congruence(
         target,
         radius,
     )
-    before, after = result.before, result.after
-    report = {
-        "blend": result.blend,
-        "radius": result.radius,
-        "complex_share": {"before": before.complex_share, "after": after.complex_share},
-        "axis_angle_p95_deg": {
-            "before": float(np.degrees(before.axis_angle)),
-            "after": float(np.degrees(after.axis_angle)),
-        },
-    }
-    return Relaxed(result.spheres, report)
+    return Relaxed(result.spheres, reports.relaxation_report(result))

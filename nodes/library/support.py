@@ -1,6 +1,6 @@
 """Nodes and beams that carry the panels."""
 
-from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
@@ -13,6 +13,7 @@ from ...kernel.meshes.mesh import mean_edge_length
 from ...kernel.parts.findings import findings_report, rejected_report
 from ...kernel.parts.records import RejectedPart
 from ...kernel.remesh.planar.landing import planarize_near
+from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.support import annulus_support as annulus
 from ...kernel.support import node_axes as support
@@ -22,11 +23,76 @@ from ..graphs.ports import Port
 from .arrays import VertexAngles, VertexAxes, VertexMarks
 
 
+@dataclass(frozen=True, eq=False)
+class LandingReport(Report):
+    """
+    Whether nodes landed, and what it takes.
+
+    Attributes
+    ----------
+    landed : bool
+    moved : dict
+        ``max`` and ``mean`` in mean edges, of what landing takes.
+    iterations : int
+    """
+
+    landed: bool
+    moved: dict[str, float]
+    iterations: int
+
+
+@dataclass(frozen=True, eq=False)
+class BeamsReport(Report):
+    """
+    The beams that can be made, and the others.
+
+    Attributes
+    ----------
+    written : int
+    rejected : list of dict
+        ``id``, ``code`` and ``reason`` of each beam that cannot be made.
+    volume, longest : float
+        Of all beams, in cubed model units; of the longest piece.
+    end_mismatch : float
+        How far the ends at a node are apart.
+    """
+
+    written: int
+    rejected: list[dict[str, str]]
+    volume: float
+    longest: float
+    end_mismatch: float
+
+
+@dataclass(frozen=True, eq=False)
+class DrillingReport(Report):
+    """
+    The beams that are marked, and the others.
+
+    Attributes
+    ----------
+    marked : int
+        Number of beams.
+    diameter, inset : float
+        In model units.
+    counts : dict
+        Number of notes by code.
+    notes : list of dict
+        ``code``, ``id``, ``message`` and ``size`` on each beam into which the holes do not fit.
+    """
+
+    marked: int
+    diameter: float
+    inset: float
+    counts: dict[str, int]
+    notes: list[dict[str, Any]]
+
+
 class LandedNodes(NamedTuple):
     """A sphere mesh whose beams meet exactly, if that was near."""
 
     sphere_mesh: SphereMesh
-    report: Mapping[str, Any]
+    report: LandingReport
 
 
 class Nodes(NamedTuple):
@@ -35,7 +101,7 @@ class Nodes(NamedTuple):
     axes: VertexAxes
     torsion: VertexAngles
     is_valid: VertexMarks
-    report: Mapping[str, Any]
+    report: support.NodesReport
 
 
 @node
@@ -61,17 +127,19 @@ def land_nodes(
     -------
     sphere_mesh : SphereMesh
         The mesh; its vertices lie on their spheres if it landed.
-    report : mapping
-        ``landed``, ``moved`` (``max`` and ``mean`` in mean edges, of what landing takes) and
-        ``iterations``.
+    report : LandingReport
+        Whether it landed, and how far nodes move.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import ellipsoid_mesh, land_nodes, model_change
+    >>> land_nodes(model_change(ellipsoid_mesh(8, 4), radius=4.0)).report["landed"]
+    True
     """
     result, is_near = planarize_near(sphere_mesh, max_move)
     farthest = float(result.shifts.max())
-    report = {
-        "landed": is_near,
-        "moved": {"max": farthest, "mean": float(result.shifts.mean())},
-        "iterations": result.iterations,
-    }
+    moved = {"max": farthest, "mean": float(result.shifts.mean())}
+    report = LandingReport(is_near, moved, result.iterations)
     if is_near:
         return LandedNodes(result.sphere_mesh, report)
     warn(
@@ -90,7 +158,6 @@ def support_structure(sphere_mesh: SphereMesh) -> Nodes:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
 
     Returns
     -------
@@ -105,11 +172,15 @@ def support_structure(sphere_mesh: SphereMesh) -> Nodes:
     is_valid : (V,) bool array
         Where the torsion is at most 0.1 degrees and the axis leans at most 60 degrees from
         the normal.
-    report : mapping
-        ``torsion_deg`` (mean and max over interior vertices, ``boundary_max``),
-        ``mirror_miss`` (largest distance of a mirror point from its spheres, in mean edges),
-        ``beam_tilt_deg`` (p95, max), ``axes_without_mirror``, ``edges_without_circle``,
-        ``valid`` and ``invalid`` (id, vertex and reason).
+    report : NodesReport
+        Torsion, tilt, and the nodes that are not valid.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import ellipsoid_mesh, model_change, support_structure
+    >>> nodes = support_structure(model_change(ellipsoid_mesh(12, 6), radius=4.0))
+    >>> nodes.axes.shape, nodes.report["torsion_deg"]["max"] < 1e-6, nodes.report["invalid"]
+    ((84, 2, 3), True, [])
     """
     found = support.support_structure(sphere_mesh)
     report = support.support_report(sphere_mesh, found)
@@ -128,7 +199,7 @@ class AnnulusSet(NamedTuple):
     """The annuli that can be made, and what was found on the way."""
 
     annuli: Annuli
-    report: Mapping[str, Any]
+    report: annulus.AnnuliReport
 
 
 @node
@@ -144,7 +215,6 @@ def annulus_support(
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     depth : float, optional
         Depth of the annuli, measured on the node axes; without this and `kappa`, a quarter of
         the mean edge.
@@ -158,12 +228,16 @@ def annulus_support(
     -------
     annuli : Annuli
         One per edge, the boundary included, named ``B0000`` and on.
-    report : mapping
-        ``kappa_max`` (largest admissible power; None where all arcs are straight),
-        ``tilt_deg`` (p95, max), ``corner_mismatch`` between the ends at a node (max,
-        relative_to_edge), ``axis_angle_deg`` (how far node axes miss the planes),
-        ``end_depth`` (min, max), ``outward`` (ends that reach to the outer side), ``made``
-        and ``rejected`` (id, code and reason).
+    report : AnnuliReport
+        Tilt, depth, and the annuli that cannot be made.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import annulus_support, ellipsoid_mesh, model_change
+    >>> sphere_mesh = model_change(ellipsoid_mesh(12, 6), radius=4.0)
+    >>> annuli, report = annulus_support(sphere_mesh, depth=0.1)
+    >>> annuli.n_annuli, report["rejected"]
+    (156, [])
     """
     edge = mean_edge_length(sphere_mesh.mesh)
     if depth is None and kappa is None:
@@ -178,7 +252,14 @@ class BeamSet(NamedTuple):
     """The beams that can be made, and what was found while cutting them."""
 
     beams: Beams
-    report: Mapping[str, Any]
+    report: BeamsReport
+
+
+class MarkedBeams(NamedTuple):
+    """Beams with drilling marks, and those without."""
+
+    beams: Beams
+    report: DrillingReport
 
 
 @node
@@ -194,7 +275,6 @@ def beams(
     Parameters
     ----------
     annuli : Annuli
-        The annuli.
     thickness : float, optional
         Thickness of the beams, half to either side, in model units; by default a tenth of the
         mean depth at the nodes.
@@ -209,26 +289,33 @@ def beams(
     -------
     beams : Beams
         The beams that can be made.
-    report : mapping
-        ``written``, ``rejected`` (id, code and reason), ``volume`` in cubed model units,
-        ``longest`` piece, and ``end_mismatch`` (how far the ends at a node are apart).
+    report : BeamsReport
+        Number and size, and the beams that cannot be made.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import annulus_support, beams, ellipsoid_mesh, model_change
+    >>> sphere_mesh = model_change(ellipsoid_mesh(12, 6), radius=4.0)
+    >>> annuli = annulus_support(sphere_mesh, depth=0.1).annuli
+    >>> beams(annuli, thickness=0.02).report["written"]
+    156
     """
     if thickness is None:
         if annuli.n_annuli == 0:
             raise InputError(
-                "there is no annulus to make a beam of: see what the report of annulus_support "
-                "rejected, and why"
+                "there is no annulus to make a beam of: the report of annulus_support lists "
+                "the rejected ones with reasons"
             )
         thickness = mean_end_depth(annuli) / 10
     made, rejected = beam_cutting.cut_beams(annuli, thickness, node_gap, node_radius)
     _warn_of_rejected(rejected, "beams")
-    report = {
-        "written": made.n_beams,
-        "rejected": rejected_report(rejected),
-        "volume": float(beam_volumes(made).sum()),
-        "longest": float(beam_lengths(made).max(initial=0.0)),
-        "end_mismatch": float(corner_mismatch(made.annuli).max(initial=0.0)),
-    }
+    report = BeamsReport(
+        written=made.n_beams,
+        rejected=rejected_report(rejected),
+        volume=float(beam_volumes(made).sum()),
+        longest=float(beam_lengths(made).max(initial=0.0)),
+        end_mismatch=float(corner_mismatch(made.annuli).max(initial=0.0)),
+    )
     return BeamSet(made, report)
 
 
@@ -238,14 +325,13 @@ def drilling_marks(
     count: Annotated[int, Port(min=1)] = 2,
     diameter: Annotated[float | None, Port(min=0)] = None,
     inset: Annotated[float | None, Port(min=0)] = None,
-) -> BeamSet:
+) -> MarkedBeams:
     """
     Mark where beams are to be drilled at their ends, along the lines of the node axes.
 
     Parameters
     ----------
     beams : Beams
-        The beams.
     count : int
         Number of holes at each end, in a row; each has the same share of it.
     diameter : float, optional
@@ -259,9 +345,17 @@ def drilling_marks(
     -------
     beams : Beams
         The same beams with their marks: circles in the drawing and in the Rhino file.
-    report : mapping
-        ``marked`` (number of beams), ``diameter`` and ``inset`` in model units, ``counts`` and
-        ``notes`` (code, id, message) on the beams into which they do not fit.
+    report : DrillingReport
+        Number and size of the marks, and the beams into which they do not fit.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import annulus_support, beams, drilling_marks, ellipsoid_mesh
+    >>> from spheremesh.nodes import model_change
+    >>> sphere_mesh = model_change(ellipsoid_mesh(12, 6), radius=4.0)
+    >>> made = beams(annulus_support(sphere_mesh, depth=0.1).annuli, thickness=0.02).beams
+    >>> drilling_marks(made, diameter=0.01).report["marked"]
+    156
     """
     if diameter is None:
         diameter = min(beams.thickness, mean_end_depth(beams.annuli) / (4 * count))
@@ -272,14 +366,10 @@ def drilling_marks(
         first = findings[0]
         warn(f"{len(findings)} beams get no drilling marks: {first.id}: {first.message}")
     found = findings_report(findings)
-    report = {
-        "marked": beams.n_beams - len(findings),
-        "diameter": diameter,
-        "inset": inset,
-        "counts": found["counts"],
-        "notes": found["notes"],
-    }
-    return BeamSet(marked, report)
+    report = DrillingReport(
+        beams.n_beams - len(findings), diameter, inset, found["counts"], found["notes"]
+    )
+    return MarkedBeams(marked, report)
 
 
 def _warn_of_rejected(rejected: tuple[RejectedPart, ...], what: str) -> None:

@@ -1,6 +1,6 @@
 """What a workshop asks before it starts: blanks, identical panels, findings, the report."""
 
-from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
@@ -8,6 +8,7 @@ import numpy as np
 from ...fabrication.audit.report import audit_model
 from ...fabrication.audit.subjects import AuditLimits
 from ...fabrication.model import Model
+from ...fabrication.step.check import check_part21
 from ...kernel.analysis import angle_summary
 from ...kernel.beams.beams import Beams
 from ...kernel.meshes.mesh import mean_edge_length
@@ -15,29 +16,131 @@ from ...kernel.panels import congruent
 from ...kernel.panels import mould_blanks as blanks
 from ...kernel.panels.panels import Panels
 from ...kernel.parts.findings import Finding, findings_report
+from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
+from ...kernel.support.annulus_support import AnnuliReport
+from ...kernel.support.node_axes import NodesReport
 from ...kernel.tolerances import SAME_PANEL
 from ..graphs.node import node, warn
-from ..graphs.ports import Port, Units
+from ..graphs.ports import Length, Port, ReadPath, Units
 from .arrays import PanelLabels
+from .cluster import MouldsReport
+from .fabricate import CutReport
+from .optimise import OptimumReport
+from .support import BeamsReport, LandingReport
 
-Length = Annotated[float, Port(min=0)]
 Millimeters = Annotated[float, Port(unit="mm", min=0)]
 Degrees = Annotated[float, Port(unit="deg", min=0, max=180)]
+
+
+@dataclass(frozen=True, eq=False)
+class ShapesReport(Report):
+    """
+    Shapes of panels.
+
+    Attributes
+    ----------
+    shapes : int
+    panels_per_shape : list of int
+    first : list of str
+        Id of the first panel of each.
+    largest_miss : float
+        How far corners and edges of one shape lie apart, in model units.
+    """
+
+    shapes: int
+    panels_per_shape: list[int]
+    first: list[str]
+    largest_miss: float
+
+
+@dataclass(frozen=True, eq=False)
+class BlanksReport(Report):
+    """
+    Blanks that the moulds must give, lengths in model units.
+
+    Attributes
+    ----------
+    blanks : list of dict
+        ``mould`` (from 1), ``radius`` (None for a flat mould), ``diameter`` (of the rim, as a
+        chord), ``sagitta``, ``opening_deg``, ``count`` and ``shapes`` (different panels among
+        them).
+    without_mould : int
+        Panels that belong to none.
+    """
+
+    blanks: list[dict[str, Any]]
+    without_mould: int
+
+
+@dataclass(frozen=True, eq=False)
+class AuditReport(Report):
+    """
+    Findings.
+
+    Attributes
+    ----------
+    counts : dict
+        Number of findings by code.
+    errors, notes : list of dict
+        ``code``, ``id``, ``message`` and ``size`` of each.
+    """
+
+    counts: dict[str, int]
+    errors: list[dict[str, Any]]
+    notes: list[dict[str, Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class PanellingReport(Report):
+    """
+    The reports of a panelling in one.
+
+    Attributes
+    ----------
+    input : dict
+        ``vertices``, ``faces`` and ``units``.
+    angles_deg : dict
+        ``planar`` and ``spherical`` (what is built), and with moulds ``unclustered``.
+    vertex_error, edge_gap : dict
+        ``max`` in model units and ``relative_to_edge``.
+    thickness : dict
+        ``min``, ``mean`` and ``max``.
+    moulds : dict
+        ``count``, ``radii``, ``panels_per_mould`` and ``blanks``.
+    support : dict or None
+        ``torsion_deg_max`` of inner nodes, ``beam_tilt_deg_p95`` of inner edges,
+        ``beam_tilt_deg_max`` of annuli made, and ``landed``.
+    panels, beams : dict
+        ``written`` and ``rejected``.
+    audit : dict or None
+        As in `AuditReport`.
+    """
+
+    input: dict[str, Any]
+    angles_deg: dict[str, dict[str, float]]
+    vertex_error: dict[str, float]
+    edge_gap: dict[str, float]
+    thickness: dict[str, float]
+    moulds: dict[str, Any]
+    support: dict[str, Any] | None
+    panels: dict[str, Any]
+    beams: dict[str, Any]
+    audit: dict[str, Any] | None
 
 
 class IdenticalPanels(NamedTuple):
     """Panels gathered by shape."""
 
     labels: PanelLabels
-    report: Mapping[str, Any]
+    report: ShapesReport
 
 
 class Audit(NamedTuple):
     """What an audit found."""
 
     findings: tuple[Finding, ...]
-    report: Mapping[str, Any]
+    report: AuditReport
 
 
 @node
@@ -50,7 +153,6 @@ def identical_panels(
     Parameters
     ----------
     panels : Panels
-        The panels.
     tolerance : float
         How far corners and edges of one shape may lie apart, in mean edges.
 
@@ -58,22 +160,28 @@ def identical_panels(
     -------
     labels : (P,) int array
         Shape of each panel, from 0. Mirror images and panels of different moulds differ.
-    report : mapping
-        ``shapes`` (number), ``panels_per_shape``, ``first`` (id of the first panel of each)
-        and ``largest_miss`` in model units.
+    report : ShapesReport
+        Number of shapes, and of panels of each.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import fit_spheres, identical_panels, panels, vase_mesh
+    >>> made = panels(fit_spheres(vase_mesh(12, 6)), thickness=0.02)
+    >>> identical_panels(made.panels).report["panels_per_shape"]
+    [12, 12, 12, 12, 12, 12]
     """
     same = congruent.congruent_panels(panels, tolerance)
-    report: dict[str, Any] = {
-        "shapes": len(same.representatives),
-        "panels_per_shape": np.bincount(same.labels).tolist(),
-        "first": [panels.ids[i] for i in same.representatives.tolist()],
-        "largest_miss": float(same.misses.max(initial=0.0)),
-    }
+    report = ShapesReport(
+        shapes=len(same.representatives),
+        panels_per_shape=np.bincount(same.labels).tolist(),
+        first=[panels.ids[i] for i in same.representatives.tolist()],
+        largest_miss=float(same.misses.max(initial=0.0)),
+    )
     return IdenticalPanels(same.labels, report)
 
 
 @node
-def mould_blanks(panels: Panels, size_step: Length = 0.0) -> Mapping[str, Any]:
+def mould_blanks(panels: Panels, size_step: Length = 0.0) -> BlanksReport:
     """
     Count the blanks that every mould must give, and how large they are.
 
@@ -87,16 +195,21 @@ def mould_blanks(panels: Panels, size_step: Length = 0.0) -> Mapping[str, Any]:
 
     Returns
     -------
-    mapping
-        ``blanks``: rows of ``mould`` (from 1), ``radius`` (None for a flat mould),
-        ``diameter`` (of the rim, as a chord), ``sagitta``, ``opening_deg``, ``count`` and
-        ``shapes`` (different panels among them), lengths in model units; ``without_mould``:
-        number of panels that belong to none.
+    BlanksReport
+        Size and number of the blanks of each mould.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import cluster_radii, fit_spheres, mould_blanks, panels, vase_mesh
+    >>> moulds = cluster_radii(fit_spheres(vase_mesh(12, 6)), k=2, relax=False)
+    >>> made = panels(moulds.sphere_mesh, thickness=0.02, labels=moulds.labels)
+    >>> [(row["count"], row["shapes"]) for row in mould_blanks(made.panels)["blanks"]]
+    [(48, 4), (24, 2)]
     """
     found = blanks.mould_blanks(panels, congruent.congruent_panels(panels), size_step)
     without = int((panels.labels < 0).sum())
     if without:
-        warn(f"{without} of {panels.n_panels} panels belong to no mould and count no blank")
+        warn(f"{without} of {panels.n_panels} panels belong to no mould and need no blank")
     rows = [
         {
             "mould": int(found.labels[i]) + 1,
@@ -109,13 +222,13 @@ def mould_blanks(panels: Panels, size_step: Length = 0.0) -> Mapping[str, Any]:
         }
         for i in range(len(found.labels))
     ]
-    return {"blanks": rows, "without_mould": without}
+    return BlanksReport(rows, without)
 
 
 @node
 def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     panels: Panels | None = None,
-    cut: Mapping[str, Any] | None = None,
+    cut: CutReport | None = None,
     min_corner: Degrees = 15.0,
     min_edge: Millimeters = 20.0,
     max_wall_tilt: Degrees = 30.0,
@@ -123,8 +236,8 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     max_blank: Millimeters | None = None,
     units: Units = "m",
     beams: Beams | None = None,
-    annuli_report: Mapping[str, Any] | None = None,
-    beams_report: Mapping[str, Any] | None = None,
+    annuli_report: AnnuliReport | None = None,
+    beams_report: BeamsReport | None = None,
     max_twist: Degrees = 1.0,
     max_length: Millimeters | None = None,
 ) -> Audit:
@@ -134,8 +247,7 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     Parameters
     ----------
     panels : Panels, optional
-        The panels.
-    cut : mapping, optional
+    cut : CutReport, optional
         Report of the node `panels`: what it rejected is among the errors then.
     min_corner : float
         Sharpest corner of a panel, and bevel of a beam, that is no finding.
@@ -148,10 +260,9 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     max_blank : float, optional
         Diameter of the largest blank to be had.
     units : str
-        Model units.
     beams : Beams, optional
-        The beams.
-    annuli_report, beams_report : mapping, optional
+    annuli_report : AnnuliReport, optional
+    beams_report : BeamsReport, optional
         Reports of the nodes `annulus_support` and `beams`: what they rejected is among the
         errors then.
     max_twist : float
@@ -163,8 +274,15 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     -------
     findings : tuple of Finding
         Code, id, message, size and severity of each.
-    report : mapping
-        ``counts`` by code, ``errors`` and ``notes``.
+    report : AuditReport
+        The findings as plain values.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import audit, fit_spheres, panels, vase_mesh
+    >>> made = panels(fit_spheres(vase_mesh(12, 6)), thickness=0.02)
+    >>> audit(made.panels, made.report).report["counts"]
+    {'P201': 60}
     """
     limits = AuditLimits(
         corner_deg=min_corner,
@@ -178,26 +296,58 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     rejected = [
         part
         for report in (cut, annuli_report, beams_report)
-        for part in (report or {}).get("rejected", ())
+        if report is not None
+        for part in report.get("rejected", ())
     ]
     findings = audit_model(Model(panels, beams, units), limits, rejected)
+    return Audit(findings, AuditReport(**findings_report(findings)))
+
+
+@node
+def check_step(path: ReadPath) -> Audit:
+    """
+    Check the text of a STEP file: syntax, references, open loops, edges of solids.
+
+    Parameters
+    ----------
+    path : path
+        A file as `write_step` writes it.
+
+    Returns
+    -------
+    findings : tuple of Finding
+        What is wrong; empty if nothing is.
+    report : mapping
+        The findings, by severity.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import fit_spheres, panels, torus_mesh, write_step
+    >>> torus = panels(fit_spheres(torus_mesh(8, 6)), thickness=0.02).panels
+    >>> with TemporaryDirectory() as folder:
+    ...     check_step(write_step(torus, Path(folder) / "torus.step")).findings
+    ()
+    """
+    findings = check_part21(path)
     return Audit(findings, findings_report(findings))
 
 
 @node
 def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     sphere_mesh: SphereMesh,
-    optimum: Mapping[str, Any],
-    cut: Mapping[str, Any],
-    moulds: Mapping[str, Any] | None = None,
-    blanks: Mapping[str, Any] | None = None,
-    audit: Mapping[str, Any] | None = None,
-    nodes: Mapping[str, Any] | None = None,
-    annuli: Mapping[str, Any] | None = None,
-    beams: Mapping[str, Any] | None = None,
-    landing: Mapping[str, Any] | None = None,
+    optimum: OptimumReport,
+    cut: CutReport,
+    moulds: MouldsReport | None = None,
+    blanks: BlanksReport | None = None,
+    audit: AuditReport | None = None,
+    nodes: NodesReport | None = None,
+    annuli: AnnuliReport | None = None,
+    beams: BeamsReport | None = None,
+    landing: LandingReport | None = None,
     units: Units = "m",
-) -> Mapping[str, Any]:
+) -> PanellingReport:
     """
     Gather the reports of a panelling into one.
 
@@ -205,36 +355,39 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     ----------
     sphere_mesh : SphereMesh
         What the panels were cut from.
-    optimum : mapping
+    optimum : OptimumReport
         Report of `minimize_angles` or `optimize_spheres`.
-    cut : mapping
+    cut : CutReport
         Report of `panels`.
-    moulds : mapping, optional
+    moulds : MouldsReport, optional
         Report of `cluster_radii`.
-    blanks : mapping, optional
+    blanks : BlanksReport, optional
         Result of `mould_blanks`.
-    audit : mapping, optional
+    audit : AuditReport, optional
         Report of `audit`.
-    nodes : mapping, optional
+    nodes : NodesReport, optional
         Report of `support_structure`.
-    annuli : mapping, optional
+    annuli : AnnuliReport, optional
         Report of `annulus_support`.
-    beams : mapping, optional
+    beams : BeamsReport, optional
         Report of `beams`.
-    landing : mapping, optional
+    landing : LandingReport, optional
         Report of `land_nodes`.
     units : str
-        Model units.
 
     Returns
     -------
-    mapping
-        ``input`` (vertices, faces, units), ``angles_deg`` (planar, spherical; with moulds
-        ``unclustered`` as well, and spherical is what is built), ``vertex_error`` and
-        ``edge_gap`` (max, relative_to_edge), ``thickness``, ``moulds`` (count, radii,
-        panels_per_mould, blanks), ``support`` (torsion_deg_max of inner nodes,
-        beam_tilt_deg_p95 of inner edges, beam_tilt_deg_max of annuli made, landed; None without
-        one), ``panels`` and ``beams`` (written, rejected) and ``audit``.
+    PanellingReport
+        Angles, gaps, moulds, support, what is written and rejected, and the audit.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import fit_spheres, minimize_angles, vase_mesh
+    >>> from spheremesh.nodes import panel_report, panels
+    >>> optimum = minimize_angles(fit_spheres(vase_mesh(12, 6)))
+    >>> made = panels(optimum.sphere_mesh, thickness=0.02)
+    >>> panel_report(optimum.sphere_mesh, optimum.report, made.report)["panels"]
+    {'written': 72, 'rejected': []}
     """
     mesh = sphere_mesh.mesh
     angles = {**optimum["angles_deg"], "spherical": angle_summary(sphere_mesh)}
@@ -244,15 +397,16 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         angles["unclustered"] = optimum["angles_deg"]["spherical"]
         found = {name: moulds[name] for name in found}
     miss = float(vertex_error(sphere_mesh).max())
-    return {
-        "input": {"vertices": mesh.n_vertices, "faces": mesh.n_faces, "units": units},
-        "angles_deg": angles,
-        "vertex_error": {"max": miss, "relative_to_edge": miss / mean_edge_length(mesh)},
-        "edge_gap": dict(cut["edge_gap"]),
-        "thickness": dict(cut["thickness"]),
-        "moulds": found | {"blanks": list(blanks["blanks"]) if blanks else []},
-        "support": nodes
-        and {
+    return PanellingReport(
+        input={"vertices": mesh.n_vertices, "faces": mesh.n_faces, "units": units},
+        angles_deg=angles,
+        vertex_error={"max": miss, "relative_to_edge": miss / mean_edge_length(mesh)},
+        edge_gap=dict(cut["edge_gap"]),
+        thickness=dict(cut["thickness"]),
+        moulds=found | {"blanks": list(blanks["blanks"]) if blanks else []},
+        support=None
+        if nodes is None
+        else {
             "torsion_deg_max": nodes["torsion_deg"]["max"],
             "beam_tilt_deg_p95": nodes["beam_tilt_deg"]["p95"],
             "beam_tilt_deg_max": (annuli["tilt_deg"] if annuli else nodes["beam_tilt_deg"])[
@@ -260,12 +414,12 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
             ],
             "landed": bool(landing and landing["landed"]),
         },
-        "panels": {"written": cut["written"], "rejected": list(cut["rejected"])},
-        "beams": {
+        panels={"written": cut["written"], "rejected": list(cut["rejected"])},
+        beams={
             "written": beams["written"] if beams else 0,
             "rejected": [
                 entry for found in (annuli, beams) if found for entry in found["rejected"]
             ],
         },
-        "audit": dict(audit) if audit is not None else None,
-    }
+        audit=dict(audit) if audit is not None else None,
+    )

@@ -126,6 +126,8 @@ def test_nodes_lists_and_explains() -> None:
     assert "minimize_angles" in listed.stdout
     explained = CliRunner().invoke(main, ["nodes", "minimize_angles"])
     assert "target_angle" in explained.stdout
+    explained = CliRunner().invoke(main, ["nodes", "panels"])
+    assert "edge_gap : dict" in explained.stdout  # the fields of its report
     unknown = CliRunner().invoke(main, ["nodes", "minimise_angles"])
     assert unknown.exit_code == 3
     assert "minimize_angles" in unknown.stderr

@@ -1,5 +1,6 @@
 """What the kernel's tests share: one helper per idea, and a few nets to run them on."""
 
+import os
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -20,7 +21,8 @@ from spheremesh.kernel.surfaces.circular_nets import (
 )
 
 settings.register_profile("kernel", deadline=None, derandomize=True, max_examples=30)
-settings.load_profile("kernel")
+settings.register_profile("nightly", deadline=None, max_examples=300, print_blob=True)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "kernel"))
 
 
 @pytest.fixture(scope="session")

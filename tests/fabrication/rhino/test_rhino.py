@@ -547,9 +547,9 @@ def test_an_exporting_process_ends_well(tmp_path: Path) -> None:
     """With render meshes in Breps and extrusions; `benchmarks/exports.py` does it ten times."""
     code = (
         "import sys; sys.path[:0] = sys.argv[2:]\n"
-        "from test_rhino import roof_panels, write_3dm\n"
+        "from test_rhino import Model, roof_panels, write_3dm\n"
         "from test_beams import CASES\n"
-        "write_3dm(roof_panels(6, 5), sys.argv[1], beams=CASES['mitred'])\n"
+        "write_3dm(Model(roof_panels(6, 5), CASES['mitred']), sys.argv[1])\n"
     )
     here = Path(__file__).parent
     folders = [str(here), str(here.parent / "step")]

@@ -14,7 +14,12 @@ from spheremesh import Mesh
 from spheremesh.kernel.arrays import FloatArray, dot, norm
 from spheremesh.kernel.congruences.curvature_spheres import touching_spheres
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.meshes.mesh import face_centroids, face_normals, mean_edge_length
+from spheremesh.kernel.meshes.mesh import (
+    face_centroids,
+    face_normals,
+    face_vector_areas,
+    mean_edge_length,
+)
 from spheremesh.kernel.meshes.vertex_fans import VertexFans, vertex_fans
 from spheremesh.kernel.remesh.field.congruence_mesh import CongruenceMesh, congruence_mesh
 from spheremesh.kernel.remesh.field.conjugate_form import conjugate_field
@@ -405,11 +410,19 @@ def test_a_closed_net_with_four_lemons() -> None:
 
 
 def test_a_piece_of_a_sphere_gets_some_net() -> None:
+    # All directions are conjugate: rounding chooses, and every choice must give a whole net.
     mesh, spheres = dome()
     done = remesh(mesh, spheres, 0.3)
+    net = done.sphere_mesh.mesh
     assert done.n_flipped == 0
-    assert characteristic(done.sphere_mesh.mesh) == 1
-    assert mean_edge_length(done.sphere_mesh.mesh) == pytest.approx(0.3, rel=0.3)
+    assert characteristic(net) == 1
+    areas, covered = (norm(face_vector_areas(m)).sum() for m in (mesh, net))
+    assert covered == pytest.approx(areas, rel=0.005)
+    # Nodes lie on the triangles: none is nearer to the centre than the longest edge's middle.
+    nodes = norm(net.vertices[~net.topology.is_boundary_vertex])
+    assert np.sqrt(4 - (edge_lengths(mesh).max() / 2) ** 2) - 1e-12 <= nodes.min()
+    assert nodes.max() <= 2 + 1e-12
+    assert mean_edge_length(net) == pytest.approx(0.3, rel=0.08)
 
 
 def matched(one: Remeshing, two: Remeshing, points: FloatArray) -> float:

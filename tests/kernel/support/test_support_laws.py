@@ -285,7 +285,7 @@ def test_the_report_is_plain_and_names_the_invalid(nets: dict[str, Mesh]) -> Non
     sphere_mesh = minimize_angles(fit_spheres(nets["roof"]), 0.0, None)[0]
     found = support_structure(sphere_mesh)
     report = support_report(sphere_mesh, found)
-    assert json.loads(json.dumps(report, allow_nan=False)) == report
+    assert json.loads(json.dumps(dict(report), allow_nan=False)) == report
     inside = ~sphere_mesh.mesh.topology.is_boundary_vertex
     assert report["torsion_deg"]["max"] == np.degrees(found.torsion[inside].max())
     assert report["valid"] + len(report["invalid"]) == sphere_mesh.mesh.n_vertices

@@ -543,6 +543,25 @@ def test_a_run_has_its_own_values_and_steps() -> None:
     assert g.run(total) == 3
 
 
+def test_a_literal_that_changes_during_a_run_is_for_the_next() -> None:
+    g = sm.Graph()
+    array, several = np.zeros(4), [1.0]
+    number = g.add("number", value=1)
+    middle = g.add("add", a=number, b=g.add("total", values=several))
+    target = g.add("add", a=middle, b=g.add("mean", values=array))
+
+    def meddle(name: str, state: str) -> None:
+        if (name, state) == ("number", "done"):
+            array[:] = 8
+            several.append(5.0)
+
+    assert g.run(target, on_step=meddle) == 2
+    assert g.run(target) == 1 + 6 + 8
+    array[:] = 0
+    several.pop()
+    assert g.run(target) == 2
+
+
 def test_names_of_many_steps_are_found_at_once() -> None:
     class Counted(dict[str, Any]):
         asked = 0

@@ -3,6 +3,12 @@
 import subprocess
 import sys
 
+import pytest
+
+from spheremesh import nodes
+
+LIBRARY = [name for name in nodes.__all__ if name in nodes.REGISTRY]
+
 
 def run(code: str) -> str:
     done = subprocess.run(
@@ -10,6 +16,14 @@ def run(code: str) -> str:
     )
     assert done.returncode == 0, done.stderr
     return done.stdout.strip()
+
+
+@pytest.mark.parametrize("name", LIBRARY)
+def test_every_node_has_an_example(name: str) -> None:
+    """`make test` runs it."""
+    example = nodes.find_node(name).help.partition("\nExamples\n--------\n")[2]
+    assert f"{name}(" in example
+    assert not example.splitlines()[-1].startswith((">>>", "..."))
 
 
 def test_importing_spheremesh_imports_no_node_and_nothing_heavy() -> None:

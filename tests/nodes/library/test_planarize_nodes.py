@@ -30,7 +30,7 @@ def shaken(size: float) -> SphereMesh:
 def test_the_report_says_what_was_reached() -> None:
     start = shaken(0.01)
     result = planarize_p4(start)
-    report = json.loads(json.dumps(result.report, allow_nan=False))
+    report = json.loads(json.dumps(dict(result.report), allow_nan=False))
     assert report["status"] == "converged"
     assert 2 < report["iterations"] < 30
     assert report["planarity"]["before"] > 1e-4
@@ -64,7 +64,7 @@ def test_central_spheres_of_a_bump_are_relaxed() -> None:
     mesh, _ = triangulated_surface("bump", 0.1)
     spheres, _ = sphere_congruence(mesh, "central")
     result = relax_congruence(mesh, spheres)
-    report = json.loads(json.dumps(result.report, allow_nan=False))
+    report = json.loads(json.dumps(dict(result.report), allow_nan=False))
     assert report["complex_share"]["before"] > 0.2
     assert report["complex_share"]["after"] <= 0.02
     assert report["axis_angle_p95_deg"]["before"] > 60

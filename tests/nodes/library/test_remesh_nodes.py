@@ -231,9 +231,9 @@ def spherical_cap() -> sm.Mesh:
 def test_spheres_that_do_not_tell_directions_are_said() -> None:
     cap = spherical_cap()
     spheres = sphere_congruence(cap, "tangent", -0.5)
-    with pytest.warns(NodeWarning, match="on 100 % of the area the spheres do not tell"):
+    with pytest.warns(NodeWarning, match="on 100 % of the area the spheres do not determine"):
         assert conjugate_directions(cap, spheres).report["umbilic_share"] == 1
-    with pytest.warns(NodeWarning, match="smoothing, over 5 edges or more, makes it even"):
+    with pytest.warns(NodeWarning, match="set smoothing to 5 or more"):
         _, report = p4_remesh(cap, spheres, 0.24, smoothing=5)
     assert report["singular"] == []
     assert report["irregular_nodes"] == 0

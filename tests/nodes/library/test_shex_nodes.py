@@ -72,7 +72,7 @@ def test_evolution_reports_what_it_did() -> None:
     assert irregular == 576 - report["valences"]["6"] > 0
     assert made.report["convex"] == made.report["faces"] == 576
     assert made.report["degrees"] == report["valences"]
-    json.dumps([report, made.report], allow_nan=False)
+    json.dumps([dict(report), dict(made.report)], allow_nan=False)
     cut = panels(made.sphere_mesh, edges="intersection")
     assert cut.report["written"] == 576
 
@@ -93,7 +93,7 @@ def test_bad_faces_are_listed_and_warned_of(catenoid: Mesh) -> None:
     listed = {entry["vertex"] for entry in report["left_out"]}
     inner = np.flatnonzero(~catenoid.topology.is_boundary_vertex).tolist()
     assert listed | set(report["vertex_ids"]) == set(inner)
-    json.dumps(report, allow_nan=False)
+    json.dumps(dict(report), allow_nan=False)
 
 
 def test_corners_far_beyond_the_boundary_are_listed() -> None:

@@ -38,7 +38,7 @@ def test_support_structure_gives_degrees_and_a_plain_report() -> None:
     assert found.is_valid.all()
     assert found.torsion.max() < 1e-9
     assert found.axes.shape == (len(found.torsion), 2, 3)
-    assert json.loads(json.dumps(found.report, allow_nan=False)) == found.report
+    assert json.loads(json.dumps(dict(found.report), allow_nan=False)) == found.report
 
 
 def test_support_structure_warns_of_invalid_nodes() -> None:
@@ -55,7 +55,7 @@ def test_beams_of_landed_nodes_meet(mesh: Mesh) -> None:
     start = minimize_angles(central_spheres(mesh)).sphere_mesh
     optimum = optimize_spheres(start, regularity=3.5, support=1.0).sphere_mesh
     landed = land_nodes(optimum)
-    assert json.loads(json.dumps(landed.report, allow_nan=False)) == landed.report
+    assert json.loads(json.dumps(dict(landed.report), allow_nan=False)) == landed.report
     assert landed.report["landed"]
     edge = mean_edge_length(mesh)
     moves = norm(landed.sphere_mesh.mesh.vertices - mesh.vertices) / edge
@@ -123,7 +123,7 @@ def test_annulus_support_reports_and_warns() -> None:
     sphere_mesh = minimize_angles(central_spheres(roof_mesh())).sphere_mesh
     with pytest.warns(UserWarning, match="annuli cannot be made"):
         found = annulus_support(sphere_mesh, depth=0.2)
-    assert json.loads(json.dumps(found.report, allow_nan=False)) == found.report
+    assert json.loads(json.dumps(dict(found.report), allow_nan=False)) == found.report
     assert found.report["made"] == found.annuli.n_annuli
     with pytest.raises(InputError, match="either a depth or a power"):
         annulus_support(sphere_mesh, depth=0.2, kappa=0.1)
@@ -133,7 +133,7 @@ def test_beams_reports_and_warns() -> None:
     sphere_mesh = face_planes(torus_mesh())
     annuli = annulus_support(sphere_mesh, depth=0.1).annuli
     made = beams(annuli, 0.02, node_gap=0.005)
-    assert json.loads(json.dumps(made.report, allow_nan=False)) == made.report
+    assert json.loads(json.dumps(dict(made.report), allow_nan=False)) == made.report
     assert made.report["written"] == made.beams.n_beams == annuli.n_annuli
     assert 0 < made.report["volume"] < annuli.n_annuli * made.report["longest"] * 0.1 * 0.02
     with pytest.warns(UserWarning, match="beams cannot be made"):
@@ -168,7 +168,7 @@ def test_drilling_marks_report_and_warn(tmp_path: Path) -> None:
     }  # fmt: skip
     with pytest.warns(UserWarning, match="beams get no drilling marks: B0000"):
         crowded = drilling_marks(cut, 2, diameter=0.2, inset=0.2)
-    assert json.loads(json.dumps(crowded.report, allow_nan=False)) == crowded.report
+    assert json.loads(json.dumps(dict(crowded.report), allow_nan=False)) == crowded.report
     assert crowded.report["counts"] == {"B208": cut.n_beams}
     assert crowded.report["marked"] == 0
     assert [note["id"] for note in crowded.report["notes"]] == list(cut.annuli.ids)

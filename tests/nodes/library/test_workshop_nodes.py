@@ -50,7 +50,7 @@ def graph() -> sm.Graph:
 
 def test_the_report_is_plain_and_agrees_with_its_parts(graph: sm.Graph) -> None:
     report, blanks, same = graph.run("report", "blanks", "same.report")
-    assert json.loads(json.dumps(report, allow_nan=False)) == report
+    assert json.loads(json.dumps(dict(report), allow_nan=False)) == report
     assert report["input"] == {"vertices": 96, "faces": 96, "units": "ft"}
     assert report["panels"] == {"written": 96, "rejected": []}
     assert report["moulds"]["count"] == 3
