@@ -14,8 +14,7 @@ from ...kernel.parts.findings import Finding, Severity
 
 @dataclass(frozen=True)
 class AuditLimits:
-    """
-    What a workshop can do.
+    """What a workshop can do.
 
     Attributes
     ----------
@@ -62,8 +61,7 @@ FactsT = TypeVar("FactsT")
 
 @dataclass(frozen=True)
 class Subject(Generic[PartsT, FactsT]):
-    """
-    What checks look at.
+    """What checks look at.
 
     Attributes
     ----------
@@ -87,12 +85,10 @@ class Subject(Generic[PartsT, FactsT]):
         message: str,
         severity: Severity = "note",
     ) -> list[Finding]:
-        """
-        The findings of one check.
+        """The findings of one check.
 
         Parameters
         ----------
-        code : str
         sizes : (n,) float array
             How much was found on each part.
         is_found : (n,) bool array
@@ -114,12 +110,7 @@ class Subject(Generic[PartsT, FactsT]):
 
 
 def warning_texts(findings: Iterable[Finding]) -> dict[str, str]:
-    """
-    Findings of each part in a line.
-
-    Parameters
-    ----------
-    findings : iterable of Finding
+    """Findings of each part in a line.
 
     Returns
     -------

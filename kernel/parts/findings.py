@@ -12,8 +12,7 @@ Severity = Literal["error", "note"]
 
 @dataclass(frozen=True)
 class Finding:
-    """
-    One thing found.
+    """One thing found.
 
     Attributes
     ----------
@@ -37,25 +36,12 @@ class Finding:
 
 
 def rejected_report(rejected: Iterable[RejectedPart]) -> list[dict[str, str]]:
-    """
-    Parts that cannot be made as plain values.
-
-    Parameters
-    ----------
-    rejected : iterable of RejectedPart
-        Panels or beams.
-
-    Returns
-    -------
-    list of dict
-        ``id``, ``code`` and ``reason`` of each.
-    """
+    """Parts that cannot be made as plain values: ``id``, ``code`` and ``reason`` of each."""
     return [{"id": part.id, "code": part.code, "reason": part.reason} for part in rejected]
 
 
 def findings_report(findings: Sequence[Finding]) -> dict[str, Any]:
-    """
-    Findings as plain values.
+    """Findings as plain values.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Annuli: flat beams, bounded by two circular arcs and the lines of their ends.
+"""Annuli: flat beams, bounded by two circular arcs and the lines of their ends.
 
 Each annulus has its own origin, near the middle of its edge and in its plane. A circle is kept
 as the unit row of the sphere that has it as a great circle, so that straight beams are planes
@@ -15,8 +14,7 @@ from ..arrays import FloatArray, IntArray, dot, norm, sum_by
 
 @dataclass(frozen=True)
 class Annuli:
-    """
-    Annuli that can be made, in the order of their edges.
+    """Annuli that can be made, in the order of their edges.
 
     Points and rows are local: seen from the origin of the annulus, not turned.
 
@@ -73,8 +71,7 @@ class Annuli:
 
     @property
     def element_ids(self) -> IntArray:
-        """
-        Edge of each annulus.
+        """Edge of each annulus.
 
         Returns
         -------
@@ -85,24 +82,12 @@ class Annuli:
 
     @property
     def n_annuli(self) -> int:
-        """
-        Number of annuli.
-
-        Returns
-        -------
-        int
-            B.
-        """
+        """Number of annuli."""
         return len(self.edge_ids)
 
 
 def corner_mismatch(annuli: Annuli) -> FloatArray:
-    """
-    How far the ends of the annuli that meet at a node are apart.
-
-    Parameters
-    ----------
-    annuli : Annuli
+    """How far the ends of the annuli that meet at a node are apart.
 
     Returns
     -------
@@ -122,12 +107,7 @@ def corner_mismatch(annuli: Annuli) -> FloatArray:
 
 
 def twist_angles(annuli: Annuli) -> FloatArray:
-    """
-    Angles by which the planes of the annuli miss the node axes: 0 where a node has no torsion.
-
-    Parameters
-    ----------
-    annuli : Annuli
+    """Angles by which the planes of annuli miss node axes: 0 where a node has no torsion.
 
     Returns
     -------
@@ -139,12 +119,7 @@ def twist_angles(annuli: Annuli) -> FloatArray:
 
 
 def end_depths(annuli: Annuli) -> FloatArray:
-    """
-    Lengths of the ends, along the lines that the beams of a node share.
-
-    Parameters
-    ----------
-    annuli : Annuli
+    """Lengths of the ends, along the lines that the beams of a node share.
 
     Returns
     -------
@@ -155,12 +130,7 @@ def end_depths(annuli: Annuli) -> FloatArray:
 
 
 def mean_end_depth(annuli: Annuli) -> float:
-    """
-    Mean length of the ends of the annuli.
-
-    Parameters
-    ----------
-    annuli : Annuli
+    """Mean length of the ends of the annuli.
 
     Returns
     -------

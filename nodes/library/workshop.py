@@ -35,8 +35,7 @@ Degrees = Annotated[float, Port(unit="deg", min=0, max=180)]
 
 @dataclass(frozen=True, eq=False)
 class ShapesReport(Report):
-    """
-    Shapes of panels.
+    """Shapes of panels.
 
     Attributes
     ----------
@@ -56,8 +55,7 @@ class ShapesReport(Report):
 
 @dataclass(frozen=True, eq=False)
 class BlanksReport(Report):
-    """
-    Blanks that the moulds must give, lengths in model units.
+    """Blanks that the moulds must give, lengths in model units.
 
     Attributes
     ----------
@@ -75,8 +73,7 @@ class BlanksReport(Report):
 
 @dataclass(frozen=True, eq=False)
 class AuditReport(Report):
-    """
-    Findings.
+    """Findings.
 
     Attributes
     ----------
@@ -93,8 +90,7 @@ class AuditReport(Report):
 
 @dataclass(frozen=True, eq=False)
 class PanellingReport(Report):
-    """
-    The reports of a panelling in one.
+    """The reports of a panelling in one.
 
     Attributes
     ----------
@@ -147,8 +143,7 @@ class Audit(NamedTuple):
 def identical_panels(
     panels: Panels, tolerance: Annotated[float, Port(min=0)] = SAME_PANEL
 ) -> IdenticalPanels:
-    """
-    Find panels that are the same up to a rigid motion and can share blanks and patterns.
+    """Find panels that are the same up to a rigid motion and can share blanks and patterns.
 
     Parameters
     ----------
@@ -182,8 +177,7 @@ def identical_panels(
 
 @node
 def mould_blanks(panels: Panels, size_step: Length = 0.0) -> BlanksReport:
-    """
-    Count the blanks that every mould must give, and how large they are.
+    """Count the blanks that every mould must give, and how large they are.
 
     Parameters
     ----------
@@ -241,8 +235,7 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     max_twist: Degrees = 1.0,
     max_length: Millimeters | None = None,
 ) -> Audit:
-    """
-    Look for whatever would trouble a workshop, as numbered errors and notes.
+    """Look for whatever would trouble a workshop, as numbered errors and notes.
 
     Parameters
     ----------
@@ -305,8 +298,7 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
 
 @node
 def check_step(path: ReadPath) -> Audit:
-    """
-    Check the text of a STEP file: syntax, references, open loops, edges of solids.
+    """Check the text of a STEP file: syntax, references, open loops, edges of solids.
 
     Parameters
     ----------
@@ -317,8 +309,8 @@ def check_step(path: ReadPath) -> Audit:
     -------
     findings : tuple of Finding
         What is wrong; empty if nothing is.
-    report : mapping
-        The findings, by severity.
+    report : AuditReport
+        The findings as plain values.
 
     Examples
     --------
@@ -331,7 +323,7 @@ def check_step(path: ReadPath) -> Audit:
     ()
     """
     findings = check_part21(path)
-    return Audit(findings, findings_report(findings))
+    return Audit(findings, AuditReport(**findings_report(findings)))
 
 
 @node
@@ -348,8 +340,7 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     landing: LandingReport | None = None,
     units: Units = "m",
 ) -> PanellingReport:
-    """
-    Gather the reports of a panelling into one.
+    """Gather the reports of a panelling into one.
 
     Parameters
     ----------

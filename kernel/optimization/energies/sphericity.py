@@ -9,12 +9,7 @@ from .setting import Group, Setting, Unknowns
 
 
 def blocks(setting: Setting) -> tuple[Block, ...]:
-    """
-    What each residual depends on: a face and one of its vertices.
-
-    Parameters
-    ----------
-    setting : Setting
+    """What each residual depends on: a face and one of its vertices.
 
     Returns
     -------
@@ -28,15 +23,9 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
 
 
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """
-    What ``A |v|² - B·v + C`` exceeds the allowance by, at each corner.
+    """What ``A |v|² - B·v + C`` exceeds the allowance by, at each corner.
 
     For a unit row it is nearly the signed distance of the vertex from the sphere.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
 
     Returns
     -------
@@ -52,31 +41,13 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
     return misses - np.clip(misses, -setting.allowance, setting.allowance)
 
 
-def vertex_misses(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """
-    ``A |v|² - B·v + C`` at each corner.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
-
-    Returns
-    -------
-    (H,) float array
-        Nearly the signed distance of the vertex from the sphere, in mean edges.
-    """
+def _vertex_misses(setting: Setting, unknowns: Unknowns) -> FloatArray:
+    """``A |v|² - B·v + C`` at each corner: nearly the distance of vertex and sphere."""
     return evaluate(unknowns.spheres[setting.corner_faces], _points(setting, unknowns))
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
-    """
-    Derivatives by the row of the face and by the point of the vertex.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
+    """Derivatives by the row of the face and by the point of the vertex.
 
     Returns
     -------
@@ -92,13 +63,12 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
 
 
 def _centered_misses(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """
-    Misses shifted such that distances of ± the allowance give ± the allowance.
+    """Misses shifted such that distances of ± the allowance give ± the allowance.
 
     A vertex at distance d from a unit row misses by ``d + A d²``.
     """
     curvatures = unknowns.spheres[setting.corner_faces, 0]
-    return vertex_misses(setting, unknowns) - curvatures * setting.allowance**2
+    return _vertex_misses(setting, unknowns) - curvatures * setting.allowance**2
 
 
 def _points(setting: Setting, unknowns: Unknowns) -> FloatArray:

@@ -20,8 +20,7 @@ from .tree_signs import tree_signs
 
 @dataclass(frozen=True)
 class CongruenceMesh:
-    """
-    A triangulated sphere congruence, centred, with mean edge 1.
+    """A triangulated sphere congruence, centred, with mean edge 1.
 
     Attributes
     ----------
@@ -57,8 +56,7 @@ class CongruenceMesh:
 
     @property
     def vertex_areas(self) -> FloatArray:
-        """
-        A third of the areas of the faces around each vertex.
+        """A third of the areas of the faces around each vertex.
 
         Returns
         -------
@@ -70,13 +68,10 @@ class CongruenceMesh:
 
 
 def congruence_mesh(mesh: Mesh, spheres: ArrayLike) -> CongruenceMesh:
-    """
-    Check a triangle mesh with spheres at its vertices, and bring it into local coordinates.
+    """Check a triangle mesh with spheres at its vertices, and bring it into local coordinates.
 
     Parameters
     ----------
-    mesh : Mesh
-        A connected triangle mesh.
     spheres : (V, 5) array_like of float
         Real rows of any scale, not zero, in model coordinates; planes included.
 
@@ -104,7 +99,7 @@ def congruence_mesh(mesh: Mesh, spheres: ArrayLike) -> CongruenceMesh:
     origin = face_centroids(mesh).mean(axis=0)
     points = (mesh.vertices - origin) / size
     rows = _vertex_rows(mesh, np.asarray(spheres, float), size)
-    vertex_frames = tangent_frames(vertex_normals(mesh))
+    vertex_frames = _tangent_frames(vertex_normals(mesh))
     triangles = mesh.corners.reshape(-1, 3)
     sides = unit(points[triangles[:, 1]] - points[triangles[:, 0]])
     face_normals = unit(areas)
@@ -116,20 +111,8 @@ def congruence_mesh(mesh: Mesh, spheres: ArrayLike) -> CongruenceMesh:
     )  # fmt: skip
 
 
-def tangent_frames(vectors: FloatArray) -> FloatArray:
-    """
-    Right-handed orthonormal frames that end with given normals.
-
-    Parameters
-    ----------
-    vectors : (n, 3) float array
-        Unit normals.
-
-    Returns
-    -------
-    (n, 3, 3) float array
-        Two tangents and the normal as rows.
-    """
+def _tangent_frames(vectors: FloatArray) -> FloatArray:
+    """Two tangents and the normal (n, 3, 3) of unit normals."""
     axes = np.eye(3)[np.abs(vectors).argmin(axis=1)]
     first = unit(np.cross(vectors, axes))
     return np.stack([first, np.cross(vectors, first), vectors], 1)

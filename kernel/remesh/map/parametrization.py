@@ -1,5 +1,4 @@
-"""
-Seamless maps to the plane whose coordinate lines follow two given directions.
+"""Seamless maps to the plane whose coordinate lines follow two given directions.
 
 The coordinates u and v are two scalar problems: u grows by 1 per edge length along the first
 direction and not along the second, v the other way round. Only signs and whole-number shifts
@@ -29,8 +28,7 @@ FOLDED = 0.3
 
 @dataclass(frozen=True)
 class Parametrization:
-    """
-    Coordinates at the corners, continuous across all edges up to signs and whole numbers.
+    """Coordinates at the corners, continuous across all edges up to signs and whole numbers.
 
     Attributes
     ----------
@@ -60,15 +58,10 @@ def parametrize(
     seams: Seams,
     edge_length: float,
 ) -> Parametrization:
-    """
-    Map the cut mesh so that unit steps follow the directions with a given length.
+    """Map the cut mesh so that unit steps follow the directions with a given length.
 
     Parameters
     ----------
-    surface : CongruenceMesh
-    fans : Fans
-    frames : CombedFrames
-    seams : Seams
     edge_length : float
         Length of a unit step, in mean edges.
 
@@ -91,7 +84,7 @@ def parametrize(
     ----------
     Bommes, Zimmer, Kobbelt, Mixed-integer quadrangulation, 2009, for the greedy rounding.
     """
-    gradients = chart_gradients(surface, frames, edge_length)
+    gradients = _chart_gradients(surface, frames, edge_length)
     alignments = [
         _consistent(seams, alignment)
         for alignment in align_boundary(surface, fans, frames, seams, edge_length)
@@ -126,24 +119,10 @@ def parametrize(
     )  # fmt: skip
 
 
-def chart_gradients(
+def _chart_gradients(
     surface: CongruenceMesh, frames: CombedFrames, edge_length: float
 ) -> ChartGradients:
-    """
-    Derivatives along the two directions, per edge length.
-
-    Parameters
-    ----------
-    surface : CongruenceMesh
-    frames : CombedFrames
-    edge_length : float
-        Length of a unit step, in mean edges.
-
-    Returns
-    -------
-    ChartGradients
-        With trivial signs and shifts.
-    """
+    """Derivatives along the two directions, per edge length; signs and shifts are trivial."""
     points = surface.points[surface.triangles]
     opposite = np.roll(points, -2, axis=1) - np.roll(points, -1, axis=1)
     normals = surface.face_frames[:, None, 2]
