@@ -293,7 +293,7 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
         for part in report.get("rejected", ())
     ]
     findings = audit_model(Model(panels, beams, units), limits, rejected)
-    return Audit(tuple(findings), AuditReport(**findings_report(findings)))
+    return Audit(findings, AuditReport(**findings_report(findings)))
 
 
 @node
