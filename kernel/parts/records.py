@@ -68,7 +68,6 @@ def part_ids(letter: str, count: int) -> tuple[str, ...]:
     ----------
     letter : str
         ``P`` for panels, ``B`` for beams.
-    count : int
 
     Returns
     -------

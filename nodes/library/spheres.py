@@ -11,7 +11,7 @@ from ...kernel.sphere_meshes import central_spheres as central
 from ...kernel.sphere_meshes import fit
 from ...kernel.sphere_meshes import smoothed_spheres as smoothing
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
-from ...kernel.spheres import circles, incidence, minkowski, rows
+from ...kernel.spheres import circles, minkowski, rows
 from ..graphs.node import node
 from ..graphs.ports import Port
 from .arrays import EdgeSpheres, Points, Spheres
@@ -270,31 +270,6 @@ def sphere_facts(spheres: Spheres) -> SphereFacts:
     """
     names = np.array([kind.name.lower() for kind in rows.Kind])
     return SphereFacts(*rows.center_radius(spheres), names[rows.kind(spheres)])
-
-
-@node
-def signed_distance(spheres: Spheres, points: Points) -> FloatArray:
-    """Distances of points from spheres and planes.
-
-    Parameters
-    ----------
-    spheres : (N, 5) float array
-        Unit rows.
-    points : (N, 3) float array
-        One for each sphere.
-
-    Returns
-    -------
-    (N,) float array
-        Positive on the side to which the normal of the sphere points.
-
-    Examples
-    --------
-    >>> ball = sphere_rows(np.zeros((1, 3)), 2.0)
-    >>> signed_distance(ball, np.array([[0.0, 0.0, 5.0]])).tolist()
-    [-3.0]
-    """
-    return incidence.signed_distance(spheres, points)
 
 
 @node

@@ -93,7 +93,6 @@ class PlanarSystem:
     ----------
     mesh : Mesh
         The mesh at the start; its corners and their faces are the incidences.
-    start : NetState
     corners : (H, 3) float array
         Corners at the start, local to their face.
     is_planar : (V,) bool array
@@ -314,10 +313,6 @@ def on_surface(surface: SmoothSurface, mesh: Mesh, weights: FloatArray) -> Site:
 
 def node_distances(surface: SmoothSurface, mesh: Mesh) -> FloatArray:
     """Distances of the nodes of a net from a smooth surface.
-
-    Parameters
-    ----------
-    mesh : Mesh
 
     Returns
     -------
