@@ -1,5 +1,10 @@
 """The byte stream of .3dm files (openNURBS): exact Breps and render meshes.
 
+What rhino3dm cannot build is written here byte by byte. `stream_writer` lays out bytes once
+per layout and fills them for many objects. Render meshes are float32 as Rhino's own, unless
+the site is so far from the origin that it would show. `stream_reader` knows nothing of who
+wrote what it reads, and the audits judge what it found.
+
 brep_audit         Judges one-faced Breps from their bytes alone, before they reach a file.
 brep_evaluation    Points of the trims, edges and surfaces of Breps, evaluated from bytes.
 brep_layout        Where the numbers of a one-faced Brep stand in its stream.

@@ -1,5 +1,13 @@
 """Hexagonal sphere meshes, dual to triangulations (Sec. 7).
 
+Spheres that touch a surface at the vertices of a triangulation have a face for every vertex:
+three of them meet in each corner (`vertex_rule`, seen from near the point), and
+`dual_sphere_mesh` puts the corners together. Two things keep faces convex: `delaunay_flips`
+flips an edge whose dual edge runs backwards (exactly the edges that are not Delaunay in I/λ -
+II), and `evolution` lowers the aim of spheres where no flip helps. Offsets start from an
+eikonal equation (`tangent_offsets`): Levenberg-Marquardt alone, from small spheres, stops far
+from the optimum.
+
 dual_sphere_mesh  A face for every vertex of a triangulation; boundaries dropped or clipped.
 vertex_rule       The vertices of hexagons: where three spheres meet nearest the triangle.
 evolution         Tangent spheres that grow towards the curvature spheres: E_cs, E_fair.

@@ -1,5 +1,10 @@
 """Meshes of mixed face degrees: connectivity, curvature, subdivision, remeshing.
 
+Remeshing edits edges in batches of independent ones, so it stays numpy. Boundary and creases
+are curves by arc length: an edit after which a curve would leave its edges by more than a
+tenth of an edge is not made. Lengths that are equal but for rounding count as equal, and an
+index decides: all processors make one mesh.
+
 mesh            The mesh: vertices, and faces of mixed degree in compressed rows.
 topology        Half-edges, edges and boundary of a mesh.
 vertex_fans     The corners around vertices in counter-clockwise order.
@@ -9,6 +14,5 @@ subdivision     Finer meshes, by midpoints or smooth in the limit.
 remeshing       Isotropic remeshing of triangle meshes.
 surface_lines   Boundary and creases of a surface as curves, which edits keep to.
 triangle_edges  Triangles that are being edited, their edges and shapes.
-surface_lines   Boundary and creases of a surface as curves by arc length.
 triangle_edits  Splits, collapses and flips of edges, many at a time.
 """
