@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
+from ..reports import Report
 from .records import RejectedPart
 
 Severity = Literal["error", "note"]
@@ -137,7 +138,25 @@ def findings_where(
     ]
 
 
-def findings_report(findings: Sequence[Finding]) -> dict[str, Any]:
+@dataclass(frozen=True, eq=False)
+class AuditReport(Report):
+    """
+    Findings.
+
+    Attributes
+    ----------
+    counts : dict
+        Number of findings by code.
+    errors, notes : list of dict
+        ``code``, ``id``, ``message`` and ``size`` of each.
+    """
+
+    counts: dict[str, int]
+    errors: list[dict[str, Any]]
+    notes: list[dict[str, Any]]
+
+
+def findings_report(findings: Sequence[Finding]) -> AuditReport:
     """
     Findings as plain values.
 
@@ -147,15 +166,15 @@ def findings_report(findings: Sequence[Finding]) -> dict[str, Any]:
 
     Returns
     -------
-    dict
-        ``counts`` by code, ``errors`` and ``notes``: lists of code, id, message and size.
+    AuditReport
+        Sorted by code, errors and notes in the order of the findings.
     """
     counts = Counter(finding.code for finding in findings)
-    return {
-        "counts": dict(sorted(counts.items())),
-        "errors": _plain(finding for finding in findings if finding.severity == "error"),
-        "notes": _plain(finding for finding in findings if finding.severity == "note"),
-    }
+    return AuditReport(
+        counts=dict(sorted(counts.items())),
+        errors=_plain(finding for finding in findings if finding.severity == "error"),
+        notes=_plain(finding for finding in findings if finding.severity == "note"),
+    )
 
 
 def _plain(findings: Iterable[Finding]) -> list[dict[str, Any]]:

@@ -1,6 +1,5 @@
 """Panels, and the files that fabricators open."""
 
-from dataclasses import dataclass
 from typing import Annotated, Literal, NamedTuple
 
 from ...fabrication.drawings import beams as dxf
@@ -16,37 +15,13 @@ from ...kernel.errors import InputError, name_ids
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.panels import cutting
 from ...kernel.panels.panels import Panels
+from ...kernel.panels.reports import CutReport
 from ...kernel.parts.findings import rejected_report
-from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...viewer.render import render_image
 from ..graphs.node import node, running_graph, warn
 from ..graphs.ports import Length, Port, Units, WritePath
 from .arrays import FaceLabels
-
-
-@dataclass(frozen=True, eq=False)
-class CutReport(Report):
-    """
-    The panels that can be made, and the others.
-
-    Attributes
-    ----------
-    edge_gap : dict
-        Between the arcs of neighbouring panels, at the ends and in the middle, before the
-        joint: ``max`` and ``mean`` in model units, ``relative_to_edge``, over so many
-        ``edges``.
-    thickness : dict
-        ``min``, ``mean`` and ``max``.
-    written : int
-    rejected : list of dict
-        ``id``, ``code`` and ``reason`` of each panel that cannot be made.
-    """
-
-    edge_gap: dict[str, float]
-    thickness: dict[str, float]
-    written: int
-    rejected: list[dict[str, str]]
 
 
 class PanelSet(NamedTuple):
@@ -73,18 +48,14 @@ def panels(
     ----------
     sphere_mesh : SphereMesh
     edges : {"bisector", "intersection"}
-        Cut along each edge by the plane that bisects the two faces (walls stand upright, the
-        two arcs of an edge differ by a small gap), or by the plane in which the two spheres
-        meet (watertight, as tilted as the spheres left it).
-    thickness : float
-        Thickness in model units; 0 for surfaces.
-    joint_gap : float
-        Width of the joints, in model units.
+        Cut by the plane that bisects two faces (walls stand upright, the arcs of an edge differ
+        by a small gap), or in which two spheres meet (watertight, as tilted as they left it).
+    thickness, joint_gap : float
+        In model units; without thickness panels are surfaces.
     labels : (F,) int array, optional
         Mould of each face.
     side : {"inward", "outward", "centred"}
-        Where the thickness goes from the spheres: against the face normals, along them, or
-        half each way.
+        Where the thickness goes: against the face normals, along them, or half each way.
     layer : {"offset", "power"}
         The same thickness everywhere; or the same difference of squared radii, so that
         neighbours which bulge to one side meet in one plane on both of their faces: the
@@ -147,8 +118,7 @@ def write_step(
     schema : {"AP214IS", "AP242DIS"}
         Application protocol.
     copies : {"shapes", "instances"}
-        A shape of its own for every panel, or one shape for identical panels: smaller files
-        where panels repeat.
+        A shape for every panel, or one for all identical panels: smaller files.
     beams : Beams, optional
         The beams, with their node cylinders if they have any, and the node axes.
 
@@ -180,9 +150,9 @@ def cadquery_solids(
     Parameters
     ----------
     panels : Panels, optional
-        The panels; these or beams are needed.
+        These or beams are needed.
     beams : Beams, optional
-        The beams; of beams and panels the former are an assembly within the latter.
+        With panels too, they are an assembly within theirs.
     units : str
         Model units; the assembly is in millimetres.
 
@@ -231,16 +201,14 @@ def write_3dm(
     version : int
         Rhino version of the file.
     beams : Beams, optional
-        The beams, as extrusions of their flat contours, with their drilling marks, node
-        cylinders and node axes.
+        As extrusions of their contours, with drilling marks, node cylinders and node axes.
     reference : Mesh or SphereMesh, optional
         The design mesh, for a layer of its own.
     shape : {"panels", "blocks", "shell"}
         A surface per panel; instances of a block wherever panels are identical; or all panels
         joined into one polysurface, which needs panels cut along intersections without joint.
     layers : tuple of {"Edges", "Centres", "Moulds"}
-        Further layers: the edges of the panels, the centres of their spheres, and the blanks
-        of the moulds as blocks under their panels.
+        Further layers: edges of panels, centres of spheres, blanks of moulds as blocks.
 
     Returns
     -------
@@ -294,7 +262,6 @@ def write_dxf(
     --------
     >>> from tempfile import TemporaryDirectory
     >>> from spheremesh.nodes import annulus_support, beams, ellipsoid_mesh, model_change
-    >>> from spheremesh.nodes import write_dxf
     >>> sphere_mesh = model_change(ellipsoid_mesh(12, 6), radius=4.0)
     >>> made = beams(annulus_support(sphere_mesh, depth=0.1).annuli, thickness=0.02)
     >>> with TemporaryDirectory() as folder:
@@ -320,8 +287,7 @@ def write_schedule(
     panels : Panels, optional
         The panels; these or beams are needed.
     path : path
-        Ends in .csv (panels or beams), or in .json or .xlsx (both; .xlsx with the extra
-        ``excel``).
+        Ends in .csv (panels or beams), .json or .xlsx (both; .xlsx needs the extra ``excel``).
     units : str
     beams : Beams, optional
 
@@ -332,14 +298,12 @@ def write_schedule(
 
     Examples
     --------
-    >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
     >>> from spheremesh.nodes import fit_spheres, panels, vase_mesh, write_schedule
     >>> made = panels(fit_spheres(vase_mesh(12, 6)))
     >>> with TemporaryDirectory() as folder:
-    ...     path = write_schedule(made.panels, f"{folder}/panels.csv")
-    ...     len(Path(path).read_text("utf-8").splitlines())
-    73
+    ...     write_schedule(made.panels, f"{folder}/panels.csv").endswith("panels.csv")
+    True
     """
     return _tell(schedule.write_schedule(Model(panels, beams, units), path))
 

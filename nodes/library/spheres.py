@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...kernel.arrays import BoolArray, FloatArray
-from ...kernel.meshes.mesh import Mesh, edge_middles
+from ...kernel.meshes.mesh import Mesh
 from ...kernel.sphere_meshes import central_spheres as central
 from ...kernel.sphere_meshes import fit
 from ...kernel.sphere_meshes import smoothed_spheres as smoothing
@@ -14,7 +14,7 @@ from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.spheres import circles, incidence, minkowski, rows
 from ..graphs.node import node
 from ..graphs.ports import Port
-from .arrays import EdgeSpheres, Points, Spheres
+from .arrays import Points, Spheres
 
 
 class PrincipalSpheres(NamedTuple):
@@ -150,32 +150,6 @@ def principal_spheres(mesh: Mesh) -> PrincipalSpheres:
     [16.8, 14.6]
     """
     return PrincipalSpheres(*central.principal_spheres(mesh))
-
-
-@node
-def edge_spheres(mesh: Mesh) -> EdgeSpheres:
-    """
-    Spheres of the edges of a circular mesh: through the circles of both faces.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        Every face needs a circumcircle.
-
-    Returns
-    -------
-    (E, 5) float array
-        Rows over the interior edges, whose normals agree with the first face of each. Opposite
-        ones of a quad are bisected by its principal spheres.
-
-    Examples
-    --------
-    >>> from spheremesh.nodes import sphere_facts, torus_mesh
-    >>> spheres = edge_spheres(torus_mesh(12, 6, major_radius=3.0))
-    >>> len(spheres), set(sphere_facts(spheres).kinds.tolist())
-    (144, {'sphere'})
-    """
-    return rows.recenter(central.edge_spheres(mesh), -edge_middles(mesh))
 
 
 class SphereFacts(NamedTuple):

@@ -15,7 +15,8 @@ from ...kernel.meshes.mesh import mean_edge_length
 from ...kernel.panels import congruent
 from ...kernel.panels import mould_blanks as blanks
 from ...kernel.panels.panels import Panels
-from ...kernel.parts.findings import Finding, findings_report
+from ...kernel.panels.reports import BlanksReport, CutReport, blanks_report
+from ...kernel.parts.findings import AuditReport, Finding, findings_report
 from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ...kernel.support.annulus_support import AnnuliReport
@@ -25,7 +26,6 @@ from ..graphs.node import node, warn
 from ..graphs.ports import Length, Port, ReadPath, Units
 from .arrays import PanelLabels
 from .cluster import MouldsReport
-from .fabricate import CutReport
 from .optimise import OptimumReport
 from .support import BeamsReport, LandingReport
 
@@ -52,43 +52,6 @@ class ShapesReport(Report):
     panels_per_shape: list[int]
     first: list[str]
     largest_miss: float
-
-
-@dataclass(frozen=True, eq=False)
-class BlanksReport(Report):
-    """
-    Blanks that the moulds must give, lengths in model units.
-
-    Attributes
-    ----------
-    blanks : list of dict
-        ``mould`` (from 1), ``radius`` (None for a flat mould), ``diameter`` (of the rim, as a
-        chord), ``sagitta``, ``opening_deg``, ``count`` and ``shapes`` (different panels among
-        them).
-    without_mould : int
-        Panels that belong to none.
-    """
-
-    blanks: list[dict[str, Any]]
-    without_mould: int
-
-
-@dataclass(frozen=True, eq=False)
-class AuditReport(Report):
-    """
-    Findings.
-
-    Attributes
-    ----------
-    counts : dict
-        Number of findings by code.
-    errors, notes : list of dict
-        ``code``, ``id``, ``message`` and ``size`` of each.
-    """
-
-    counts: dict[str, int]
-    errors: list[dict[str, Any]]
-    notes: list[dict[str, Any]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,19 +173,7 @@ def mould_blanks(panels: Panels, size_step: Length = 0.0) -> BlanksReport:
     without = int((panels.labels < 0).sum())
     if without:
         warn(f"{without} of {panels.n_panels} panels belong to no mould and need no blank")
-    rows = [
-        {
-            "mould": int(found.labels[i]) + 1,
-            "radius": float(found.radii[i]) if np.isfinite(found.radii[i]) else None,
-            "diameter": float(found.diameters[i]),
-            "sagitta": float(found.sagittas[i]),
-            "opening_deg": float(np.degrees(found.openings[i])),
-            "count": int(found.counts[i]),
-            "shapes": int(found.shapes[i]),
-        }
-        for i in range(len(found.labels))
-    ]
-    return BlanksReport(rows, without)
+    return blanks_report(found, without)
 
 
 @node
@@ -300,7 +251,7 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
         for part in report.get("rejected", ())
     ]
     findings = audit_model(Model(panels, beams, units), limits, rejected)
-    return Audit(tuple(findings), AuditReport(**findings_report(findings)))
+    return Audit(tuple(findings), findings_report(findings))
 
 
 @node
@@ -331,7 +282,7 @@ def check_step(path: ReadPath) -> Audit:
     ()
     """
     findings = check_part21(path)
-    return Audit(findings, AuditReport(**findings_report(findings)))
+    return Audit(findings, findings_report(findings))
 
 
 @node
