@@ -1,5 +1,4 @@
-"""
-spheremesh turns a design surface into spherical panels that can be built.
+"""spheremesh turns a design surface into spherical panels that can be built.
 
 The node library is `spheremesh.nodes`; graphs of nodes are run by `Graph`.
 """

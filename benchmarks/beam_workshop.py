@@ -1,5 +1,4 @@
-"""
-What the workshop's side of beams costs, and how exact its files are.
+"""What the workshop's side of beams costs, and how exact its files are.
 
     python benchmarks/beam_workshop.py [MESH ...]
 

@@ -1,5 +1,4 @@
-"""
-How well do beams meet, and how fast are they written? Nodes, annuli, solids, files of a mesh.
+"""How well do beams meet, and how fast are they written? Nodes, annuli, solids and files.
 
     python benchmarks/beams.py [MESH ...]
 

@@ -1,5 +1,4 @@
-"""
-How fast energy (6) falls: seconds of an iteration, iterations, and a general solver beside it.
+"""How fast energy (6) falls: seconds and iterations, with a general solver beside it.
 
     python benchmarks/energy.py [large] [scipy]
 

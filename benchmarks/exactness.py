@@ -1,5 +1,4 @@
-"""
-How exact are the files? Panels a mesh, writes both CAD files, and judges them from outside.
+"""How exact are the files? Panels a mesh, writes both CAD files, and judges them from outside.
 
     python benchmarks/exactness.py MESH [UNITS] [THICKNESS] [MOULDS]
 

@@ -1,5 +1,4 @@
-"""
-Does a process that writes a Rhino file end well? Ten of them, one after the other.
+"""Does a process that writes a Rhino file end well? Ten of them, one after the other.
 
     python benchmarks/exports.py
 

@@ -1,5 +1,4 @@
-"""
-What hexagonal sphere meshes promise, in figures: shapes, axes, sizes of spheres, panels, time.
+"""What hexagonal sphere meshes promise, in figures: shapes, axes, sizes, panels, time.
 
     python benchmarks/hexagons.py [MESH ...]
 

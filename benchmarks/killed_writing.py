@@ -1,5 +1,4 @@
-"""
-Is a file always whole? Kills writers at random moments and looks at what is left.
+"""Is a file always whole? Kills writers at random moments and looks at what is left.
 
     python benchmarks/killed_writing.py [KILLS] [EXPORTS]
 

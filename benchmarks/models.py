@@ -1,5 +1,4 @@
-"""
-Model change, support types, subdivision and remeshing in figures.
+"""Model change, support types, subdivision and remeshing in figures.
 
     python benchmarks/models.py [MESH ...]
 

@@ -16,8 +16,7 @@ MEETS = 1e-9
 
 
 def judge_ends(beams: Beams, sphere_mesh: SphereMesh) -> None:
-    """
-    Print how well mitres meet: as planes, in the lines on the axis and on the sides, in ends.
+    """Print how well mitres meet: as planes, in lines on the axis and on the sides, in ends.
 
     Nodes where the annuli themselves meet, free of torsion and with spheres through the vertex,
     stand apart: elsewhere beams are as far apart as their planes are.
@@ -69,8 +68,7 @@ def node_misses(beams: Beams) -> dict[int, list[float]]:
 
 
 def _misses(beams: Beams, ends: list[tuple[int, int]]) -> list[float]:
-    """
-    Of all pairs of end faces that meet at a node, the largest distances.
+    """Of all pairs of end faces that meet at a node, the largest distances.
 
     Of the corners from the other's plane; of the ridges from the other's ridge line; of the
     side lines from each other; of the ridges' corners from each other.

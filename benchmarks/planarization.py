@@ -1,5 +1,4 @@
-"""
-Torsion-free nodes: how planar, how exact, how far nets move, how fast; and relaxed congruences.
+"""Torsion-free nodes: how planar, how exact, how far, how fast; relaxed congruences.
 
 Spheres of radius 0.5 touch a torus, a ring of revolution, a hypar and a freeform bump at the
 crossings of curvature lines, or of parameter lines, which are far from conjugate. Nodes start

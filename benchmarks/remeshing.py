@@ -1,7 +1,6 @@
-"""
-What remeshing along conjugate directions reaches.
+"""What remeshing along conjugate directions reaches.
 
-    python benchmarks/remeshing.py [directions | noise | regular | singular | speed | complex]
+python benchmarks/remeshing.py [directions | noise | regular | singular | speed | complex]
 """
 
 import itertools

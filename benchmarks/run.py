@@ -1,5 +1,4 @@
-"""
-How fast, how large, how smooth: one line per figure.
+"""How fast, how large, how smooth: one line per figure.
 
 Seconds are those of this machine now, and noisy: what counts are the ratios, taken within one
 run, and the sizes of files. Every stage runs in a process of its own, so that its memory is

@@ -1,5 +1,4 @@
-"""
-Freeform congruences with singular directions, remeshed until they can be built.
+"""Freeform congruences with singular directions, remeshed until they can be built.
 
 Ten surfaces of varied shape and topology, each with spheres of constant radius and with those
 of Section 7, which grow towards the curvature spheres while node axes stay within 15 degrees of

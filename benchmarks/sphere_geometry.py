@@ -1,7 +1,6 @@
-"""
-What the geometry promises, in figures: gaps, invariance under Möbius maps, equal optima.
+"""What the geometry promises, in figures: gaps, invariance under Möbius maps, equal optima.
 
-    python benchmarks/sphere_geometry.py
+python benchmarks/sphere_geometry.py
 """
 
 import warnings

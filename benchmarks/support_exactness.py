@@ -1,5 +1,4 @@
-"""
-How exact are panels and beams of the whole job? OpenCASCADE judges them, built and read back.
+"""How exact are panels and beams of the whole job? OpenCASCADE judges, built and read back.
 
     python benchmarks/support_exactness.py [MESH | roof | nodes ...]
 

@@ -1,5 +1,4 @@
-"""
-Does the unit of a drawing change what is made of it? The whole job, in m, mm and ft.
+"""Does the unit of a drawing change what is made of it? The whole job, in m, mm and ft.
 
     python benchmarks/units.py [FACES ACROSS x FACES ALONG ...]
 

@@ -1,7 +1,6 @@
-"""
-What the whole energy promises: support, tolerance, few moulds, targets, strips, scale.
+"""What the whole energy promises: support, tolerance, few moulds, targets, strips, scale.
 
-    python benchmarks/whole_energy.py cmc1.obj heart.obj complete01.obj conical1.obj
+python benchmarks/whole_energy.py cmc1.obj heart.obj complete01.obj conical1.obj
 """
 
 import sys

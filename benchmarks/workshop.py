@@ -1,5 +1,4 @@
-"""
-What workshop files cost: STEP, its check, Rhino, schedule, audit, drawings.
+"""What workshop files cost: STEP, its check, Rhino, schedule, audit, drawings.
 
     python benchmarks/workshop.py [exact | rhino]
 

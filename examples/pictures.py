@@ -1,7 +1,6 @@
-"""
-The pictures of README and docs, each drawn by one function.
+"""The pictures of README and docs, each drawn by one function.
 
-    python examples/pictures.py docs/images
+python examples/pictures.py docs/images
 """
 
 import subprocess

@@ -1,5 +1,4 @@
-"""
-Files are written whole or not at all: beside their target, then renamed over it.
+"""Files are written whole or not at all: beside their target, then renamed over it.
 
 A process that is killed cannot tidy up: what it was writing stays beside the target, hidden.
 The next one that writes the same target removes it, once it is a day old: what is younger may
@@ -32,12 +31,10 @@ _ABANDONED: Final = 86400.0
 
 
 def check_suffix(path: str | os.PathLike[str], *suffixes: str) -> None:
-    """
-    Refuse a file name that does not say what will be in the file.
+    """Refuse a file name that does not say what will be in the file.
 
     Parameters
     ----------
-    path : path
     *suffixes : str
         What its name may end in, in lower case.
 
@@ -51,12 +48,7 @@ def check_suffix(path: str | os.PathLike[str], *suffixes: str) -> None:
 
 
 def check_target(path: str | os.PathLike[str]) -> None:
-    """
-    Refuse a file that cannot be there.
-
-    Parameters
-    ----------
-    path : path
+    """Refuse a file that cannot be there.
 
     Raises
     ------
@@ -82,12 +74,7 @@ def check_target(path: str | os.PathLike[str]) -> None:
 
 @contextmanager
 def replacing(path: str | os.PathLike[str]) -> Generator[Path]:
-    """
-    A temporary path beside `path` that takes its place when the block succeeds.
-
-    Parameters
-    ----------
-    path : path
+    """A temporary path beside `path` that takes its place when the block succeeds.
 
     Yields
     ------
@@ -141,8 +128,7 @@ def _umask() -> int:
 
 @contextmanager
 def replacing_all(folder: str | os.PathLike[str]) -> Generator[Path]:
-    """
-    A temporary folder whose files move into `folder` together when the block succeeds.
+    """A temporary folder whose files move into `folder` together when the block succeeds.
 
     Parameters
     ----------

@@ -27,8 +27,7 @@ _NO_CHARACTERS: Final = frozenset("\ufffe\uffff")
 
 @dataclass(frozen=True)
 class Model:
-    """
-    What is written: panels, beams, or both.
+    """What is written: panels, beams, or both.
 
     Attributes
     ----------
@@ -47,13 +46,10 @@ class Model:
 
 @dataclass(frozen=True)
 class Written:
-    """
-    What was written.
+    """What was written.
 
     Attributes
     ----------
-    path : Path
-        The file.
     rejected : tuple of RejectedPart
         Parts that the file lacks, with their reasons.
     notes : tuple of str
@@ -69,8 +65,7 @@ class Written:
 
 
 def check_model(model: Model, target: str | os.PathLike[str]) -> None:
-    """
-    Refuse a model that no file can hold.
+    """Refuse a model that no file can hold.
 
     Parameters
     ----------
@@ -99,13 +94,10 @@ PanelsOrBeams = TypeVar("PanelsOrBeams", bound=Panels | Beams)
 def check_parts(
     parts: PanelsOrBeams | None, kind: Kind, target: str | os.PathLike[str]
 ) -> PanelsOrBeams:
-    """
-    Refuse parts that no file can hold.
+    """Refuse parts that no file can hold.
 
     Parameters
     ----------
-    parts : Panels or Beams or None
-        The parts.
     kind : {"panel", "beam"}
         What they are, for the message.
     target : path
@@ -140,8 +132,7 @@ def check_parts(
 
 
 def check_part_names(names: Iterable[str], kind: Kind) -> None:
-    r"""
-    Refuse names that some kinds of files cannot hold, or would change.
+    r"""Refuse names that some kinds of files cannot hold, or would change.
 
     Parameters
     ----------

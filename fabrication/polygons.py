@@ -13,8 +13,7 @@ from ..kernel.meshes.mesh import Mesh
 
 @dataclass(frozen=True)
 class Polygons:
-    """
-    Polygons of mixed degree as a file lists them.
+    """Polygons of mixed degree as a file lists them.
 
     Attributes
     ----------
@@ -38,18 +37,7 @@ class Polygons:
 
 
 def to_mesh(polygons: Polygons) -> Mesh:
-    """
-    The polygons as a mesh: same vertices, same faces, same order.
-
-    Parameters
-    ----------
-    polygons : Polygons
-        What a file says.
-
-    Returns
-    -------
-    Mesh
-        Validated.
+    """The polygons as a mesh: same vertices, same faces, same order.
 
     Raises
     ------
@@ -100,8 +88,7 @@ def _raise_at_line(polygons: Polygons) -> None:
 
 
 def join_polygons(parts: Sequence[Polygons]) -> Polygons:
-    """
-    Polygons of several lists in one, without their lines.
+    """Polygons of several lists in one, without their lines.
 
     Parameters
     ----------
@@ -122,13 +109,10 @@ def join_polygons(parts: Sequence[Polygons]) -> Polygons:
 
 
 def transform_polygons(polygons: Polygons, transform: FloatArray) -> Polygons:
-    """
-    Move polygons by an affine map.
+    """Move polygons by an affine map.
 
     Parameters
     ----------
-    polygons : Polygons
-        What a file says.
     transform : (4, 4) float array
         The map, for columns of homogeneous coordinates.
 
@@ -151,8 +135,7 @@ def transform_polygons(polygons: Polygons, transform: FloatArray) -> Polygons:
 
 
 def drop_repeats(polygons: Polygons) -> Polygons:
-    """
-    Polygons without corners that repeat the one before, and without faces of no area left.
+    """Polygons without corners that repeat the one before, and without faces of no area left.
 
     Parameters
     ----------
@@ -175,8 +158,7 @@ def drop_repeats(polygons: Polygons) -> Polygons:
 
 
 def drop_unused(polygons: Polygons) -> Polygons:
-    """
-    The same polygons without the vertices that no face uses; the others keep their order.
+    """The same polygons without the vertices that no face uses; the others keep their order.
 
     Parameters
     ----------
@@ -203,8 +185,7 @@ def drop_unused(polygons: Polygons) -> Polygons:
 
 
 def weld(points: FloatArray, distance: float = 0.0) -> tuple[FloatArray, IntArray]:
-    """
-    Merge coincident points.
+    """Merge coincident points.
 
     Parameters
     ----------
@@ -262,8 +243,7 @@ def _first_of_each(points: FloatArray, labels: IntArray) -> tuple[FloatArray, In
 
 
 def mean_side(polygons: Polygons) -> float:
-    """
-    Mean length of the sides of the polygons.
+    """Mean length of the sides of the polygons.
 
     Parameters
     ----------

@@ -19,12 +19,7 @@ _Untyped: TypeAlias = Any
 
 
 def finite_or_none(value: np.float64) -> float | None:
-    """
-    A number as a plain value.
-
-    Parameters
-    ----------
-    value : float64
+    """A number as a plain value.
 
     Returns
     -------
@@ -35,15 +30,13 @@ def finite_or_none(value: np.float64) -> float | None:
 
 
 def write_csv(rows: Iterable[Mapping[str, Any]], path: Path) -> None:
-    """
-    Write a table as CSV, in UTF-8 with byte order mark, as spreadsheets expect.
+    """Write a table as CSV, in UTF-8 with byte order mark, as spreadsheets expect.
 
     Parameters
     ----------
     rows : iterable of mapping
         Rows of the same columns. Lists are separated by blanks, lists of lists by semicolons;
         what is None is an empty cell, or a dash in a list.
-    path : Path
     """
     with path.open("w", encoding="utf-8-sig", newline="") as file:
         writer: csv.DictWriter[str] | None = None
@@ -55,8 +48,7 @@ def write_csv(rows: Iterable[Mapping[str, Any]], path: Path) -> None:
 
 
 def format_xlsx(sheets: Mapping[str, list[dict[str, Any]]]) -> bytes:
-    """
-    Tables as a workbook.
+    """Tables as a workbook.
 
     Parameters
     ----------

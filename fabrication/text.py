@@ -13,8 +13,7 @@ from .polygons import Polygons
 
 
 def decode(data: bytes) -> str:
-    """
-    The text of a file; bytes that are not UTF-8 (old comments, names) do no harm.
+    """The text of a file; bytes that are not UTF-8 (old comments, names) do no harm.
 
     Parameters
     ----------
@@ -31,8 +30,7 @@ def decode(data: bytes) -> str:
 
 
 def numbered_words(text: str, first: int = 1) -> Iterator[tuple[int, list[str]]]:
-    """
-    The words of each line that is not blank, without its comment.
+    """The words of each line that is not blank, without its comment.
 
     Parameters
     ----------
@@ -55,12 +53,10 @@ def numbered_words(text: str, first: int = 1) -> Iterator[tuple[int, list[str]]]
 
 
 def face_words(mesh: Mesh, first: int) -> list[str]:
-    """
-    The vertex numbers of each face, as words separated by blanks.
+    """The vertex numbers of each face, as words separated by blanks.
 
     Parameters
     ----------
-    mesh : Mesh
     first : int
         Number of the first vertex.
 
@@ -74,12 +70,7 @@ def face_words(mesh: Mesh, first: int) -> list[str]:
 
 
 def to_count(word: str) -> int:
-    """
-    A word of a text file as a number of elements.
-
-    Parameters
-    ----------
-    word : str
+    """A word of a text file as a number of elements.
 
     Returns
     -------
@@ -95,8 +86,7 @@ def to_count(word: str) -> int:
 
 
 def to_floats(words: Sequence[str], lines: Sequence[int], per_line: int) -> FloatArray:
-    """
-    Words of a text file as numbers.
+    """Words of a text file as numbers.
 
     Parameters
     ----------
@@ -136,8 +126,7 @@ def _to_integers(words: Sequence[str], lines: Sequence[int], counts: Sequence[in
 
 @dataclass
 class TextPolygons:
-    """
-    Polygons as the lines of a text file give them, one after the other.
+    """Polygons as the lines of a text file give them, one after the other.
 
     Attributes
     ----------
@@ -158,12 +147,10 @@ class TextPolygons:
     face_lines: list[int] = field(default_factory=list[int])
 
     def add_vertex(self, line: int, words: list[str]) -> None:
-        """
-        Add a vertex.
+        """Add a vertex.
 
         Parameters
         ----------
-        line : int
         words : list of str
             Coordinates; more than three are left out.
 
@@ -178,12 +165,10 @@ class TextPolygons:
         self.vertex_lines.append(line)
 
     def add_face(self, line: int, words: list[str]) -> None:
-        """
-        Add a face.
+        """Add a face.
 
         Parameters
         ----------
-        line : int
         words : list of str
         """
         self.corner_words += words
@@ -191,8 +176,7 @@ class TextPolygons:
         self.face_lines.append(line)
 
     def polygons(self) -> Polygons:
-        """
-        The polygons, once all lines are read.
+        """The polygons, once all lines are read.
 
         Returns
         -------

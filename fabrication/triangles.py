@@ -7,12 +7,7 @@ from ..kernel.meshes.mesh import Mesh, face_vector_areas, local_corners
 
 
 def fan_triangles(mesh: Mesh) -> tuple[IntArray, IntArray]:
-    """
-    Cut each face into a fan of triangles from the corner that suits its shape best.
-
-    Parameters
-    ----------
-    mesh : Mesh
+    """Cut each face into a fan of triangles from the corner that suits its shape best.
 
     Returns
     -------

@@ -15,18 +15,12 @@ CUBIC_METER: Final = 1e9
 
 
 def millimeters_per(units: str) -> float:
-    """
-    Millimetres in one model unit.
+    """Millimetres in one model unit.
 
     Parameters
     ----------
     units : str
         One of ``mm``, ``cm``, ``m``, ``in``, ``ft``.
-
-    Returns
-    -------
-    float
-        The factor.
 
     Raises
     ------

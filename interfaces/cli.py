@@ -1,5 +1,4 @@
-"""
-The command line.
+"""The command line.
 
 The docstrings of the commands are their help: click adds the options.
 
@@ -98,8 +97,7 @@ def panel(  # numpydoc ignore=PR01
     as_json: bool,
     **options: Any,  # noqa: ANN401
 ) -> None:
-    """
-    Panel a MESH with spheres and write CAD files, schedule and report.
+    """Panel a MESH with spheres and write CAD files, schedule and report.
 
     Reads OBJ, OFF, PLY, STL and .3dm. Without MESH, a demonstration roof is panelled.
     """
@@ -134,8 +132,7 @@ def run(  # numpydoc ignore=PR01
     graph_file: Path, settings: tuple[str, ...], targets: tuple[str, ...], out: Path, *,
     strict: bool, as_json: bool,
 ) -> None:  # fmt: skip
-    """
-    Run a graph: all of it, or what a target needs.
+    """Run a graph: all of it, or what a target needs.
 
     Relative paths are read from the working directory and written to the output folder. The
     graph of a panel job writes its report and itself anew.

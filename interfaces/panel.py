@@ -22,8 +22,7 @@ _LAYERS = {"constant": "offset", "power": "power"}
 
 @dataclass(frozen=True)
 class PanelOptions:
-    """
-    What the main job is asked to do.
+    """What the main job is asked to do.
 
     Attributes
     ----------
@@ -76,8 +75,7 @@ class PanelOptions:
 
 
 def panel_graph(options: PanelOptions) -> Graph:
-    """
-    The graph of the main job.
+    """The graph of the main job.
 
     Parameters
     ----------
@@ -196,13 +194,7 @@ def _beams(graph: Graph, options: PanelOptions, spheres: Wire) -> dict[str, Step
 
 
 def is_panel_job(graph: Graph) -> bool:
-    """
-    Whether a graph is the main job, perhaps with other values and further steps.
-
-    Parameters
-    ----------
-    graph : Graph
-        A graph.
+    """Whether a graph is the main job, perhaps with other values and further steps.
 
     Returns
     -------
@@ -217,8 +209,7 @@ def is_panel_job(graph: Graph) -> bool:
 def run_job(
     graph: Graph, folder: Path, progress: Progress
 ) -> tuple[dict[str, Any], tuple[str, ...]]:
-    """
-    Run the main job and write all of its files, or none.
+    """Run the main job and write all of its files, or none.
 
     Parameters
     ----------

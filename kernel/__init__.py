@@ -1,5 +1,4 @@
-"""
-Pure functions on arrays and frozen records: the mathematics.
+"""Pure functions on arrays and frozen records: the mathematics.
 
 analysis       Measures of meshes and sphere meshes: how flat, how circular, how upright, how
                near.

@@ -18,12 +18,7 @@ from .spheres.incidence import project
 
 
 def angle_summary(sphere_mesh: SphereMesh) -> dict[str, float]:
-    """
-    Angles between neighbours in two numbers.
-
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
+    """Angles between neighbours in two numbers.
 
     Returns
     -------
@@ -37,12 +32,7 @@ def angle_summary(sphere_mesh: SphereMesh) -> dict[str, float]:
 
 
 def spiky_faces(sphere_mesh: SphereMesh) -> BoolArray:
-    """
-    Faces that bulge to the wrong side.
-
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
+    """Faces that bulge to the wrong side.
 
     Returns
     -------
@@ -66,8 +56,7 @@ def spiky_faces(sphere_mesh: SphereMesh) -> BoolArray:
 
 @dataclass(frozen=True)
 class AngleHistogram:
-    """
-    Angles between neighbours, counted in bins.
+    """Angles between neighbours, counted in bins.
 
     Attributes
     ----------
@@ -83,12 +72,10 @@ class AngleHistogram:
 
 
 def angle_histogram(sphere_mesh: SphereMesh, n_bins: int = 20) -> AngleHistogram:
-    """
-    Count the angles between neighbouring spheres, and between the planes they replace.
+    """Count the angles between neighbouring spheres, and between the planes they replace.
 
     Parameters
     ----------
-    sphere_mesh : SphereMesh
     n_bins : int
         Number of bins, from 0 to the largest angle of either kind.
 
@@ -120,12 +107,10 @@ def angle_histogram(sphere_mesh: SphereMesh, n_bins: int = 20) -> AngleHistogram
 
 
 def deviation(sphere_mesh: SphereMesh, reference: Mesh) -> FloatArray:
-    """
-    How far the panels stand off a reference surface.
+    """How far the panels stand off a reference surface.
 
     Parameters
     ----------
-    sphere_mesh : SphereMesh
     reference : Mesh
         The surface to compare with; its polygons count as fans of triangles.
 

@@ -13,8 +13,7 @@ ComplexArray: TypeAlias = NDArray[np.complex128]
 
 
 def dot(a: FloatArray, b: FloatArray) -> FloatArray:
-    """
-    Scalar product along the last axis.
+    """Scalar product along the last axis.
 
     Parameters
     ----------
@@ -30,8 +29,7 @@ def dot(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def norm(a: FloatArray) -> FloatArray:
-    """
-    Euclidean length along the last axis.
+    """Euclidean length along the last axis.
 
     Parameters
     ----------
@@ -46,8 +44,7 @@ def norm(a: FloatArray) -> FloatArray:
 
 
 def unit(a: FloatArray) -> FloatArray:
-    """
-    Vectors divided by their length; the zero vector stays zero.
+    """Vectors divided by their length; the zero vector stays zero.
 
     Parameters
     ----------
@@ -63,8 +60,7 @@ def unit(a: FloatArray) -> FloatArray:
 
 
 def sum_by(ids: IntArray, values: FloatArray, size: int) -> FloatArray:
-    """
-    Sum of the rows that share an id.
+    """Sum of the rows that share an id.
 
     Parameters
     ----------
@@ -72,7 +68,6 @@ def sum_by(ids: IntArray, values: FloatArray, size: int) -> FloatArray:
         Group of each row, in ``[0, size)``.
     values : (n,) or (n, m) float array
         Rows to add up.
-    size : int
 
     Returns
     -------
@@ -86,14 +81,12 @@ def sum_by(ids: IntArray, values: FloatArray, size: int) -> FloatArray:
 
 
 def batches_by_count(ids: IntArray, size: int) -> Iterator[tuple[IntArray, IntArray]]:
-    """
-    Groups of equal size, gathered so that each batch is one array.
+    """Groups of equal size, gathered so that each batch is one array.
 
     Parameters
     ----------
     ids : (m,) int array
         Group of each row, in ``[0, size)``.
-    size : int
 
     Yields
     ------
@@ -111,8 +104,7 @@ def batches_by_count(ids: IntArray, size: int) -> Iterator[tuple[IntArray, IntAr
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:
-    """
-    The same array, closed for writing.
+    """The same array, closed for writing.
 
     Parameters
     ----------

@@ -18,8 +18,7 @@ class MissingLibraryError(SpheremeshError, ImportError):
 
 
 def name_ids(ids: "list[int]", limit: int = 8) -> str:
-    """
-    List element ids for a message, the first few in full.
+    """List element ids for a message, the first few in full.
 
     Parameters
     ----------

@@ -7,8 +7,7 @@ from typing import Any
 
 @dataclass(frozen=True, eq=False)
 class Report(Mapping[str, Any]):
-    """
-    A frozen record that is a mapping of its fields.
+    """A frozen record that is a mapping of its fields.
 
     Every kind of report is a subclass of its own, so that a wire to the wrong input is refused.
     The values of the fields are plain: ``json.dumps(dict(report))`` writes them.

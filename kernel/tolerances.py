@@ -1,5 +1,4 @@
-"""
-The only home of small numbers, by the room that uses them.
+"""The only home of small numbers, by the room that uses them.
 
 Every value is relative: to the mean edge of a mesh, to the size of a panel, to the magnitude
 of the terms that cancel. None is a length in a unit. What a number means stands below it.

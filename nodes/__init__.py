@@ -1,5 +1,4 @@
-"""
-Typed functions as nodes, and the lazy graph that runs them.
+"""Typed functions as nodes, and the lazy graph that runs them.
 
 All nodes of the library can be imported from here by name or with ``*``.
 """

@@ -16,8 +16,7 @@ MARGIN = 0.07
 
 @dataclass(frozen=True)
 class Camera:
-    """
-    A perspective camera.
+    """A perspective camera.
 
     Attributes
     ----------
@@ -39,8 +38,7 @@ class Camera:
 
 
 def view_axes(direction: FloatArray) -> FloatArray:
-    """
-    Axes of a camera that looks against a direction and stands upright.
+    """Axes of a camera that looks against a direction and stands upright.
 
     Parameters
     ----------
@@ -69,8 +67,7 @@ def view_axes(direction: FloatArray) -> FloatArray:
 def frame_scene(
     points: FloatArray, direction: FloatArray, width: int, height: int, strip: int = 0
 ) -> Camera:
-    """
-    The camera that shows all points as large as they fit.
+    """The camera that shows all points as large as they fit.
 
     Parameters
     ----------
@@ -114,12 +111,10 @@ def frame_scene(
 
 
 def project_points(camera: Camera, points: FloatArray) -> FloatArray:
-    """
-    Where points lie in the picture.
+    """Where points lie in the picture.
 
     Parameters
     ----------
-    camera : Camera
     points : (N, 3) float array
         Points in front of it.
 
@@ -142,12 +137,10 @@ def project_points(camera: Camera, points: FloatArray) -> FloatArray:
 
 
 def pixel_rays(camera: Camera, x: FloatArray, y: FloatArray) -> FloatArray:
-    """
-    Directions in which the camera sees points of its picture.
+    """Directions in which the camera sees points of its picture.
 
     Parameters
     ----------
-    camera : Camera
     x, y : (n,) float array
         Pixels to the right and downwards.
 

@@ -1,5 +1,4 @@
-"""
-Daylight for pictures: a bright sky, and a sun with a soft edge.
+"""Daylight for pictures: a bright sky, and a sun with a soft edge.
 
 How much of the sky a point sees is counted with depth pictures from directions all over the
 sky; it is smooth, so it is taken at the points of the triangles and interpolated.
@@ -20,8 +19,7 @@ SUN_PIXELS = 900
 
 @dataclass(frozen=True)
 class DepthMap:
-    """
-    What is nearest to a far away light.
+    """What is nearest to a far away light.
 
     Attributes
     ----------
@@ -44,8 +42,7 @@ class DepthMap:
 def depth_map(
     points: FloatArray, triangles: IntArray, direction: FloatArray, size: int
 ) -> DepthMap:
-    """
-    The parallel picture of a scene from the side of a light.
+    """The parallel picture of a scene from the side of a light.
 
     Parameters
     ----------
@@ -72,12 +69,10 @@ def depth_map(
 
 
 def light_reaches(light: DepthMap, points: FloatArray, softness: float = 0.0) -> FloatArray:
-    """
-    Which share of a light reaches points.
+    """Which share of a light reaches points.
 
     Parameters
     ----------
-    light : DepthMap
     points : (N, 3) float array
         Points, lifted from their surface towards the light by about a pixel.
     softness : float
@@ -110,8 +105,7 @@ def _pixels(values: FloatArray, size: int) -> IntArray:
 
 
 def sky_maps(points: FloatArray, triangles: IntArray) -> list[DepthMap]:
-    """
-    Depth maps from directions spread evenly over the sky.
+    """Depth maps from directions spread evenly over the sky.
 
     Parameters
     ----------
@@ -133,8 +127,7 @@ def sky_maps(points: FloatArray, triangles: IntArray) -> list[DepthMap]:
 
 
 def sky_openness(sky: list[DepthMap], points: FloatArray, normals: FloatArray) -> FloatArray:
-    """
-    Share of the light of the sky that reaches both sides of a surface.
+    """Share of the light of the sky that reaches both sides of a surface.
 
     Parameters
     ----------
@@ -161,8 +154,7 @@ def sky_openness(sky: list[DepthMap], points: FloatArray, normals: FloatArray) -
 def daylight(
     normals: FloatArray, openness: FloatArray, sun: FloatArray, sunshine: FloatArray
 ) -> FloatArray:
-    """
-    Light that falls on a surface.
+    """Light that falls on a surface.
 
     Parameters
     ----------

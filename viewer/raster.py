@@ -1,5 +1,4 @@
-"""
-Which triangle is seen in each pixel: scanlines and a depth buffer, in arrays.
+"""Which triangle is seen in each pixel: scanlines and a depth buffer, in arrays.
 
 Every triangle is cut into its rows of pixels, every row runs between the two sides that cross
 it. A side is always followed from its upper end, so that two triangles with a common side share
@@ -22,8 +21,7 @@ _DEPTH_STEPS = 2**31 - 1
 
 @dataclass(frozen=True)
 class DepthPicture:
-    """
-    The nearest triangle of every pixel.
+    """The nearest triangle of every pixel.
 
     Attributes
     ----------
@@ -40,8 +38,7 @@ class DepthPicture:
 def affine_over_triangles(
     points: FloatArray, triangles: IntArray, values: FloatArray
 ) -> FloatArray:
-    """
-    Values at points as affine functions over the picture of each triangle.
+    """Values at points as affine functions over the picture of each triangle.
 
     Parameters
     ----------
@@ -70,8 +67,7 @@ def affine_over_triangles(
 
 
 def rasterize(points: FloatArray, triangles: IntArray, width: int, height: int) -> DepthPicture:
-    """
-    The nearest triangle of every pixel.
+    """The nearest triangle of every pixel.
 
     Parameters
     ----------
@@ -105,12 +101,7 @@ def rasterize(points: FloatArray, triangles: IntArray, width: int, height: int) 
 
 
 def close_hairlines(picture: DepthPicture) -> DepthPicture:
-    """
-    Fill gaps of one pixel with what lies beside them.
-
-    Parameters
-    ----------
-    picture : DepthPicture
+    """Fill gaps of one pixel with what lies beside them.
 
     Returns
     -------

@@ -1,5 +1,4 @@
-"""
-Pictures of panels without any graphics hardware.
+"""Pictures of panels without any graphics hardware.
 
 Triangles only find the panel that is seen in a pixel; the ray of the pixel is then cut with the
 panel's sphere, so that normals, reflections and joints are exact and nothing is faceted.
@@ -62,12 +61,10 @@ def render_image(
     height: int = 1000,
     legend: bool = False,
 ) -> Image.Image:
-    """
-    A picture of panels in daylight.
+    """A picture of panels in daylight.
 
     Parameters
     ----------
-    panels : Panels
     color_by : {"mould", "radius", "none"}
         What the colours stand for: the mould; the curvature (red where a panel curves
         outwards, blue where inwards, pale where flat); nothing.
@@ -113,8 +110,7 @@ def compare_image(
     width: int = 1600,
     height: int = 600,
 ) -> Image.Image:
-    """
-    Two sets of panels side by side, seen by the same camera.
+    """Two sets of panels side by side, seen by the same camera.
 
     Parameters
     ----------

@@ -23,8 +23,7 @@ FINE_PANEL = 20.0
 
 @dataclass(frozen=True)
 class Scene:
-    """
-    Panels, made ready to be drawn.
+    """Panels, made ready to be drawn.
 
     Attributes
     ----------
@@ -49,17 +48,7 @@ class Scene:
 
 
 def make_scene(panels: Panels) -> Scene:
-    """
-    Triangles and tables for drawing panels.
-
-    Parameters
-    ----------
-    panels : Panels
-
-    Returns
-    -------
-    Scene
-        The scene.
+    """Triangles and tables for drawing panels.
 
     Raises
     ------
@@ -84,8 +73,7 @@ def make_scene(panels: Panels) -> Scene:
 
 @dataclass(frozen=True)
 class Sight:
-    """
-    What is seen in n samples of a picture.
+    """What is seen in n samples of a picture.
 
     Attributes
     ----------
@@ -119,23 +107,15 @@ class Sight:
 def look(
     scene: Scene, camera: Camera, samples: IntArray, found: IntArray, nearness: FloatArray
 ) -> Sight:
-    """
-    Cut the rays of samples with the surfaces of the triangles that are seen there.
+    """Cut the rays of samples with the surfaces of the triangles that are seen there.
 
     Parameters
     ----------
-    scene : Scene
-    camera : Camera
     samples : (n,) int array
         Samples of the picture, counted row by row.
     found : (n,) int array
         Triangles that are seen there.
     nearness : (n,) float array
-
-    Returns
-    -------
-    Sight
-        Exact points and normals.
     """
     panels, surfaces = scene.triangles.panels[found], scene.triangles.surfaces[found]
     shift = scene.panels.origins[panels] - scene.triangles.origin

@@ -1,5 +1,4 @@
-"""
-Does another program see what was written? Reads .3dm files with three.js in headless Chromium.
+"""Does another program see what was written? three.js reads .3dm files in headless Chromium.
 
     npm install --prefix FOLDER three@VERSION rhino3dm@VERSION   (as in package.json)
     python benchmarks/three_dm_viewer/run.py FOLDER [PICTURES]

@@ -1,5 +1,4 @@
-"""
-The audit before files go out: numbered findings, errors apart from notes.
+"""The audit before files go out: numbered findings, errors apart from notes.
 
 beams     Checks of beams; each is a function of a `BeamSubject` that returns findings.
 panels    Checks of panels, likewise.

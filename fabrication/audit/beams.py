@@ -18,27 +18,13 @@ BeamSubject: TypeAlias = Subject[Beams, BeamFacts]
 def beam_subject(
     beams: Beams, units: str = "m", limits: AuditLimits = USUAL_LIMITS
 ) -> BeamSubject:
-    """
-    Beams in millimetres, measured.
-
-    Parameters
-    ----------
-    beams : Beams
-    units : str
-    limits : AuditLimits
-
-    Returns
-    -------
-    BeamSubject
-        What `check_beams` looks at.
-    """
+    """Beams in millimetres, measured: what `check_beams` looks at."""
     made = scale_beams(beams, millimeters_per(units))
     return BeamSubject(made, beam_facts(made), limits)
 
 
 def check_beams(subject: BeamSubject) -> list[Finding]:
-    """
-    Run every beam check.
+    """Run every beam check.
 
     Parameters
     ----------

@@ -18,27 +18,13 @@ PanelSubject: TypeAlias = Subject[Panels, PanelFacts]
 def panel_subject(
     panels: Panels, units: str = "m", limits: AuditLimits = USUAL_LIMITS
 ) -> PanelSubject:
-    """
-    Panels in millimetres, measured.
-
-    Parameters
-    ----------
-    panels : Panels
-    units : str
-    limits : AuditLimits
-
-    Returns
-    -------
-    PanelSubject
-        What `check_panels` looks at.
-    """
+    """Panels in millimetres, measured: what `check_panels` looks at."""
     made = scale_panels(panels, millimeters_per(units))
     return PanelSubject(made, panel_facts(made), limits)
 
 
 def check_panels(subject: PanelSubject) -> list[Finding]:
-    """
-    Run every panel check.
+    """Run every panel check.
 
     Parameters
     ----------

@@ -20,14 +20,12 @@ def audit_model(
     limits: AuditLimits = USUAL_LIMITS,
     rejected: Iterable[Mapping[str, str]] = (),
 ) -> tuple[Finding, ...]:
-    """
-    Look for whatever would trouble a workshop.
+    """Look for whatever would trouble a workshop.
 
     Parameters
     ----------
     model : Model
         Panels and beams, perhaps none.
-    limits : AuditLimits
     rejected : iterable of mapping
         Parts that could not be made, as `rejected_report` gives them.
 

@@ -12,8 +12,7 @@ from ...kernel.parts.findings import Finding, Severity, findings_where
 
 @dataclass(frozen=True)
 class AuditLimits:
-    """
-    What a workshop can do.
+    """What a workshop can do.
 
     Attributes
     ----------
@@ -60,8 +59,7 @@ FactsT = TypeVar("FactsT")
 
 @dataclass(frozen=True)
 class Subject(Generic[PartsT, FactsT]):
-    """
-    What checks look at.
+    """What checks look at.
 
     Attributes
     ----------
@@ -85,15 +83,12 @@ class Subject(Generic[PartsT, FactsT]):
         message: str,
         severity: Severity = "note",
     ) -> list[Finding]:
-        """
-        The findings of one check, see `findings_where`.
+        """The findings of one check, see `findings_where`.
 
         Parameters
         ----------
-        code : str
         sizes : (n,) float array
         is_found : (n,) bool array
-        message : str
         severity : {"error", "note"}
 
         Returns
@@ -105,12 +100,7 @@ class Subject(Generic[PartsT, FactsT]):
 
 
 def warning_texts(findings: Iterable[Finding]) -> dict[str, str]:
-    """
-    Findings of each part in a line.
-
-    Parameters
-    ----------
-    findings : iterable of Finding
+    """Findings of each part in a line.
 
     Returns
     -------

@@ -1,5 +1,4 @@
-"""
-Flat drawings in millimetres.
+"""Flat drawings in millimetres.
 
 beams   Cutting drawings of beams as DXF: exact contours, nested on sheets.
 dxf     DXF documents in millimetres, without dates and random identifiers.

@@ -1,5 +1,4 @@
-"""
-Cutting drawings of beams as DXF: exact contours, nested on sheets, in millimetres.
+"""Cutting drawings of beams as DXF: exact contours, nested on sheets, in millimetres.
 
 Layers: ``CUT`` has a closed polyline with exact arcs for every beam, ``ENGRAVE`` its id, the
 names of its nodes and the bevels of its ends, ``DRILL`` circles where it is drilled, ``SHEET``
@@ -41,8 +40,7 @@ _LABEL_SHARE = 0.35
 
 @dataclass(frozen=True)
 class SheetOptions:
-    """
-    The sheets that beams are cut from, in millimetres.
+    """The sheets that beams are cut from, in millimetres.
 
     Attributes
     ----------
@@ -62,8 +60,7 @@ _USUAL_SHEETS: Final = SheetOptions()
 def write_dxf(
     model: Model, path: str | os.PathLike[str], options: SheetOptions = _USUAL_SHEETS
 ) -> Written:
-    """
-    Write the flat contours of beams to a DXF file.
+    """Write the flat contours of beams to a DXF file.
 
     Parameters
     ----------
@@ -71,7 +68,6 @@ def write_dxf(
         At least one beam; panels are not drawn.
     path : path
         File to write. It is replaced when the new one is complete.
-    options : SheetOptions
 
     Returns
     -------

@@ -19,8 +19,7 @@ _LETTER = 0.9
 
 @contextmanager
 def fixed_ezdxf() -> Generator[_Untyped]:
-    """
-    Import ezdxf, without time and random identifiers in what it writes.
+    """Import ezdxf, without time and random identifiers in what it writes.
 
     Yields
     ------
@@ -47,8 +46,7 @@ def fixed_ezdxf() -> Generator[_Untyped]:
 
 
 def millimeter_drawing(library: _Untyped, layers: Mapping[str, int]) -> _Untyped:
-    """
-    An empty drawing in millimetres.
+    """An empty drawing in millimetres.
 
     Parameters
     ----------
@@ -56,11 +54,6 @@ def millimeter_drawing(library: _Untyped, layers: Mapping[str, int]) -> _Untyped
         From `fixed_ezdxf`.
     layers : mapping of str to int
         Layers and their colours, by AutoCAD's index.
-
-    Returns
-    -------
-    ezdxf.document.Drawing
-        The drawing.
     """
     document = library.new("R2010")
     document.units = _MILLIMETERS
@@ -71,17 +64,6 @@ def millimeter_drawing(library: _Untyped, layers: Mapping[str, int]) -> _Untyped
 
 
 def text_width(text: str) -> float:
-    """
-    Width of a line of text, on the safe side.
-
-    Parameters
-    ----------
-    text : str
-
-    Returns
-    -------
-    float
-        In heights of its capitals.
-    """
+    """Width of a line of text, on the safe side: in heights of its capitals."""
     wide = sum(east_asian_width(letter) in "WF" for letter in text)
     return _LETTER * (len(text) + wide)

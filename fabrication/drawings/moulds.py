@@ -1,5 +1,4 @@
-"""
-Drawings of moulds: every panel in its blank, seen along the axis of the blank, in millimetres.
+"""Drawings of moulds: every panel in its blank, seen along the blank's axis, in millimetres.
 
 A drawing is laid out once, as lines, circles and labels on named layers, and then written as
 DXF (for CAD and plotters) or SVG (for browsers and print).
@@ -41,12 +40,10 @@ _DECLARATION: Final = "<?xml version='1.0' encoding='utf-8'?>\n"
 
 @dataclass(frozen=True)
 class Label:
-    """
-    A line of text.
+    """A line of text.
 
     Attributes
     ----------
-    text : str
     at : tuple of float
         Where its baseline begins (or its middle is), in mm.
     height : float
@@ -63,8 +60,7 @@ class Label:
 
 @dataclass(frozen=True)
 class Drawing:
-    """
-    What is drawn, in millimetres, y upwards.
+    """What is drawn, in millimetres, y upwards.
 
     Attributes
     ----------
@@ -85,8 +81,7 @@ class Drawing:
 
 
 def write_mould_drawings(model: Model, path: str | os.PathLike[str]) -> Written:
-    """
-    Draw the panels of every mould into one file.
+    """Draw the panels of every mould into one file.
 
     Parameters
     ----------
@@ -94,11 +89,6 @@ def write_mould_drawings(model: Model, path: str | os.PathLike[str]) -> Written:
         At least one panel; beams are not drawn.
     path : path
         File ending in ``.dxf`` or ``.svg``.
-
-    Returns
-    -------
-    Written
-        The file.
 
     Raises
     ------
@@ -120,13 +110,7 @@ def write_mould_drawings(model: Model, path: str | os.PathLike[str]) -> Written:
 
 
 def layout_moulds(panels: Panels, units: str = "m") -> Drawing:
-    """
-    Arrange the panels of every mould under its title.
-
-    Parameters
-    ----------
-    panels : Panels
-    units : str
+    """Arrange the panels of every mould under its title.
 
     Returns
     -------

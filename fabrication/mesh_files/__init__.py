@@ -1,5 +1,4 @@
-"""
-Mesh files in and out.
+"""Mesh files in and out.
 
 obj     Wavefront OBJ: polygons of any degree, groups and objects, vertices counted from 1.
 off     Object File Format (OFF): polygons of any degree, vertices counted from 0.

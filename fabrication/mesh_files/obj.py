@@ -12,8 +12,7 @@ from ..text import TextPolygons, decode, face_words, numbered_words
 
 
 def read_obj(data: bytes, layer: str = "") -> Polygons:
-    """
-    Polygons of an OBJ file.
+    """Polygons of an OBJ file.
 
     Parameters
     ----------
@@ -81,12 +80,7 @@ def _has_prefix(name: str, prefix: str) -> bool:
 
 
 def format_obj(mesh: Mesh) -> bytes:
-    """
-    A mesh as an OBJ file.
-
-    Parameters
-    ----------
-    mesh : Mesh
+    """A mesh as an OBJ file.
 
     Returns
     -------

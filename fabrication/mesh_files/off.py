@@ -14,8 +14,7 @@ _KEYWORD = re.compile(r"(ST)?C?N?OFF")
 
 
 def read_off(data: bytes) -> Polygons:
-    """
-    Polygons of an ascii OFF file (also COFF, NOFF, STOFF).
+    """Polygons of an ascii OFF file (also COFF, NOFF, STOFF).
 
     Parameters
     ----------
@@ -75,12 +74,7 @@ def _read_counts(rows: Iterator[tuple[int, list[str]]]) -> tuple[int, int]:
 
 
 def format_off(mesh: Mesh) -> bytes:
-    """
-    A mesh as an OFF file.
-
-    Parameters
-    ----------
-    mesh : Mesh
+    """A mesh as an OFF file.
 
     Returns
     -------

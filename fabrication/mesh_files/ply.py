@@ -49,8 +49,7 @@ class _Header:
 
 
 def read_ply(data: bytes) -> Polygons:
-    """
-    Polygons of a PLY file.
+    """Polygons of a PLY file.
 
     Parameters
     ----------
@@ -234,18 +233,7 @@ def _cut_short(element: _Element) -> InputError:
 
 
 def format_ply(mesh: Mesh) -> bytes:
-    """
-    A mesh as a binary PLY file with float64 coordinates.
-
-    Parameters
-    ----------
-    mesh : Mesh
-
-    Returns
-    -------
-    bytes
-        Content of the file.
-    """
+    """A mesh as a binary PLY file with float64 coordinates: content of the file."""
     count_type, count = ("uchar", np.dtype("u1"))
     if mesh.degrees.max() > 255:
         count_type, count = ("uint", np.dtype("<u4"))

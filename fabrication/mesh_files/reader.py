@@ -1,5 +1,4 @@
-"""
-Reads mesh files: polygons in the order of the file; the suffix names the format.
+"""Reads mesh files: polygons in the order of the file; the suffix names the format.
 
 The parsers are ours because a face is a panel: trimesh cuts polygons into triangles; meshio
 5.3.5 reads only triangles from OFF, mistakes negative OBJ numbers, fails on ``vertex_index``
@@ -33,8 +32,7 @@ SUFFIXES: Final = (".obj", *_READERS, ".3dm")
 def read_mesh(
     path: str | os.PathLike[str], layer: str = "", n_u: int = 24, n_v: int = 24
 ) -> Mesh:
-    """
-    Read a mesh with faces of mixed degree from an OBJ, OFF, PLY, STL or Rhino .3dm file.
+    """Read a mesh with faces of mixed degree from an OBJ, OFF, PLY, STL or Rhino .3dm file.
 
     Surfaces of a .3dm are read as grids of quads whose vertices lie exactly on them.
 
@@ -82,12 +80,10 @@ def read_mesh(
 
 
 def mesh_suffix(path: Path, verb: str) -> str:
-    """
-    The format of a mesh file.
+    """The format of a mesh file.
 
     Parameters
     ----------
-    path : Path
     verb : str
         What is to be done with it, for the message.
 

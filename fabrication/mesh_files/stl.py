@@ -18,8 +18,7 @@ _RECORD = np.dtype(
 
 
 def read_stl(data: bytes) -> Polygons:
-    """
-    Triangles of an ascii or binary STL file, joined where their corners are equal.
+    """Triangles of an ascii or binary STL file, joined where their corners are equal.
 
     Parameters
     ----------
@@ -85,12 +84,7 @@ def _joined(points: FloatArray, lines: IntArray) -> Polygons:
 
 
 def format_stl(mesh: Mesh) -> bytes:
-    """
-    A mesh as a binary STL file; faces with more than three corners are cut into triangles.
-
-    Parameters
-    ----------
-    mesh : Mesh
+    """A mesh as a binary STL file; faces with more than three corners are cut into triangles.
 
     Returns
     -------

@@ -24,19 +24,12 @@ _FORMATTERS: Final[dict[str, Callable[[Mesh], bytes]]] = {
 
 
 def write_mesh(mesh: Mesh, path: str | os.PathLike[str]) -> Path:
-    """
-    Write a mesh to an OBJ, OFF, PLY, STL or Rhino .3dm file.
+    """Write a mesh to an OBJ, OFF, PLY, STL or Rhino .3dm file.
 
     Parameters
     ----------
-    mesh : Mesh
     path : path
         The suffix names the format. An older file is replaced once the new one is complete.
-
-    Returns
-    -------
-    Path
-        The file.
 
     Raises
     ------

@@ -1,5 +1,4 @@
-"""
-The byte stream of .3dm files (openNURBS): exact Breps and render meshes, written, read, judged.
+"""The byte stream of .3dm files (openNURBS): exact Breps and render meshes.
 
 brep_audit         Judges one-faced Breps from their bytes alone, before they reach a file.
 brep_evaluation    Points of the trims, edges and surfaces of Breps, evaluated from bytes.

@@ -1,5 +1,4 @@
-"""
-Judges one-faced Breps from their bytes alone, before they reach a file.
+"""Judges one-faced Breps from their bytes alone, before they reach a file.
 
 openNURBS calls a Brep valid whose vertex is off by a thousandth, whose surface is shifted or
 whose loop runs backwards. Here the stream (layout: `brep_writer`) is parsed afresh,
@@ -38,8 +37,7 @@ _ROUNDING = 16
 
 @dataclass(frozen=True)
 class BrepErrors:
-    """
-    How far the parts of a Brep of one face lie apart, in model units.
+    """How far the parts of a Brep of one face lie apart, in model units.
 
     Attributes
     ----------
@@ -78,14 +76,7 @@ class BrepErrors:
 
     @property
     def worst(self) -> float:
-        """
-        The largest distance.
-
-        Returns
-        -------
-        float
-            In model units.
-        """
+        """The largest distance: in model units."""
         return max(distance for distance, _ in self._distances())
 
     def _distances(self) -> tuple[tuple[float, str], ...]:
@@ -98,8 +89,7 @@ class BrepErrors:
         )
 
     def reason(self) -> str:
-        """
-        Why the Brep is to be refused.
+        """Why the Brep is to be refused.
 
         Returns
         -------
@@ -123,8 +113,7 @@ def verify_breps(
     spheres: FloatArray | None = None,
     origins: FloatArray | None = None,
 ) -> list[BrepErrors]:
-    """
-    Errors of Breps, measured from their bytes; those of the same layout together.
+    """Errors of Breps, measured from their bytes; those of the same layout together.
 
     Parameters
     ----------
@@ -278,8 +267,7 @@ def _off_bezier(knots: FloatArray) -> BoolArray:
 
 @dataclass(frozen=True)
 class _Samples:
-    """
-    Points of n Breps of one layout with k sides.
+    """Points of n Breps of one layout with k sides.
 
     `vertices` (n, k, 3) in the order of the loop, `edges` (n, k, m, 3), `trims` (n, k, q, 3)
     lifted to the surface, `off_edges` (n, k) largest distances of lifted trims from their

@@ -12,14 +12,12 @@ _SAMPLES = 9
 
 
 def stream_numbers(streams: NDArray[np.uint8], place: int, count: int) -> FloatArray:
-    """
-    Float64 numbers that begin at a place of every stream.
+    """Float64 numbers that begin at a place of every stream.
 
     Parameters
     ----------
     streams : (n, bytes) uint8 array
         Streams of one layout.
-    place, count : int
 
     Returns
     -------
@@ -31,14 +29,12 @@ def stream_numbers(streams: NDArray[np.uint8], place: int, count: int) -> FloatA
 
 
 def trim_points(streams: NDArray[np.uint8], curve: Curve) -> FloatArray:
-    """
-    Points of a trim in (u, v).
+    """Points of a trim in (u, v).
 
     Parameters
     ----------
     streams : (n, bytes) uint8 array
         Streams of one layout.
-    curve : Curve
 
     Returns
     -------
@@ -67,14 +63,12 @@ def _bernstein(t: FloatArray) -> FloatArray:
 
 
 def surface_points(streams: NDArray[np.uint8], surface: Surface, uv: FloatArray) -> FloatArray:
-    """
-    Points of a surface.
+    """Points of a surface.
 
     Parameters
     ----------
     streams : (n, bytes) uint8 array
         Streams of one layout.
-    surface : Surface
     uv : (n, q, 2) float array
 
     Returns
@@ -113,14 +107,12 @@ def _spline_basis(knots: FloatArray, t: FloatArray) -> FloatArray:
 
 
 def edge_points(streams: NDArray[np.uint8], curve: Curve) -> FloatArray:
-    """
-    Points of an edge.
+    """Points of an edge.
 
     Parameters
     ----------
     streams : (n, bytes) uint8 array
         Streams of one layout.
-    curve : Curve
 
     Returns
     -------
@@ -144,14 +136,12 @@ def _circle_points(circle: FloatArray, angles: FloatArray) -> FloatArray:
 def distances_to_edge(
     streams: NDArray[np.uint8], curve: Curve, points: FloatArray
 ) -> FloatArray:
-    """
-    Distances of points from an edge.
+    """Distances of points from an edge.
 
     Parameters
     ----------
     streams : (n, bytes) uint8 array
         Streams of one layout.
-    curve : Curve
     points : (n, q, 3) float array
 
     Returns

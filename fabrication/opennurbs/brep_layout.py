@@ -53,12 +53,10 @@ class FaceMesh(NamedTuple):
 
 @dataclass(frozen=True)
 class BrepLayout:
-    """
-    Where the numbers of a Brep stand.
+    """Where the numbers of a Brep stand.
 
     Attributes
     ----------
-    surface : Surface
     sides : tuple of Side
         The sides in the order of the loop.
     is_reversed : bool

@@ -1,5 +1,4 @@
-"""
-Reads one-faced Breps from their bytes: where their numbers stand.
+"""Reads one-faced Breps from their bytes: where their numbers stand.
 
 The stream is read as openNURBS reads it (layout: `brep_writer`), independently of how
 it was written. Numbers are not looked at here, only found, so that streams of the same layout
@@ -22,8 +21,7 @@ _FILE_HEADER = 32
 
 
 def read_brep_streams(data: bytes) -> list[bytes]:
-    """
-    Streams of the Breps in a .3dm file, in their order.
+    """Streams of the Breps in a .3dm file, in their order.
 
     Parameters
     ----------
@@ -60,8 +58,7 @@ def _chunks(data: bytes, start: int, stop: int) -> Generator[tuple[int, int, int
 
 
 def parse_brep(stream: bytes) -> BrepLayout:
-    """
-    Layout of a Brep of one face and one loop.
+    """Layout of a Brep of one face and one loop.
 
     Parameters
     ----------

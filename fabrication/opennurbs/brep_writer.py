@@ -1,5 +1,4 @@
-"""
-Writes the outer faces of panels as openNURBS Breps: exact trimmed spheres, byte by byte.
+"""Writes the outer faces of panels as openNURBS Breps: exact trimmed spheres, byte by byte.
 
 rhino3dm can read any Brep but builds only simple ones; it decodes the streams made here. The
 layout is that of openNURBS, which is public (`opennurbs_3dm.h` for type codes,
@@ -54,8 +53,7 @@ from .stream_writer import (
 
 
 def brep_streams(panels: Panels, meshes: RenderMeshes | None = None) -> list[bytes]:
-    """
-    Outer faces of panels, each as the stream of one `ON_Brep`.
+    """Outer faces of panels, each as the stream of one `ON_Brep`.
 
     Parameters
     ----------
@@ -98,8 +96,7 @@ def brep_streams(panels: Panels, meshes: RenderMeshes | None = None) -> list[byt
 
 
 def face_streams(panels: Panels) -> tuple[list[bytes], list[bytes]]:
-    """
-    Surfaces and trims of the outer faces, to be joined.
+    """Surfaces and trims of the outer faces, to be joined.
 
     Parameters
     ----------
@@ -140,8 +137,7 @@ def _groups(
 
 
 def edge_streams(panels: Panels) -> list[bytes]:
-    """
-    Edges of the outer faces, each as the stream of an `ON_ArcCurve` or `ON_LineCurve`.
+    """Edges of the outer faces, each as the stream of an `ON_ArcCurve` or `ON_LineCurve`.
 
     Parameters
     ----------

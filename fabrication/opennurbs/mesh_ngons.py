@@ -1,5 +1,4 @@
-"""
-Meshes with ngons in the stream of `ON_Mesh`: rhino3dm gives no other access to ngons.
+"""Meshes with ngons in the stream of `ON_Mesh`: rhino3dm gives no other access to ngons.
 
 Follows `ON_Mesh::Read` and `ON_Mesh::Write` (`opennurbs_mesh.cpp`).
 """
@@ -21,8 +20,7 @@ _CLASS_DATA_START = 44
 
 
 class MeshContent(NamedTuple):
-    """
-    What a mesh of openNURBS holds.
+    """What a mesh of openNURBS holds.
 
     Attributes
     ----------
@@ -40,18 +38,12 @@ class MeshContent(NamedTuple):
 
 
 def read_mesh_object(encoded: bytes) -> MeshContent:
-    """
-    Vertices, faces and ngons of a mesh.
+    """Vertices, faces and ngons of a mesh.
 
     Parameters
     ----------
     encoded : bytes
         An `ON_Mesh`, as openNURBS encodes it.
-
-    Returns
-    -------
-    MeshContent
-        Read from its bytes.
     """
     stream = BytesIO(_class_data(encoded))
     vertices, faces = _read_to_ngons(stream)
@@ -63,8 +55,7 @@ def read_mesh_object(encoded: bytes) -> MeshContent:
 
 
 def insert_ngons(encoded: bytes, ngons: Sequence[Sequence[int]]) -> bytes:
-    """
-    Give a mesh ngons.
+    """Give a mesh ngons.
 
     Parameters
     ----------

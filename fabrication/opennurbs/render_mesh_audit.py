@@ -13,8 +13,7 @@ from .stream_reader import BufferPlace, inflated
 def audit_render_meshes(
     streams: NDArray[np.uint8], mesh: FaceMesh, rows: FloatArray, origins: FloatArray
 ) -> tuple[FloatArray, list[tuple[str, BoolArray]]]:
-    """
-    How far the vertices of render meshes lie from their spheres, and what else is wrong.
+    """How far the vertices of render meshes lie from their spheres, and what else is wrong.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Render meshes of panels and beams as openNURBS objects, for viewers that cannot mesh solids.
+"""Render meshes of panels and beams as openNURBS objects, for viewers that cannot mesh solids.
 
 They are written into the streams of Breps and extrusions: the setters of rhino3dm crash it at
 exit. Layout of `ON_Mesh` 3.8 (`opennurbs_mesh.cpp`): ii counts of vertices and faces, domains
@@ -50,8 +49,7 @@ _IDENTITY = doubles(*np.eye(4).ravel().tolist())
 
 @dataclass(frozen=True)
 class RenderMeshes:
-    """
-    Triangles of panels or beams, those of the same triangulation together.
+    """Triangles of panels or beams, those of the same triangulation together.
 
     Attributes
     ----------
@@ -79,12 +77,10 @@ class RenderMeshes:
 
 
 def panel_meshes(panels: Panels, tolerance: float) -> RenderMeshes:
-    """
-    Triangulate the outer faces of panels.
+    """Triangulate the outer faces of panels.
 
     Parameters
     ----------
-    panels : Panels
     tolerance : float
         Largest distance of a triangle from its sphere, relative to the radius of the panel.
 
@@ -113,8 +109,7 @@ def panel_meshes(panels: Panels, tolerance: float) -> RenderMeshes:
 
 
 def gather_meshes(groups: Sequence[BeamTriangles], error: float) -> RenderMeshes:
-    """
-    Triangulated beams or cylinders as render meshes.
+    """Triangulated beams or cylinders as render meshes.
 
     Parameters
     ----------
@@ -150,12 +145,10 @@ def _needs_doubles(points: FloatArray, error: float) -> bool:
 
 
 def mesh_numbers(meshes: RenderMeshes, members: IntArray) -> dict[str, FloatArray]:
-    """
-    Numbers that fill the slots of `mesh_object`.
+    """Numbers that fill the slots of `mesh_object`.
 
     Parameters
     ----------
-    meshes : RenderMeshes
     members : (n,) int array
         Pieces of one triangulation.
 
@@ -170,12 +163,10 @@ def mesh_numbers(meshes: RenderMeshes, members: IntArray) -> dict[str, FloatArra
 
 
 def mesh_object(meshes: RenderMeshes, kind: int) -> Chunk:
-    """
-    An `ON_Mesh` whose vertices and normals are still to be filled in.
+    """An `ON_Mesh` whose vertices and normals are still to be filled in.
 
     Parameters
     ----------
-    meshes : RenderMeshes
     kind : int
         Which of the triangulations; it uses all of its vertices.
 
@@ -208,8 +199,7 @@ def _n_points(triangles: IntArray) -> int:
 
 
 def mesh_streams(meshes: RenderMeshes) -> list[bytes]:
-    """
-    Each mesh as the stream of an `ON_Mesh`.
+    """Each mesh as the stream of an `ON_Mesh`.
 
     Parameters
     ----------
@@ -235,8 +225,7 @@ def _filled(meshes: RenderMeshes, wrap: Callable[[Chunk], Chunk]) -> list[bytes]
 
 
 def extrusions_with_meshes(extrusions: Sequence[bytes], meshes: RenderMeshes) -> list[bytes]:
-    """
-    Put render meshes into extrusions.
+    """Put render meshes into extrusions.
 
     Parameters
     ----------

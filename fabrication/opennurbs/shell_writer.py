@@ -1,5 +1,4 @@
-"""
-Writes all panels joined into one Brep: neighbours share their edges and vertices.
+"""Writes all panels joined into one Brep: neighbours share their edges and vertices.
 
 Records are those of one-faced Breps (`brep_writer`). An edge is the arc of the first
 of its two panels; how far the other one misses it is the tolerance of the edge.
@@ -34,8 +33,7 @@ class Shell(NamedTuple):
 
 @dataclass(frozen=True)
 class _Joints:
-    """
-    What H corners of panels share.
+    """What H corners of panels share.
 
     `edges` (H,) edge of the side that leaves each corner, `firsts` (E,) the corner whose arc
     the edge is, `is_reversed` (H,) whether the side runs against it, `edge_gaps` (E,), `ends`
@@ -55,8 +53,7 @@ class _Joints:
 
 
 def join_panels(panels: Panels, largest_gap: float, meshes: RenderMeshes | None) -> Shell:
-    """
-    Outer faces of panels as one `ON_Brep`.
+    """Outer faces of panels as one `ON_Brep`.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Spherical panels as exact rational patches and trims, in stereographic charts.
+"""Spherical panels as exact rational patches and trims, in stereographic charts.
 
 A sphere of row (A, B, C), seen from its point o with normal N, is the image of
 
@@ -29,8 +28,7 @@ _ONE_SPAN_WEIGHT = 0.25
 
 @dataclass(frozen=True)
 class PanelCharts:
-    """
-    Panels of one degree k in their stereographic charts, P of them.
+    """Panels of one degree k in their stereographic charts, P of them.
 
     `frames` holds e1, e2, N as rows; `uv` the corners, `bulges` the tangents of a quarter of
     the sweep of the trims, positive where they turn left; `reaches` how far patches extend to
@@ -48,12 +46,10 @@ class PanelCharts:
 
 
 def panel_charts(panels: Panels, arcs: Arcs, ids: IntArray) -> PanelCharts:
-    """
-    Stereographic charts of panels of the same degree.
+    """Stereographic charts of panels of the same degree.
 
     Parameters
     ----------
-    panels : Panels
     arcs : Arcs
         Their outer edges.
     ids : (n,) int array
@@ -90,8 +86,7 @@ def panel_charts(panels: Panels, arcs: Arcs, ids: IntArray) -> PanelCharts:
 
 
 def _turned(frames: FloatArray, uv: FloatArray) -> FloatArray:
-    """
-    Frames turned about N so that no trim runs along u or v.
+    """Frames turned about N so that no trim runs along u or v.
 
     openNURBS wants such trims flagged, by a tolerance of its own. The first of 1, 2, ...
     degrees is taken that keeps all chords of the trims clear of the axes.
@@ -114,29 +109,17 @@ def _project_chart(curvatures: FloatArray, frames: FloatArray, x: FloatArray) ->
 
 
 def select_charts(charts: PanelCharts, chosen: BoolArray) -> PanelCharts:
-    """
-    Some of the charts.
+    """Some of the charts.
 
     Parameters
     ----------
-    charts : PanelCharts
     chosen : (P,) bool array
-
-    Returns
-    -------
-    PanelCharts
-        Those chosen.
     """
     return PanelCharts(*(values[chosen] for values in vars(charts).values()))
 
 
 def span_counts(charts: PanelCharts) -> IntArray:
-    """
-    Bézier spans of the trims and, each way, of the patch.
-
-    Parameters
-    ----------
-    charts : PanelCharts
+    """Bézier spans of the trims and, each way, of the patch.
 
     Returns
     -------
@@ -150,16 +133,10 @@ def span_counts(charts: PanelCharts) -> IntArray:
 
 
 def trim_control_points(charts: PanelCharts, spans: int) -> FloatArray:
-    """
-    Homogeneous control points of the trims over [-1, 1].
+    """Homogeneous control points of the trims over [-1, 1].
 
     The arc ``(h τ (1 + b²), h b (1 - τ²)) / (1 + b² τ²)`` over its chord, see
     `kernel.spheres.arcs`; a control point is its polar form at two consecutive knots.
-
-    Parameters
-    ----------
-    charts : PanelCharts
-    spans : int
 
     Returns
     -------
@@ -184,12 +161,10 @@ def trim_control_points(charts: PanelCharts, spans: int) -> FloatArray:
 
 
 def patch_control_points(charts: PanelCharts, knots: FloatArray) -> FloatArray:
-    """
-    Homogeneous control points of the patches.
+    """Homogeneous control points of the patches.
 
     Parameters
     ----------
-    charts : PanelCharts
     knots : (P, 2, n + 1) float array
         Knots in u and v, without the first and last knot of other notations.
 

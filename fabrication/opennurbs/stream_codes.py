@@ -1,5 +1,4 @@
-"""
-Codes of the openNURBS byte stream: types of chunks, ids of classes, checksums.
+"""Codes of the openNURBS byte stream: types of chunks, ids of classes, checksums.
 
 All numbers are little-endian: i = int32, q = int64, d = float64. A chunk is
 ``i type, q length`` and a body of that length. Where bit 15 of the type is set, the body ends
@@ -42,8 +41,7 @@ OUTER_LOOP: Final = 1
 
 
 class Checksum(NamedTuple):
-    """
-    Place of a CRC-32 in a stream and the ranges (start, stop) of bytes that it covers.
+    """Place of a CRC-32 in a stream and the ranges (start, stop) of bytes that it covers.
 
     Attributes
     ----------
@@ -57,18 +55,7 @@ class Checksum(NamedTuple):
     ranges: tuple[tuple[int, int], ...]
 
     def compute(self, stream: memoryview) -> int:
-        """
-        CRC-32 of the ranges, one after the other.
-
-        Parameters
-        ----------
-        stream : memoryview
-
-        Returns
-        -------
-        int
-            What the four bytes should say.
-        """
+        """CRC-32 of the ranges, one after the other: what the four bytes should say."""
         value = 0
         for start, stop in self.ranges:
             value = zlib.crc32(stream[start:stop], value)

@@ -22,15 +22,10 @@ class BufferPlace(NamedTuple):
 
 
 class StreamReader:
-    """
-    Reads a stream from front to back.
+    """Reads a stream from front to back.
 
     Every method that reads raises `UnreadableError` where the stream ends too early or holds
     something else.
-
-    Parameters
-    ----------
-    data : bytes
 
     Attributes
     ----------
@@ -52,18 +47,7 @@ class StreamReader:
         self.numbers: list[tuple[int, int]] = []
 
     def take(self, count: int) -> int:
-        """
-        Pass bytes.
-
-        Parameters
-        ----------
-        count : int
-
-        Returns
-        -------
-        int
-            Where they begin.
-        """
+        """Pass bytes: where they begin."""
         start = self.position
         if not 0 <= count <= self.limit - start:
             raise UnreadableError(f"the stream is cut short at byte {start}")
@@ -71,55 +55,24 @@ class StreamReader:
         return start
 
     def ints(self, count: int) -> tuple[int, ...]:
-        """
-        Read int32 numbers.
-
-        Parameters
-        ----------
-        count : int
-
-        Returns
-        -------
-        tuple of int
-            The numbers.
-        """
+        """Read int32 numbers."""
         return struct.unpack_from(f"<{count}i", self.data, self.take(4 * count))
 
     def doubles(self, count: int) -> int:
-        """
-        Pass float64 numbers.
-
-        Parameters
-        ----------
-        count : int
-
-        Returns
-        -------
-        int
-            Where they begin.
-        """
+        """Pass float64 numbers: where they begin."""
         start = self.take(8 * count)
         self.numbers.append((start, count))
         return start
 
     def counted_ints(self) -> tuple[int, ...]:
-        """
-        Read int32 numbers that follow their count.
-
-        Returns
-        -------
-        tuple of int
-            The numbers.
-        """
+        """Read int32 numbers that follow their count."""
         return self.ints(self.ints(1)[0])
 
     def expect(self, expected: bytes, name: str) -> None:
-        """
-        Pass known bytes.
+        """Pass known bytes.
 
         Parameters
         ----------
-        expected : bytes
         name : str
             What they are, for the message.
         """
@@ -129,13 +82,7 @@ class StreamReader:
 
     @contextmanager
     def chunk(self, typecode: int) -> Generator[None]:
-        """
-        Read a chunk; the block must consume its body.
-
-        Parameters
-        ----------
-        typecode : int
-            What it must be.
+        """Read a chunk; the block must consume its body.
 
         Yields
         ------
@@ -164,8 +111,7 @@ class StreamReader:
 
     @contextmanager
     def object(self) -> Generator[bytes]:
-        """
-        Read an object; the block must consume it.
+        """Read an object; the block must consume it.
 
         Yields
         ------
@@ -181,8 +127,7 @@ class StreamReader:
 
     @contextmanager
     def table(self, minor: int = 0) -> Generator[int]:
-        """
-        Read a table of records; the block must consume them.
+        """Read a table of records; the block must consume them.
 
         Parameters
         ----------
@@ -201,8 +146,7 @@ class StreamReader:
             yield self.ints(1)[0]
 
     def buffer(self, size: int) -> BufferPlace:
-        """
-        Pass a buffer.
+        """Pass a buffer.
 
         Parameters
         ----------
@@ -236,19 +180,7 @@ class StreamReader:
 
 
 def inflated(data: bytes, buffer: BufferPlace) -> bytes:
-    """
-    Content of a deflated buffer.
-
-    Parameters
-    ----------
-    data : bytes
-    buffer : BufferPlace
-
-    Returns
-    -------
-    bytes
-        The content; empty if the bytes are damaged.
-    """
+    """Content of a deflated buffer: the content; empty if the bytes are damaged."""
     try:
         return zlib.decompress(data[buffer.start : buffer.stop])
     except zlib.error:

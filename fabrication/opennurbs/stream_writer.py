@@ -1,5 +1,4 @@
-"""
-Writes the byte stream of openNURBS objects: laid out once, filled for many objects.
+"""Writes the byte stream of openNURBS objects: laid out once, filled for many objects.
 
 A stream is built of pieces (constant bytes, numbers to be filled in, chunks, buffers), which
 are laid out as a template with the places of its numbers and checksums.
@@ -90,12 +89,10 @@ def _shifted(checksum: codes.Checksum, by: int) -> codes.Checksum:
 
 
 def fill(piece: Piece, numbers: Mapping[str, NDArray[Any]]) -> Iterator[bytes]:
-    """
-    Streams of one layout.
+    """Streams of one layout.
 
     Parameters
     ----------
-    piece : bytes, Slot, Chunk or PlainBuffer
     numbers : mapping of str to (n, count of slots, ...) array
         Numbers of the slots, one row per stream; more than a slot takes are left out.
 
@@ -121,68 +118,27 @@ def fill(piece: Piece, numbers: Mapping[str, NDArray[Any]]) -> Iterator[bytes]:
 
 
 def encode(piece: Piece) -> bytes:
-    """
-    The stream of a piece without slots.
-
-    Parameters
-    ----------
-    piece : bytes, Chunk or PlainBuffer
-
-    Returns
-    -------
-    bytes
-        One stream.
-    """
+    """The stream of a piece without slots."""
     return next(fill(piece, {"": np.zeros((1, 0))}))
 
 
 def ints(*values: int) -> bytes:
-    """
-    Bytes of int32 numbers.
-
-    Parameters
-    ----------
-    *values : int
-
-    Returns
-    -------
-    bytes
-        Four each.
-    """
+    """Bytes of int32 numbers."""
     return struct.pack(f"<{len(values)}i", *values)
 
 
 def doubles(*values: float) -> bytes:
-    """
-    Bytes of float64 numbers.
-
-    Parameters
-    ----------
-    *values : float
-
-    Returns
-    -------
-    bytes
-        Eight each.
-    """
+    """Bytes of float64 numbers."""
     return struct.pack(f"<{len(values)}d", *values)
 
 
 def class_object(uuid: bytes, *body: Piece) -> Chunk:
-    """
-    An object of a class.
+    """An object of a class.
 
     Parameters
     ----------
     uuid : bytes
         Id of the class.
-    *body : bytes, Slot, Chunk or PlainBuffer
-        What the class writes.
-
-    Returns
-    -------
-    Chunk
-        The object.
     """
     name = Chunk(codes.CLASS_UUID, (uuid,))
     end = codes.CHUNK_HEADER.pack(codes.CLASS_END, 0)
@@ -190,19 +146,13 @@ def class_object(uuid: bytes, *body: Piece) -> Chunk:
 
 
 def table(minor: int, records: Sequence[tuple[Piece, ...]]) -> Chunk:
-    """
-    Counted records.
+    """Counted records.
 
     Parameters
     ----------
     minor : int
         Version 1.`minor` of the table.
     records : sequence of tuple of pieces
-
-    Returns
-    -------
-    Chunk
-        An anonymous chunk.
     """
     pieces = (piece for record in records for piece in record)
     return Chunk(codes.ANONYMOUS, (bytes([16 + minor]), ints(len(records)), *pieces))

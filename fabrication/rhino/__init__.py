@@ -1,5 +1,4 @@
-"""
-Rhino .3dm files: writing a model, and reading meshes and surfaces.
+"""Rhino .3dm files: writing a model, and reading meshes and surfaces.
 
 beam_writer     Writes beams: capped extrusions of their contours, drilling marks, nodes.
 block_writer    Writes blocks: one piece of geometry, set into the model many times.

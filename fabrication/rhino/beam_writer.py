@@ -1,5 +1,4 @@
-"""
-Writes beams into a Rhino model: capped extrusions of their contours, drilling marks, nodes.
+"""Writes beams into a Rhino model: capped extrusions of their contours, drilling marks, nodes.
 
 An extrusion is what a flat piece is before its ends are mitred: the contour in the middle of
 the thickness, whose ends lie on the node axes. The mitres are in the STEP file. Nodes are lines
@@ -35,16 +34,13 @@ from .model import RhinoModel, Untyped, add_layer, object_attributes
 
 
 def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: bool) -> None:
-    """
-    Add beams and their nodes.
+    """Add beams and their nodes.
 
     Beams lie on the layer ``Beams``, the node axes on the layer ``Axes``; where there are any,
     node cylinders on the layer ``Nodes`` and drilling marks on the layer ``Drilling``.
 
     Parameters
     ----------
-    model : RhinoModel
-    beams : Beams
     units : str
         Model units.
     render_meshes : bool
@@ -126,12 +122,10 @@ def _beam_extrusions(library: Untyped, beams: Beams) -> list[Untyped]:
 def with_meshes(
     model: RhinoModel, solids: list[Untyped], meshes: RenderMeshes
 ) -> list[Untyped]:
-    """
-    Extrusions with render meshes, through their streams: the setter crashes at exit.
+    """Extrusions with render meshes, through their streams: the setter crashes at exit.
 
     Parameters
     ----------
-    model : RhinoModel
     solids : list of rhino3dm.Extrusion
     meshes : RenderMeshes
         The triangles of each.

@@ -1,5 +1,4 @@
-"""
-Writes blocks into a Rhino model: one piece of geometry, set into the model many times.
+"""Writes blocks into a Rhino model: one piece of geometry, set into the model many times.
 
 rhino3dm gives definitions random ids; their streams are written here (`ON_InstanceDefinition`,
 `opennurbs_instance.cpp`), so that a file of the same panels has the same ids.
@@ -30,14 +29,10 @@ _STATIC = 1
 def add_definition(
     model: RhinoModel, name: str, definition: UUID, geometry: Untyped, attributes: Untyped
 ) -> None:
-    """
-    Add a block of one object.
+    """Add a block of one object.
 
     Parameters
     ----------
-    model : RhinoModel
-    name : str
-    definition : UUID
     geometry : CommonObject
         The object, in the coordinates of the block.
     attributes : ObjectAttributes
@@ -73,19 +68,16 @@ def add_instance(
     translation: FloatArray,
     attributes: Untyped,
 ) -> None:
-    """
-    Set a block into the model.
+    """Set a block into the model.
 
     Parameters
     ----------
-    model : RhinoModel
     definition : UUID
         Id of the block.
     rotation : (3, 3) float array
         How the block is turned.
     translation : (3,) float array
         Where its origin goes.
-    attributes : ObjectAttributes
     """
     transform = model.library.Transform(1.0)
     for i in range(3):
@@ -97,12 +89,10 @@ def add_instance(
 
 
 def add_mould_blocks(model: RhinoModel, panels: Panels, *, render_meshes: bool) -> list[str]:
-    """
-    Add a block for every mould, and set it under each of its panels.
+    """Add a block for every mould, and set it under each of its panels.
 
     Parameters
     ----------
-    model : RhinoModel
     panels : Panels
         With and without moulds.
     render_meshes : bool

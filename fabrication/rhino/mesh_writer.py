@@ -16,12 +16,10 @@ from .object_reader import RhinoObject
 
 
 def write_mesh_3dm(mesh: Mesh, path: Path) -> None:
-    """
-    Write a mesh into a .3dm file; faces with more than four corners become ngons.
+    """Write a mesh into a .3dm file; faces with more than four corners become ngons.
 
     Parameters
     ----------
-    mesh : Mesh
     path : Path
         It has float64 vertices, one layer and no units.
 
@@ -44,8 +42,7 @@ def write_mesh_3dm(mesh: Mesh, path: Path) -> None:
 
 
 def to_rhino_mesh(mesh: Mesh) -> RhinoObject:
-    """
-    A mesh as an object of rhino3dm.
+    """A mesh as an object of rhino3dm.
 
     Parameters
     ----------

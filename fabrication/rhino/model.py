@@ -48,8 +48,7 @@ class ModelLayer(NamedTuple):
 
 
 def model_tolerance(units: str) -> float:
-    """
-    Absolute tolerance of the models written.
+    """Absolute tolerance of the models written.
 
     Parameters
     ----------
@@ -65,8 +64,7 @@ def model_tolerance(units: str) -> float:
 
 
 def new_model(units: str) -> RhinoModel:
-    """
-    An empty model.
+    """An empty model.
 
     Parameters
     ----------
@@ -103,12 +101,10 @@ def _decoder(library: Untyped) -> Callable[[bytes], Untyped]:
 
 
 def encode_model(model: RhinoModel, version: int) -> bytes:
-    """
-    The model as a file.
+    """The model as a file.
 
     Parameters
     ----------
-    model : RhinoModel
     version : int
         Of Rhino.
 
@@ -124,12 +120,7 @@ def encode_model(model: RhinoModel, version: int) -> bytes:
 
 
 def count_objects(model: RhinoModel) -> dict[str, int]:
-    """
-    How many objects of each kind a model holds.
-
-    Parameters
-    ----------
-    model : RhinoModel
+    """How many objects of each kind a model holds.
 
     Returns
     -------
@@ -140,15 +131,12 @@ def count_objects(model: RhinoModel) -> dict[str, int]:
 
 
 def object_id(name: str, role: str) -> UUID:
-    """
-    An id that is the same in every run.
+    """An id that is the same in every run.
 
     Parameters
     ----------
     name : str
         Panel, layer or material.
-    role : str
-        What it is there.
 
     Returns
     -------
@@ -167,14 +155,10 @@ def add_layer(
     has_material: bool = False,
     visible: bool = True,
 ) -> ModelLayer:
-    """
-    Add a layer.
+    """Add a layer.
 
     Parameters
     ----------
-    model : RhinoModel
-    name : str
-    color : Color
     parent : ModelLayer, optional
         The layer that it lies under.
     has_material : bool
@@ -208,19 +192,7 @@ def add_layer(
 
 
 def add_group(model: RhinoModel, name: str) -> int:
-    """
-    Add a group.
-
-    Parameters
-    ----------
-    model : RhinoModel
-    name : str
-
-    Returns
-    -------
-    int
-        Its index.
-    """
+    """Add a group."""
     group = model.library.Group()
     group.Name = name
     group.Id = object_id(name, "group")
@@ -229,12 +201,10 @@ def add_group(model: RhinoModel, name: str) -> int:
 
 
 def object_attributes(model: RhinoModel, name: str, role: str, place: ModelLayer) -> Untyped:
-    """
-    Attributes with a stable id: the colour of the layer, and its material if it has one.
+    """Attributes with a stable id: the colour of the layer, and its material if it has one.
 
     Parameters
     ----------
-    model : RhinoModel
     name : str
         Name of the object, such as the id of its panel.
     role : str
@@ -259,12 +229,10 @@ def object_attributes(model: RhinoModel, name: str, role: str, place: ModelLayer
 
 
 def add_views(model: RhinoModel, points: FloatArray) -> None:
-    """
-    Add the named views Top and Perspective, which show all points.
+    """Add the named views Top and Perspective, which show all points.
 
     Parameters
     ----------
-    model : RhinoModel
     points : (n, 3) float array
         At least one point, in model coordinates.
     """

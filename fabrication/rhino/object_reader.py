@@ -20,12 +20,10 @@ class PlacedObject(NamedTuple):
 
 
 def placed_objects(model: RhinoObject, layer: str) -> list[PlacedObject]:
-    """
-    Objects on a layer, in the order of the file; instances of blocks as what they show.
+    """Objects on a layer, in the order of the file; instances of blocks as what they show.
 
     Parameters
     ----------
-    model : rhino3dm.File3dm
     layer : str
         Full path of a layer: only what is on it and on its sublayers; empty for all. Objects
         in a block count where they are themselves, and where the instance is.

@@ -1,5 +1,4 @@
-"""
-Writes panels into a Rhino model: exact trimmed spheres, edges as arcs, and user text.
+"""Writes panels into a Rhino model: exact trimmed spheres, edges as arcs, and user text.
 
 The Breps are written and judged by `fabrication.opennurbs` before they are added. Their render
 meshes are part of their streams: the setters for them crash rhino3dm at exit.
@@ -51,13 +50,10 @@ def add_panels(
     *,
     render_meshes: bool,
 ) -> tuple[tuple[RejectedPart, ...], list[str]]:
-    """
-    Add panels to a Rhino model: exact trimmed spheres, and what a workshop must know.
+    """Add panels to a Rhino model: exact trimmed spheres, and what a workshop must know.
 
     Parameters
     ----------
-    model : RhinoModel
-    panels : Panels
     units : str
         Model units.
     shape : {"panels", "blocks", "shell"}

@@ -25,8 +25,7 @@ _GRID = GridSize(24, 24)
 
 
 def read_3dm(data: bytes, layer: str = "", size: GridSize = _GRID) -> Polygons:
-    """
-    Polygons of all the meshes in a .3dm file, joined; without meshes, grids on its surfaces.
+    """Polygons of all the meshes in a .3dm file, joined; without meshes, grids on its surfaces.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Reads surfaces and polysurfaces of a Rhino file as grids of quads with exact positions.
+"""Reads surfaces and polysurfaces of a Rhino file as grids of quads with exact positions.
 
 A face that is a whole surface is sampled over its domain. A face trimmed by four edges is
 sampled over the rectangle that they span in (u, v), by Coons; one trimmed by more or fewer is
@@ -30,18 +29,12 @@ class GridSize(NamedTuple):
 
 
 def nurbs_surface(surface: RhinoObject) -> NurbsSurface:
-    """
-    A surface of rhino3dm as a record of the kernel, for exact points and curvatures.
+    """A surface of rhino3dm as a record of the kernel, for exact points and curvatures.
 
     Parameters
     ----------
     surface : rhino3dm.Surface
         A surface of any kind.
-
-    Returns
-    -------
-    NurbsSurface
-        Its NURBS form.
 
     Raises
     ------
@@ -66,14 +59,12 @@ def nurbs_surface(surface: RhinoObject) -> NurbsSurface:
 
 
 def sample_object(geometry: RhinoObject, size: GridSize) -> list[Polygons]:
-    """
-    Quads on a surface, polysurface or extrusion.
+    """Quads on a surface, polysurface or extrusion.
 
     Parameters
     ----------
     geometry : rhino3dm.GeometryBase
         An object of one of the classes `SURFACES`.
-    size : GridSize
 
     Returns
     -------
@@ -161,12 +152,10 @@ def _edge_points(curve: RhinoObject, steps: int) -> FloatArray:
 
 
 def off_seams(surface: NurbsSurface, sides: list[FloatArray]) -> list[FloatArray]:
-    """
-    Sides along the seam of a closed surface, on that end of its domain where the face is.
+    """Sides along the seam of a closed surface, on that end of its domain where the face is.
 
     Parameters
     ----------
-    surface : NurbsSurface
     sides : list of (m, 2) float array
         Points in (u, v); those on the seam may be at either end of the domain.
 

@@ -43,8 +43,7 @@ _NOTE = (
 
 @dataclass(frozen=True)
 class RhinoOptions:
-    """
-    What a Rhino file holds, and how.
+    """What a Rhino file holds, and how.
 
     Attributes
     ----------
@@ -80,8 +79,7 @@ _PANELS_AND_EDGES: Final = RhinoOptions()
 def write_3dm(
     model: Model, path: str | os.PathLike[str], options: RhinoOptions = _PANELS_AND_EDGES
 ) -> Written:
-    """
-    Write panels and beams to a Rhino file.
+    """Write panels and beams to a Rhino file.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Lists of parts with all that a workshop asks for, in millimetres.
+"""Lists of parts with all that a workshop asks for, in millimetres.
 
 beams       Rows of the schedule for beams and their nodes.
 panel_text  What a workshop must know of each panel, as user text of a Rhino object.

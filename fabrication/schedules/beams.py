@@ -1,5 +1,4 @@
-"""
-Rows of the schedule for beams and their nodes, with all that a workshop asks for.
+"""Rows of the schedule for beams and their nodes, with all that a workshop asks for.
 
 In millimetres and degrees. The same ids stand in STEP, Rhino, drawings and report files.
 """
@@ -18,13 +17,7 @@ from ..units import CUBIC_METER
 
 
 def beam_tables(beams: Beams, units: str) -> dict[str, list[dict[str, Any]]]:
-    """
-    What the schedule says of beams and node cylinders, as plain values.
-
-    Parameters
-    ----------
-    beams : Beams
-    units : str
+    """What the schedule says of beams and node cylinders, as plain values.
 
     Returns
     -------

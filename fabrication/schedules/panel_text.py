@@ -17,12 +17,10 @@ TEXT_KEYS: Final = (
 
 
 def panel_text(panels: Panels, units: str) -> list[dict[str, str]]:
-    """
-    User text of panels: what a workshop needs without measuring.
+    """User text of panels: what a workshop needs without measuring.
 
     Parameters
     ----------
-    panels : Panels
     units : str
         Model units.
 

@@ -1,5 +1,4 @@
-"""
-Rows of the schedule for panels and moulds, with all that a workshop asks for.
+"""Rows of the schedule for panels and moulds, with all that a workshop asks for.
 
 In millimetres and degrees, coordinates those of the model. The same ids stand in STEP, Rhino,
 drawings and report files.
@@ -20,13 +19,7 @@ from ..units import CUBIC_METER, SQUARE_METER
 
 
 def panel_tables(panels: Panels, units: str) -> dict[str, list[dict[str, Any]]]:
-    """
-    What the schedule says of panels and their moulds, as plain values.
-
-    Parameters
-    ----------
-    panels : Panels
-    units : str
+    """What the schedule says of panels and their moulds, as plain values.
 
     Returns
     -------

@@ -14,8 +14,7 @@ from .panels import panel_tables
 
 
 def write_schedule(model: Model, path: str | os.PathLike[str]) -> Written:
-    """
-    Write the schedule as a table or as JSON, by the suffix of the path.
+    """Write the schedule as a table or as JSON, by the suffix of the path.
 
     Parameters
     ----------
@@ -26,11 +25,6 @@ def write_schedule(model: Model, path: str | os.PathLike[str]) -> Written:
         expect; lists are separated by blanks, points by semicolons), ``.xlsx`` (sheets of
         panels and moulds, of beams and nodes, the lists as in CSV) or ``.json`` (the lists
         ``panels`` and ``moulds``, ``beams`` and ``nodes``).
-
-    Returns
-    -------
-    Written
-        The file.
 
     Raises
     ------

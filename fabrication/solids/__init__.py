@@ -1,5 +1,4 @@
-"""
-Solids of panels and beams: their geometry in numbers, and as objects of CAD kernels.
+"""Solids of panels and beams: their geometry in numbers, and as objects of CAD kernels.
 
 beam_geometry       Corners, faces, circles and cuts of beams, for OpenCASCADE and STEP alike.
 cadquery_assembly   Panels and beams as assemblies of CadQuery.

@@ -17,13 +17,10 @@ LEVELS = ((0, 1), (1, 2), (0, 2))
 
 @dataclass(frozen=True)
 class BeamGeometry:
-    """
-    Solids of beams, about their rounded origins.
+    """Solids of beams, about their rounded origins.
 
     Attributes
     ----------
-    beams : Beams
-        B beams.
     places : (B, 3) float array
         Where their solids stand.
     corners : (B, 2, 2, 3, 3) float array
@@ -60,19 +57,12 @@ class BeamGeometry:
 
 
 def beam_geometry(beams: Beams, confusion: float = CONFUSION) -> BeamGeometry:
-    """
-    Geometry of the solids of beams.
+    """Geometry of the solids of beams.
 
     Parameters
     ----------
-    beams : Beams
     confusion : float
         Least tolerance, in the unit of the beams.
-
-    Returns
-    -------
-    BeamGeometry
-        About rounded origins.
 
     Raises
     ------

@@ -15,12 +15,10 @@ if TYPE_CHECKING:
 
 
 def beams_to_cadquery(beams: Beams, units: str = "m") -> "cadquery.Assembly":
-    """
-    Beams as a CadQuery assembly in millimetres.
+    """Beams as a CadQuery assembly in millimetres.
 
     Parameters
     ----------
-    beams : Beams
     units : str
         Unit of the model: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
 
@@ -48,12 +46,10 @@ def beams_to_cadquery(beams: Beams, units: str = "m") -> "cadquery.Assembly":
 
 
 def to_cadquery(panels: Panels, units: str = "m") -> "cadquery.Assembly":
-    """
-    Panels as a CadQuery assembly in millimetres.
+    """Panels as a CadQuery assembly in millimetres.
 
     Parameters
     ----------
-    panels : Panels
     units : str
         Unit of the model: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
 

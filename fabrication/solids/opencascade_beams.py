@@ -1,5 +1,4 @@
-"""
-Beams as solids of OpenCASCADE: planes, cylinders, lines, circles and ellipses, all exact.
+"""Beams as solids of OpenCASCADE: planes, cylinders, lines, circles and ellipses, all exact.
 
 A beam has two plane sides, an outer and an inner face - cylinders, or planes where the arcs
 are straight - and one or two plane faces at each end. A plane cuts a cylinder in an ellipse, or
@@ -76,12 +75,10 @@ class _Block:
 
 
 def beam_shapes(beams: Beams, scale: float = 1.0) -> list[TopoDS_Shape]:
-    """
-    A closed solid per beam.
+    """A closed solid per beam.
 
     Parameters
     ----------
-    beams : Beams
     scale : float
         Units of the shapes per model unit; OpenCASCADE's tolerances suit millimetres.
 

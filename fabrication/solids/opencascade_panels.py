@@ -1,5 +1,4 @@
-"""
-Panels as shapes of the CAD kernel OpenCASCADE: spheres, planes, circles and lines, all exact.
+"""Panels as shapes of OpenCASCADE: spheres, planes, circles and lines, all exact.
 
 Vertices, edges and faces are built directly and shared, so nothing is intersected or sewn.
 Every shape is built about the origin of its panel and placed by a translation, wherever the
@@ -49,12 +48,10 @@ class _Layer:
 
 
 def panel_shapes(panels: Panels, scale: float = 1.0) -> list[TopoDS_Shape]:
-    """
-    A face per panel, or a closed solid where panels have a thickness.
+    """A face per panel, or a closed solid where panels have a thickness.
 
     Parameters
     ----------
-    panels : Panels
     scale : float
         Units of the shapes per model unit; OpenCASCADE's tolerances suit millimetres.
 
@@ -187,8 +184,7 @@ def _patch(
 def _parameter_curves(
     rows: FloatArray, frames: FloatArray, arcs: Arcs, circles: ArcCircles
 ) -> list[Geom2d_BSplineCurve | None]:
-    """
-    Arcs in the parameters (u, v) of their spheres, by angle as the circles; None on planes.
+    """Arcs in the parameters (u, v) of their spheres, by angle as the circles; None on planes.
 
     Quintic splines, twice differentiable, through nodes at equal angles where the value and
     two derivatives are those of the arc.

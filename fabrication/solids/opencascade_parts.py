@@ -1,5 +1,4 @@
-"""
-Parts of OpenCASCADE shapes: vertices, edges, faces and solids, built directly and shared.
+"""Parts of OpenCASCADE shapes: vertices, edges, faces and solids, built directly and shared.
 
 This module imports OCP, which takes more than a second: others import it inside functions.
 """
@@ -33,8 +32,7 @@ BUILDER = BRep_Builder()
 
 
 def placement(origin: list[float]) -> TopLoc_Location:
-    """
-    A translation.
+    """A translation.
 
     Parameters
     ----------
@@ -52,13 +50,11 @@ def placement(origin: list[float]) -> TopLoc_Location:
 
 
 def make_vertex(point: list[float], tolerance: float) -> TopoDS_Vertex:
-    """
-    A vertex.
+    """A vertex.
 
     Parameters
     ----------
     point : list of 3 float
-    tolerance : float
 
     Returns
     -------
@@ -78,16 +74,12 @@ def make_edge(
     tolerance: float,
     first: float = 0.0,
 ) -> TopoDS_Edge:
-    """
-    An edge between two vertices.
+    """An edge between two vertices.
 
     Parameters
     ----------
-    curve : Geom_Curve
-    start, end : TopoDS_Vertex
     length : float
         Length of the range of parameters.
-    tolerance : float
     first : float
         Parameter of the start.
 
@@ -107,15 +99,12 @@ def make_edge(
 def make_face(
     surface: Geom_Surface, ring: Iterable[TopoDS_Shape], tolerance: float
 ) -> TopoDS_Face:
-    """
-    Face to the left of a closed chain of oriented edges.
+    """Face to the left of a closed chain of oriented edges.
 
     Parameters
     ----------
-    surface : Geom_Surface
     ring : iterable of TopoDS_Shape
         Oriented edges, counter-clockwise about the normal of the surface.
-    tolerance : float
 
     Returns
     -------
@@ -134,18 +123,12 @@ def make_face(
 
 
 def make_solid(faces: Iterable[TopoDS_Shape]) -> TopoDS_Solid:
-    """
-    Solid in a closed shell.
+    """Solid in a closed shell.
 
     Parameters
     ----------
     faces : iterable of TopoDS_Shape
         Faces that share their edges, normals outwards.
-
-    Returns
-    -------
-    TopoDS_Solid
-        What the faces enclose.
     """
     shell = TopoDS_Shell()
     BUILDER.MakeShell(shell)
@@ -159,14 +142,7 @@ def make_solid(faces: Iterable[TopoDS_Shape]) -> TopoDS_Solid:
 
 
 def arc_curves(arcs: Arcs, circles: ArcCircles) -> tuple[list[Geom_Curve], list[float]]:
-    """
-    Curves from parameter 0 at the starts of arcs, and the parameters of their ends.
-
-    Parameters
-    ----------
-    arcs : Arcs
-        H arcs.
-    circles : ArcCircles
+    """Curves from parameter 0 at the starts of arcs, and the parameters of their ends.
 
     Returns
     -------
@@ -192,8 +168,7 @@ def arc_curves(arcs: Arcs, circles: ArcCircles) -> tuple[list[Geom_Curve], list[
 
 
 def quintic_poles(nodes: FloatArray, steps: FloatArray) -> FloatArray:
-    """
-    Poles of quintic splines with triple inner knots, through n + 1 nodes.
+    """Poles of quintic splines with triple inner knots, through n + 1 nodes.
 
     With the Bézier points b₃, b₄ before an inner node and b₂ after it, the three poles of its
     knot are b₃, 2 b₄ - b₃, b₂. The first and last three poles are Bézier points.
@@ -223,8 +198,7 @@ def quintic_poles(nodes: FloatArray, steps: FloatArray) -> FloatArray:
 
 
 def make_spline(knots: list[float], poles: list[list[float]]) -> Geom2d_BSplineCurve:
-    """
-    A quintic spline in the parameters of a surface.
+    """A quintic spline in the parameters of a surface.
 
     Parameters
     ----------

@@ -17,8 +17,7 @@ CONFUSION = 1e-7
 
 
 def rounded_origins(origins: FloatArray) -> FloatArray:
-    """
-    Origins with the decimals that leave the farthest ten digits.
+    """Origins with the decimals that leave the farthest ten digits.
 
     Parameters
     ----------
@@ -35,12 +34,10 @@ def rounded_origins(origins: FloatArray) -> FloatArray:
 
 
 def panels_in_place(panels: Panels, scale: float) -> Panels:
-    """
-    Panels in another unit, about rounded origins.
+    """Panels in another unit, about rounded origins.
 
     Parameters
     ----------
-    panels : Panels
     scale : float
         New units per model unit.
 
@@ -54,12 +51,10 @@ def panels_in_place(panels: Panels, scale: float) -> Panels:
 
 
 def copy_places(panels: Panels, same: CongruentPanels, scale: float) -> FloatArray:
-    """
-    Where the body of the first of identical panels stands for each of them.
+    """Where the body of the first of identical panels stands for each of them.
 
     Parameters
     ----------
-    panels : Panels
     same : CongruentPanels
         Which of them are identical, and the motions between them.
     scale : float
@@ -80,12 +75,10 @@ def copy_places(panels: Panels, same: CongruentPanels, scale: float) -> FloatArr
 
 
 def panel_tolerances(panels: Panels, confusion: float = CONFUSION) -> FloatArray:
-    """
-    Tolerances that panels need: how far corners miss surfaces, or large numbers are rounded.
+    """Tolerances that panels need: how far corners miss surfaces, or large numbers are rounded.
 
     Parameters
     ----------
-    panels : Panels
     confusion : float
         Least tolerance, in the unit of the panels.
 
@@ -120,13 +113,10 @@ def panel_tolerances(panels: Panels, confusion: float = CONFUSION) -> FloatArray
 
 
 def check_finite(kind: str, ids: Sequence[str], is_finite: BoolArray) -> None:
-    """
-    Refuse parts at which OpenCASCADE would crash.
+    """Refuse parts at which OpenCASCADE would crash.
 
     Parameters
     ----------
-    kind : str
-        What the parts are.
     ids : (n,) sequence of str
     is_finite : (n,) bool array
 
@@ -141,8 +131,7 @@ def check_finite(kind: str, ids: Sequence[str], is_finite: BoolArray) -> None:
 
 
 def surface_frames(rows: FloatArray, arcs: Arcs, offsets: IntArray) -> FloatArray:
-    """
-    Axes x, y, z of the surfaces of panels.
+    """Axes x, y, z of the surfaces of panels.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-STEP files (ISO 10303-21), written as text and checked without a CAD kernel.
+"""STEP files (ISO 10303-21), written as text and checked without a CAD kernel.
 
 assembly      Bodies with names, layers and colours: assemblies of parts.
 beam_bodies   Beams as solids: planes, cylinders, lines, circles and ellipses, all exact.

@@ -1,5 +1,4 @@
-"""
-Named, layered and coloured bodies in a STEP file: assemblies of parts.
+"""Named, layered and coloured bodies in a STEP file: assemblies of parts.
 
 Definitions of units, of colours and of the kinds of products stand once in a file and are
 shared by all parts. A part may stand in several places.
@@ -45,8 +44,7 @@ Place = tuple[float, ...]
 
 @dataclass(frozen=True)
 class Instance:
-    """
-    Where a part stands.
+    """Where a part stands.
 
     Attributes
     ----------
@@ -62,8 +60,7 @@ class Instance:
 
 @dataclass(frozen=True)
 class Part:
-    """
-    A body as it appears in a file, once or several times.
+    """A body as it appears in a file, once or several times.
 
     Attributes
     ----------
@@ -91,8 +88,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Group:
-    """
-    An assembly.
+    """An assembly.
 
     Attributes
     ----------
@@ -108,8 +104,7 @@ class Group:
 
 @dataclass(frozen=True)
 class StepHeader:
-    """
-    What a STEP file says about itself.
+    """What a STEP file says about itself.
 
     Attributes
     ----------
@@ -143,8 +138,7 @@ class _Definition:
 
 
 def assembly_lines(root: Group, header: StepHeader) -> list[str]:
-    """
-    Lines of a STEP file.
+    """Lines of a STEP file.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Beams as solids of STEP files: planes, cylinders, lines, circles and ellipses, all exact.
+"""Beams as solids of STEP files: planes, cylinders, lines, circles and ellipses, all exact.
 
 A beam has two plane sides, an outer and an inner face - cylinders, or planes where the arcs
 are straight - and one or two plane faces at each end. A plane cuts a cylinder in an ellipse, or
@@ -28,18 +27,7 @@ _Levels = tuple[int, int]
 
 
 def beam_bodies(geometry: BeamGeometry) -> list[Body]:
-    """
-    A closed solid per beam.
-
-    Parameters
-    ----------
-    geometry : BeamGeometry
-
-    Returns
-    -------
-    list of Body
-        B solids, about the rounded origins of the beams.
-    """
+    """A closed solid per beam: B solids, about the rounded origins of the beams."""
     circles = {
         (k, level): circle_numbers(geometry.arcs[level][k], circles)
         for level, pair in geometry.circles.items()

@@ -1,5 +1,4 @@
-"""
-Solids, surfaces and lines as entities of STEP files (ISO 10303-21), text without a CAD kernel.
+"""Solids, surfaces and lines as entities of STEP files, text without a CAD kernel.
 
 Bodies of the same topology differ in their numbers alone. A batch says the topology once, and
 gives the numbers of its curves and surfaces as arrays; its text is laid out once and filled for
@@ -26,13 +25,10 @@ _SENSES: Final = {True: ".T.", False: ".F."}
 
 @dataclass(frozen=True)
 class EdgeBatch:
-    """
-    The same edge of m bodies.
+    """The same edge of m bodies.
 
     Attributes
     ----------
-    start, end : int
-        Its corners.
     kind : {"LINE", "CIRCLE", "ELLIPSE"}
         Circles and ellipses run counter-clockwise about their axes.
     numbers : (m, n) float array
@@ -48,8 +44,7 @@ class EdgeBatch:
 
 @dataclass(frozen=True)
 class FaceBatch:
-    """
-    The same face of m bodies.
+    """The same face of m bodies.
 
     Attributes
     ----------
@@ -75,8 +70,7 @@ class FaceBatch:
 
 @dataclass(frozen=True)
 class BodyLayout:
-    """
-    Text of bodies of one topology.
+    """Text of bodies of one topology.
 
     Attributes
     ----------
@@ -98,12 +92,10 @@ class BodyLayout:
 
 @dataclass(frozen=True)
 class Body:
-    """
-    A body to be written.
+    """A body to be written.
 
     Attributes
     ----------
-    layout : BodyLayout
     numbers : (n,) float array
         Its numbers, finite, in the unit of the file.
     """
@@ -112,8 +104,7 @@ class Body:
     numbers: FloatArray
 
     def text(self, first: int) -> str:
-        """
-        Entities of the body.
+        """Entities of the body.
 
         Parameters
         ----------
@@ -136,21 +127,13 @@ def bodies(
     *,
     is_solid: bool = True,
 ) -> list[Body]:
-    """
-    Bodies of one topology.
+    """Bodies of one topology.
 
     Parameters
     ----------
     corners : iterable of (m, 3) float array
-    edges : iterable of EdgeBatch
-    faces : iterable of FaceBatch
     is_solid : bool
         Whether the faces are closed.
-
-    Returns
-    -------
-    list of Body
-        m bodies.
     """
     corners, edges, faces = list(corners), list(edges), list(faces)
     layout = _layout(
@@ -165,8 +148,7 @@ def bodies(
 
 
 def bodies_by_kind(kinds: FloatArray, make: Callable[[IntArray], Iterable[Body]]) -> list[Body]:
-    """
-    Bodies of several topologies.
+    """Bodies of several topologies.
 
     Parameters
     ----------
@@ -191,13 +173,7 @@ def bodies_by_kind(kinds: FloatArray, make: Callable[[IntArray], Iterable[Body]]
 
 
 def circle_numbers(arcs: Arcs, circles: ArcCircles) -> FloatArray:
-    """
-    What tells the circles of arcs in an `EdgeBatch`.
-
-    Parameters
-    ----------
-    arcs : Arcs
-    circles : ArcCircles
+    """What tells the circles of arcs in an `EdgeBatch`.
 
     Returns
     -------
@@ -209,8 +185,7 @@ def circle_numbers(arcs: Arcs, circles: ArcCircles) -> FloatArray:
 
 
 def line_body(segments: FloatArray) -> Body:
-    """
-    A set of straight lines.
+    """A set of straight lines.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-A structural check of STEP files (ISO 10303-21) that needs no CAD kernel.
+"""A structural check of STEP files (ISO 10303-21) that needs no CAD kernel.
 
 A CAD kernel repairs what it reads, so reading a file back proves little. Here the text itself
 is judged: frame and header, the syntax of every entity, expected types with their number of
@@ -94,12 +93,7 @@ class _Text:
 
 
 def check_part21(path: str | os.PathLike[str]) -> tuple[Finding, ...]:
-    """
-    Check the structure of a STEP file as the library writes them.
-
-    Parameters
-    ----------
-    path : path
+    """Check the structure of a STEP file as the library writes them.
 
     Returns
     -------

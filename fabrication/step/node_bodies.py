@@ -9,8 +9,7 @@ from .bodies import Body, EdgeBatch, FaceBatch, Ring, bodies
 def cylinder_bodies(
     bases: FloatArray, directions: FloatArray, heights: FloatArray, radius: float
 ) -> list[Body]:
-    """
-    Closed solids of cylinders.
+    """Closed solids of cylinders.
 
     Parameters
     ----------
@@ -19,7 +18,6 @@ def cylinder_bodies(
     directions : (n, 3) float array
         Unit vectors along the axes.
     heights : (n,) float array
-    radius : float
 
     Returns
     -------

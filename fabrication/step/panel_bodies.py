@@ -1,5 +1,4 @@
-"""
-Panels as bodies of STEP files: spheres, planes, circles and lines, all exact.
+"""Panels as bodies of STEP files: spheres, planes, circles and lines, all exact.
 
 Every body is made about the rounded origin of its panel, wherever the model stands on the site:
 the remainder is in its own numbers, and no digit is lost. The sphere of a face has its axes
@@ -25,8 +24,7 @@ from .bodies import (
 
 
 def panel_bodies(panels: Panels) -> list[Body]:
-    """
-    A face per panel, or a closed solid where panels have a thickness.
+    """A face per panel, or a closed solid where panels have a thickness.
 
     Parameters
     ----------

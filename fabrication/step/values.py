@@ -6,13 +6,7 @@ from typing import Final
 
 
 def real(number: float) -> str:
-    """
-    A number as the least digits that are read back as the same.
-
-    Parameters
-    ----------
-    number : float
-        A finite number.
+    """A number as the least digits that are read back as the same.
 
     Returns
     -------
@@ -32,12 +26,7 @@ def real(number: float) -> str:
 
 
 def references(ids: Iterable[int]) -> str:
-    """
-    A list of references.
-
-    Parameters
-    ----------
-    ids : iterable of int
+    """A list of references.
 
     Returns
     -------
@@ -54,29 +43,12 @@ def references(ids: Iterable[int]) -> str:
 
 
 def numbers(values: Iterable[float]) -> str:
-    """
-    Numbers of a point or direction.
-
-    Parameters
-    ----------
-    values : iterable of float
-        Finite numbers.
-
-    Returns
-    -------
-    str
-        The numbers, separated by commas.
-    """
+    """Numbers of a point or direction: the numbers, separated by commas."""
     return ",".join(map(real, values))
 
 
 def string(text: str) -> str:
-    r"""
-    A string of ISO 10303-21.
-
-    Parameters
-    ----------
-    text : str
+    r"""A string of ISO 10303-21.
 
     Returns
     -------

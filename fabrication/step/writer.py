@@ -37,8 +37,7 @@ StepCopies = Literal["shapes", "instances"]
 
 @dataclass(frozen=True)
 class StepOptions:
-    """
-    How a STEP file is written.
+    """How a STEP file is written.
 
     Attributes
     ----------
@@ -64,8 +63,7 @@ _SHAPES_IN_MM: Final = StepOptions()
 def write_step(
     model: Model, path: str | os.PathLike[str], options: StepOptions = _SHAPES_IN_MM
 ) -> Written:
-    """
-    Write panels and beams to a STEP file as exact solids, or faces without thickness.
+    """Write panels and beams to a STEP file as exact solids, or faces without thickness.
 
     Parameters
     ----------
@@ -73,7 +71,6 @@ def write_step(
         At least one panel or beam.
     path : path
         File to write. It is replaced when the new one is complete.
-    options : StepOptions
 
     Returns
     -------

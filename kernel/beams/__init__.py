@@ -1,5 +1,4 @@
-"""
-Beams: annuli of a thickness, cut at their nodes, and what is known of them.
+"""Beams: annuli of a thickness, cut at their nodes, and what is known of them.
 
 beams           Beams: annuli of a thickness, cut at the nodes so that neighbours do not run
                 into each other.

@@ -1,5 +1,4 @@
-"""
-Beams: annuli of a thickness, cut at the nodes so that neighbours do not run into each other.
+"""Beams: annuli of a thickness, cut at the nodes so that neighbours do not run into each other.
 
 A beam has two plane sides at half the thickness from the plane of its annulus, an outer and an
 inner face (cylinders, or planes where the arcs are straight), and at each end one or two planes
@@ -22,8 +21,7 @@ from ..support.annuli import Annuli
 
 @dataclass(frozen=True)
 class DrillMarks:
-    """
-    Holes at the ends of beams (`kernel.drilling`).
+    """Holes at the ends of beams (`kernel.drilling`).
 
     Attributes
     ----------
@@ -42,8 +40,7 @@ class DrillMarks:
 
     @property
     def holes(self) -> FloatArray:
-        """
-        Centres of all holes of each beam.
+        """Centres of all holes of each beam.
 
         Returns
         -------
@@ -56,8 +53,7 @@ class DrillMarks:
 
 @dataclass(frozen=True)
 class Beams:
-    """
-    Beams that can be made, in the order of their edges.
+    """Beams that can be made, in the order of their edges.
 
     Attributes
     ----------
@@ -94,20 +90,12 @@ class Beams:
 
     @property
     def ids(self) -> tuple[str, ...]:
-        """
-        Stable names, those of the annuli.
-
-        Returns
-        -------
-        tuple of str
-            One per beam.
-        """
+        """Stable names, those of the annuli: one per beam."""
         return self.annuli.ids
 
     @property
     def element_ids(self) -> IntArray:
-        """
-        Edge of each beam.
+        """Edge of each beam.
 
         Returns
         -------
@@ -118,24 +106,12 @@ class Beams:
 
     @property
     def n_beams(self) -> int:
-        """
-        Number of beams.
-
-        Returns
-        -------
-        int
-            B.
-        """
+        """Number of beams."""
         return self.annuli.n_annuli
 
 
 def inward_directions(annuli: Annuli) -> FloatArray:
-    """
-    Unit vectors from the lines of the ends into the annuli, across them in their planes.
-
-    Parameters
-    ----------
-    annuli : Annuli
+    """Unit vectors from the lines of the ends into the annuli, across them in their planes.
 
     Returns
     -------
@@ -149,8 +125,7 @@ def inward_directions(annuli: Annuli) -> FloatArray:
 
 
 def insets_at(levels: FloatArray, insets: FloatArray, heights: FloatArray) -> FloatArray:
-    """
-    How far cuts lie inside at a height.
+    """How far cuts lie inside at a height.
 
     Parameters
     ----------
@@ -173,12 +148,10 @@ def insets_at(levels: FloatArray, insets: FloatArray, heights: FloatArray) -> Fl
 
 
 def cut_corners(annuli: Annuli, insets: FloatArray) -> tuple[FloatArray, BoolArray]:
-    """
-    Where lines parallel to the ends meet the circles.
+    """Where lines parallel to the ends meet the circles.
 
     Parameters
     ----------
-    annuli : Annuli
     insets : (B, 2, n) float array
         Distances of the lines from those of the ends, into the annuli.
 
@@ -201,12 +174,10 @@ def cut_corners(annuli: Annuli, insets: FloatArray) -> tuple[FloatArray, BoolArr
 
 
 def scale_beams(beams: Beams, factor: float) -> Beams:
-    """
-    Beams in another unit of length.
+    """Beams in another unit of length.
 
     Parameters
     ----------
-    beams : Beams
     factor : float
         Positive number of new units in an old one.
 
@@ -240,12 +211,7 @@ def scale_beams(beams: Beams, factor: float) -> Beams:
 
 
 def section_arcs(beams: Beams) -> tuple[Arcs, Arcs]:
-    """
-    Outer and inner arcs in the middle of the thickness, between the cuts of the ends.
-
-    Parameters
-    ----------
-    beams : Beams
+    """Outer and inner arcs in the middle of the thickness, between the cuts of the ends.
 
     Returns
     -------
@@ -256,12 +222,10 @@ def section_arcs(beams: Beams) -> tuple[Arcs, Arcs]:
 
 
 def side_arcs(beams: Beams, level: int) -> tuple[Arcs, Arcs]:
-    """
-    Outer and inner arcs that bound a side.
+    """Outer and inner arcs that bound a side.
 
     Parameters
     ----------
-    beams : Beams
     level : int
         0 for the lower, 2 for the upper side.
 
@@ -274,12 +238,10 @@ def side_arcs(beams: Beams, level: int) -> tuple[Arcs, Arcs]:
 
 
 def level_arcs(beams: Beams, corners: FloatArray, heights: FloatArray) -> tuple[Arcs, Arcs]:
-    """
-    Outer and inner arcs at a height, between given corners.
+    """Outer and inner arcs at a height, between given corners.
 
     Parameters
     ----------
-    beams : Beams
     corners : (B, 2, 2, 3) float array
         Corners at both ends, outer and inner, at the height; local.
     heights : (B,) float array
@@ -303,12 +265,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 
 def beam_volumes(beams: Beams) -> FloatArray:
-    """
-    Volumes of beams.
-
-    Parameters
-    ----------
-    beams : Beams
+    """Volumes of beams.
 
     Returns
     -------
@@ -337,12 +294,7 @@ def _section_areas(beams: Beams, heights: FloatArray) -> FloatArray:
 
 
 def node_axis_segments(beams: Beams) -> tuple[tuple[int, ...], FloatArray]:
-    """
-    The lines in which the beams of each node meet.
-
-    Parameters
-    ----------
-    beams : Beams
+    """The lines in which the beams of each node meet.
 
     Returns
     -------
@@ -358,12 +310,7 @@ def node_axis_segments(beams: Beams) -> tuple[tuple[int, ...], FloatArray]:
 
 
 def beam_lengths(beams: Beams) -> FloatArray:
-    """
-    Largest lengths of the pieces.
-
-    Parameters
-    ----------
-    beams : Beams
+    """Largest lengths of the pieces.
 
     Returns
     -------

@@ -1,5 +1,4 @@
-"""
-Flat contours of beams, for cutting: two arcs and two lines in a plane.
+"""Flat contours of beams, for cutting: two arcs and two lines in a plane.
 
 A contour is the section of a beam in the middle of its thickness, in coordinates of its own
 plane: x along the edge, y to the outer side. Mitred ends are bevelled after cutting.
@@ -19,8 +18,7 @@ CORNERS = 4
 
 @dataclass(frozen=True)
 class Contours:
-    """
-    Closed contours, counter-clockwise.
+    """Closed contours, counter-clockwise.
 
     Attributes
     ----------
@@ -46,18 +44,7 @@ class Contours:
 
 
 def beam_contours(beams: Beams) -> Contours:
-    """
-    Contours of beams.
-
-    Parameters
-    ----------
-    beams : Beams
-
-    Returns
-    -------
-    Contours
-        B contours.
-    """
+    """Contours of beams."""
     outer, inner = section_arcs(beams)
     axes = beams.annuli.frames[:, :2]
     corners = np.stack([inner.starts, inner.ends, outer.ends, outer.starts], 1)
@@ -79,8 +66,7 @@ def _in_plane(points: FloatArray, axes: FloatArray) -> FloatArray:
 
 
 def contour_boxes(contours: Contours) -> FloatArray:
-    """
-    Boxes around contours.
+    """Boxes around contours.
 
     Parameters
     ----------
@@ -104,8 +90,7 @@ def contour_boxes(contours: Contours) -> FloatArray:
 def shelves(
     sizes: FloatArray, sheet: tuple[float, float], spacing: float
 ) -> tuple[FloatArray, list[int], list[int]]:
-    """
-    Lay rectangles on sheets, in rows.
+    """Lay rectangles on sheets, in rows.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Cutting beams out of annuli: mitres between neighbours, or square ends before a node cylinder.
+"""Cutting beams out of annuli: mitres between neighbours, or square ends at a node cylinder.
 
 A mitre is the half plane through the node axis that bisects the angle between a beam and its
 neighbour around the axis. What cannot be cut is listed with its reason.
@@ -21,12 +20,10 @@ from .beams import Beams, cut_corners, insets_at, inward_directions
 def cut_beams(
     annuli: Annuli, thickness: float, node_gap: float = 0.0, node_radius: float = 0.0
 ) -> tuple[Beams, tuple[RejectedPart, ...]]:
-    """
-    Give annuli a thickness and cut their ends.
+    """Give annuli a thickness and cut their ends.
 
     Parameters
     ----------
-    annuli : Annuli
     thickness : float
         Thickness of the beams, half of it to either side, in model units.
     node_gap : float
@@ -100,12 +97,7 @@ def _outer_side_up(annuli: Annuli) -> Annuli:
 
 
 def mitre_angles(annuli: Annuli) -> FloatArray:
-    """
-    Half angles at which mitres are cut.
-
-    Parameters
-    ----------
-    annuli : Annuli
+    """Half angles at which mitres are cut.
 
     Returns
     -------
@@ -119,12 +111,7 @@ def mitre_angles(annuli: Annuli) -> FloatArray:
 
 
 def neighbor_angles(annuli: Annuli) -> FloatArray:
-    """
-    Half the angles to the neighbouring beams around the node axes.
-
-    Parameters
-    ----------
-    annuli : Annuli
+    """Half the angles to the neighbouring beams around the node axes.
 
     Returns
     -------

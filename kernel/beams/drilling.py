@@ -1,5 +1,4 @@
-"""
-Drilling marks: where beams are bolted at their nodes, along the lines of their ends.
+"""Drilling marks: where beams are bolted at their nodes, along the lines of their ends.
 
 A row of holes lies on a line parallel to the node axis, at a distance from the cut end; every
 hole has the same share of that line. Marks are kept with the beams, for whoever draws them.
@@ -22,8 +21,7 @@ NO_MARKS = "B208"
 def drill_beams(
     beams: Beams, count: int, diameter: float, inset: float
 ) -> tuple[Beams, tuple[Finding, ...]]:
-    """
-    Mark the holes at both ends of beams.
+    """Mark the holes at both ends of beams.
 
     Parameters
     ----------
@@ -115,13 +113,7 @@ def _end_margin(beams: Beams, holes: FloatArray) -> FloatArray:
 
 
 def mark_centers(beams: Beams, marks: DrillMarks) -> FloatArray:
-    """
-    Centres of drilling marks in the planes of their contours.
-
-    Parameters
-    ----------
-    beams : Beams
-    marks : DrillMarks
+    """Centres of drilling marks in the planes of their contours.
 
     Returns
     -------

@@ -11,8 +11,7 @@ from .beams import Beams, inward_directions
 
 @dataclass(frozen=True)
 class EndEdges:
-    """
-    Edges (B, 2, 2) at both ends, of outer and inner faces: ellipses, or straight lines.
+    """Edges (B, 2, 2) at both ends, of outer and inner faces: ellipses, or straight lines.
 
     Attributes
     ----------
@@ -46,12 +45,10 @@ def end_edges(
     radii: FloatArray,
     levels: tuple[int, int],
 ) -> EndEdges:
-    """
-    Edges in which the planes of the ends cut the outer and inner faces.
+    """Edges in which the planes of the ends cut the outer and inner faces.
 
     Parameters
     ----------
-    beams : Beams
     corners : (B, 2, 2, 3, 3) float array
         Their corners, in the coordinates of the centres.
     centers : (B, 2, 3) float array

@@ -15,8 +15,7 @@ from .cutting import neighbor_angles
 
 @dataclass(frozen=True)
 class BeamFacts:
-    """
-    Measures of beams, in the unit of the beams; points in model coordinates.
+    """Measures of beams, in the unit of the beams; points in model coordinates.
 
     Arcs are those of the contour: in the middle of the thickness, between the cuts of the ends.
 
@@ -76,18 +75,7 @@ class BeamFacts:
 
 
 def beam_facts(beams: Beams) -> BeamFacts:
-    """
-    Measure beams.
-
-    Parameters
-    ----------
-    beams : Beams
-
-    Returns
-    -------
-    BeamFacts
-        The measures.
-    """
+    """Measure beams."""
     annuli, contours = beams.annuli, beam_contours(beams)
     outer, inner = section_arcs(beams)
     return BeamFacts(

@@ -11,8 +11,7 @@ from .beams import Beams
 
 @dataclass(frozen=True)
 class NodeCylinders:
-    """
-    Cylinders of the nodes that carry beams, in the order of their vertices.
+    """Cylinders of the nodes that carry beams, in the order of their vertices.
 
     Attributes
     ----------
@@ -42,24 +41,12 @@ class NodeCylinders:
 
     @property
     def n_nodes(self) -> int:
-        """
-        Number of cylinders.
-
-        Returns
-        -------
-        int
-            N.
-        """
+        """Number of cylinders."""
         return len(self.vertices)
 
 
 def node_cylinders(beams: Beams) -> NodeCylinders:
-    """
-    Cylinders about the node axes, as high as the end faces of the beams that meet there.
-
-    Parameters
-    ----------
-    beams : Beams
+    """Cylinders about the node axes, as high as the end faces of the beams that meet there.
 
     Returns
     -------

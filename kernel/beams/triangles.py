@@ -14,8 +14,7 @@ from .beams import Beams, section_arcs
 
 @dataclass(frozen=True)
 class BeamTriangles:
-    """
-    Triangulated beams (or cylinders) that are cut into the same number of steps, n of them.
+    """Triangulated beams (or cylinders) that are cut into the same number of steps, n of them.
 
     Attributes
     ----------
@@ -36,8 +35,7 @@ class BeamTriangles:
 
 
 def beam_triangles(beams: Beams, tolerance: float) -> Iterator[BeamTriangles]:
-    """
-    Triangulate beams as they are before their ends are mitred.
+    """Triangulate beams as they are before their ends are mitred.
 
     Parameters
     ----------
@@ -120,8 +118,7 @@ def cylinder_triangles(
     radius: float,
     tolerance: float,
 ) -> BeamTriangles:
-    """
-    Triangulate upright cylinders with both ends.
+    """Triangulate upright cylinders with both ends.
 
     Parameters
     ----------
@@ -131,8 +128,6 @@ def cylinder_triangles(
         Unit vectors along their axes, from the lower to the upper end.
     heights : (n,) float array
         Their heights.
-    radius : float
-        Their radius.
     tolerance : float
         Largest distance of the chords from the circles, relative to the radius.
 

@@ -9,8 +9,7 @@ from ..tolerances import EPSILON
 def conjugacy_residuals(
     along_u: FloatArray, along_v: FloatArray, mixed: FloatArray, lift: FloatArray | None = None
 ) -> FloatArray:
-    """
-    How far a parametrisation or a net is from conjugate: distance of f_uv from a span.
+    """How far a parametrisation or a net is from conjugate: distance of f_uv from a span.
 
     Parameters
     ----------

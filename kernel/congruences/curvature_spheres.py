@@ -1,5 +1,4 @@
-"""
-Spheres that touch a surface: tangent, principal and central ones (Sec. 2.2.4, 2.2.5).
+"""Spheres that touch a surface: tangent, principal and central ones (Sec. 2.2.4, 2.2.5).
 
 Touching at a point p with normal n are the rows of curvature κ with respect to n, planes
 included: ``(κ / 2, n, 0)`` seen from p.
@@ -22,8 +21,7 @@ CongruenceKind: TypeAlias = Literal["central", "tangent", "principal"]
 def touching_spheres(
     points: FloatArray, normals: FloatArray, curvatures: ArrayLike
 ) -> FloatArray:
-    """
-    Spheres through points with given normals and curvatures: a parabolic pencil at each point.
+    """Spheres through points with given normals and curvatures: a parabolic pencil at each.
 
     Parameters
     ----------
@@ -46,8 +44,7 @@ def touching_spheres(
 def mean_curvature_spheres(
     points: FloatArray, normals: FloatArray, first: FloatArray, second: FloatArray
 ) -> FloatArray:
-    """
-    The central spheres of a surface: of its mean curvature, touching it.
+    """The central spheres of a surface: of its mean curvature, touching it.
 
     Parameters
     ----------
@@ -75,8 +72,7 @@ def sphere_congruence(
     offset: ArrayLike | None = None,
     which: Literal["first", "second"] = "first",
 ) -> tuple[FloatArray, BoolArray]:
-    """
-    A sphere at every vertex of a surface mesh, touching the surface there.
+    """A sphere at every vertex of a surface mesh, touching the surface there.
 
     Parameters
     ----------

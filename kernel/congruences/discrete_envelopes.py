@@ -1,5 +1,4 @@
-"""
-Discrete sphere congruences and the points that their spheres have in common.
+"""Discrete sphere congruences and the points that their spheres have in common.
 
 A congruence with spheres at the vertices of a mesh has its envelopes on the dual mesh: two
 points for every face. Given the other way round, as a sphere mesh with spheres on the faces,
@@ -33,8 +32,7 @@ _CONTACT_STEPS = 40
 
 @dataclass(frozen=True)
 class Envelope:
-    """
-    The two points that the spheres of each face have in common.
+    """The two points that the spheres of each face have in common.
 
     Attributes
     ----------
@@ -55,8 +53,7 @@ class Envelope:
 
 @dataclass(frozen=True)
 class MirrorPoints:
-    """
-    The second points that the spheres around each vertex have in common.
+    """The second points that the spheres around each vertex have in common.
 
     Attributes
     ----------
@@ -76,8 +73,7 @@ class MirrorPoints:
 
 
 def envelope(mesh: Mesh, spheres: ArrayLike, order: EnvelopeOrder = "nearest") -> Envelope:
-    """
-    Both envelopes of a discrete congruence with spheres at the vertices of a mesh.
+    """Both envelopes of a discrete congruence with spheres at the vertices of a mesh.
 
     Parameters
     ----------
@@ -190,8 +186,7 @@ def _corner_distances(rows: FloatArray, points: FloatArray) -> FloatArray:
 
 
 def mirror_points(sphere_mesh: SphereMesh) -> MirrorPoints:
-    """
-    Second envelope of a sphere mesh: where the spheres around a vertex meet once more.
+    """Second envelope of a sphere mesh: where the spheres around a vertex meet once more.
 
     Parameters
     ----------
@@ -246,8 +241,7 @@ def _rows_at_vertices(sphere_mesh: SphereMesh, size: float) -> FloatArray:
 
 
 def contact_points(sphere_mesh: SphereMesh) -> tuple[FloatArray, FloatArray]:
-    """
-    Discrete contact points: the points nearest to all spheres around each vertex.
+    """Discrete contact points: the points nearest to all spheres around each vertex.
 
     Parameters
     ----------
@@ -303,8 +297,7 @@ def _contact_step(
 
 
 def ribaucour_residuals(sphere_mesh: SphereMesh) -> tuple[FloatArray, FloatArray]:
-    """
-    How far the two envelopes of a sphere mesh are from circular nets.
+    """How far the two envelopes of a sphere mesh are from circular nets.
 
     Parameters
     ----------

@@ -10,8 +10,7 @@ from ..tolerances import EPSILON
 
 @dataclass(frozen=True)
 class SphereJet:
-    """
-    A smooth sphere congruence to first order, at any number of parameters (u, v).
+    """A smooth sphere congruence to first order, at any number of parameters (u, v).
 
     Attributes
     ----------
@@ -34,12 +33,7 @@ class SphereJet:
 
 
 def has_real_envelopes(jet: SphereJet) -> BoolArray:
-    """
-    Whether a congruence has two real envelopes.
-
-    Parameters
-    ----------
-    jet : SphereJet
+    """Whether a congruence has two real envelopes.
 
     Returns
     -------
@@ -56,12 +50,7 @@ def has_real_envelopes(jet: SphereJet) -> BoolArray:
 
 
 def envelope_points(jet: SphereJet) -> tuple[FloatArray, FloatArray]:
-    """
-    Points in which the spheres of a congruence touch its two envelopes.
-
-    Parameters
-    ----------
-    jet : SphereJet
+    """Points in which the spheres of a congruence touch its two envelopes.
 
     Returns
     -------

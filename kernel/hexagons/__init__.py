@@ -1,5 +1,4 @@
-"""
-Hexagonal sphere meshes, dual to triangulations (Sec. 7).
+"""Hexagonal sphere meshes, dual to triangulations (Sec. 7).
 
 dual_sphere_mesh  A face for every vertex of a triangulation; boundaries dropped or clipped.
 vertex_rule       The vertices of hexagons: where three spheres meet nearest the triangle.

@@ -1,5 +1,4 @@
-"""
-Edge flips that make the faces of a dual sphere mesh convex.
+"""Edge flips that make the faces of a dual sphere mesh convex.
 
 With spheres of offset λ that touch a surface, the face of a vertex is convex if and only if
 the edges around it are Delaunay in the metric ``I / λ - II``: then, and only then, every edge
@@ -23,8 +22,7 @@ UPRIGHT_TILT = 0.5
 
 @dataclass(frozen=True)
 class Flips:
-    """
-    A triangulation with flipped edges.
+    """A triangulation with flipped edges.
 
     Attributes
     ----------
@@ -42,13 +40,10 @@ class Flips:
 
 
 def dual_edge_lengths(mesh: Mesh, rows: FloatArray) -> FloatArray:
-    """
-    Signed lengths of the edges of the dual mesh, relative to the edges that they cross.
+    """Signed lengths of the edges of the dual mesh, relative to the edges that they cross.
 
     Parameters
     ----------
-    mesh : Mesh
-        A triangulation.
     rows : (V, 5) float array
         Unit rows at the vertices, seen from them (`vertex_rows`).
 
@@ -77,13 +72,10 @@ def _across(
 
 
 def flip_to_convex(mesh: Mesh, rows: FloatArray, max_sweeps: int = MAX_SWEEPS) -> Flips:
-    """
-    Flip edges until no edge of the dual mesh runs backwards, or no flip helps.
+    """Flip edges until no edge of the dual mesh runs backwards, or no flip helps.
 
     Parameters
     ----------
-    mesh : Mesh
-        A triangulation.
     rows : (V, 5) float array
         Unit rows at the vertices, seen from them (`vertex_rows`).
     max_sweeps : int

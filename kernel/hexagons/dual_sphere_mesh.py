@@ -1,5 +1,4 @@
-"""
-Sphere meshes dual to triangulations: a face for every vertex, three spheres meet in a corner.
+"""Sphere meshes dual to triangulations: a face for every vertex, a corner where three meet.
 
 A triangle mesh with a sphere at every vertex gives a sphere mesh with the dual connectivity:
 the spheres of a triangle meet in two points, mirror images in the plane of the three centres,
@@ -34,8 +33,7 @@ UNCLIPPED = "neighbouring spheres do not meet on the boundary"
 
 @dataclass(frozen=True)
 class DualSpheres:
-    """
-    A sphere mesh dual to a triangulation, and what could not be made.
+    """A sphere mesh dual to a triangulation, and what could not be made.
 
     Attributes
     ----------
@@ -63,8 +61,7 @@ class DualSpheres:
 def dual_sphere_mesh(
     mesh: Mesh, spheres: ArrayLike, boundary: BoundaryRule = "drop"
 ) -> DualSpheres:
-    """
-    Sphere mesh with a face for every vertex of a triangulation.
+    """Sphere mesh with a face for every vertex of a triangulation.
 
     Parameters
     ----------
@@ -104,8 +101,7 @@ def dual_sphere_mesh(
 
 
 def bad_faces(mesh: Mesh, spheres: ArrayLike) -> tuple[tuple[int, str], ...]:
-    """
-    Inner vertices whose face cannot be made or is not convex, and why.
+    """Inner vertices whose face cannot be made or is not convex, and why.
 
     Parameters
     ----------
@@ -185,8 +181,7 @@ def _build_faces(mesh: Mesh, rows: FloatArray, plan: _Plan) -> DualSpheres:
 
 
 def _rim_points(mesh: Mesh, rows: FloatArray) -> tuple[FloatArray, BoolArray, BoolArray]:
-    """
-    Points of the boundary: on its edges where two spheres meet the upright plane, then corners.
+    """Points of the boundary: where two spheres meet its edges' upright planes, then corners.
 
     Of b boundary half-edges: points (2 b, 3), whether they are real, and whether the boundary
     turns at their tails (b,). Where it does not, there is no corner.

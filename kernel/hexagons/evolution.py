@@ -1,5 +1,4 @@
-"""
-Tangent spheres that grow towards the curvature spheres of a surface.
+"""Tangent spheres that grow towards the curvature spheres of a surface.
 
 The spheres touch a triangulation at its vertices; their centres ``v + λ n`` lie on one side.
 Small spheres do not meet the surface, so neighbours cut convex faces out of them; large ones
@@ -51,8 +50,7 @@ LEAST_GAIN = 1e-3
 
 @dataclass(frozen=True)
 class Evolution:
-    """
-    Spheres that have grown, and how.
+    """Spheres that have grown, and how.
 
     Attributes
     ----------
@@ -69,8 +67,6 @@ class Evolution:
         1 if the centres lie to the side of the face normals, -1 if beyond.
     n_flips : int
         Edges flipped.
-    iterations : int
-        Linear systems solved.
     converged : bool
         Whether the offsets came to rest, the axes keep their bound, and every edge of the dual
         mesh runs as it must on convex faces.
@@ -97,13 +93,10 @@ def evolve_spheres(
     *,
     flips: bool = True,
 ) -> Evolution:
-    """
-    Grow spheres that touch a triangulation towards its curvature spheres.
+    """Grow spheres that touch a triangulation towards its curvature spheres.
 
     Parameters
     ----------
-    mesh : Mesh
-        A triangulation.
     max_axis_angle : float
         Largest angle of a node axis with the surface normal, in radians, in (0, π/2).
     side : {"auto", "plus", "minus"}
@@ -262,12 +255,10 @@ def _bad_vertices(surface: TangentSurface, offsets: FloatArray, rules: _Rules) -
 def descend(
     surface: TangentSurface, offsets: FloatArray, aims: FloatArray, bound: float, weight: float
 ) -> tuple[FloatArray, int, bool]:
-    """
-    Minimise the energy of the offsets on a triangulation that stays as it is.
+    """Minimise the energy of the offsets on a triangulation that stays as it is.
 
     Parameters
     ----------
-    surface : TangentSurface
     offsets, aims : (V,) float array
         Offsets to start from and to end at.
     bound : float

@@ -29,8 +29,7 @@ class PencilPosition(IntEnum):
 
 
 def face_shapes(sphere_mesh: SphereMesh) -> NDArray[Any]:
-    """
-    Tell visually convex faces from bow-ties and from those whose boundary crosses itself.
+    """Tell visually convex faces from bow-ties and from those whose boundary crosses itself.
 
     Parameters
     ----------
@@ -72,8 +71,7 @@ def _has_reflex_corner(sphere_mesh: SphereMesh, shadow: FloatArray) -> BoolArray
 
 
 def boundary_crosses(sphere_mesh: SphereMesh) -> BoolArray:
-    """
-    Faces whose boundary, of the arcs in which spheres meet, crosses itself.
+    """Faces whose boundary, of the arcs in which spheres meet, crosses itself.
 
     Parameters
     ----------
@@ -95,8 +93,7 @@ def boundary_crosses(sphere_mesh: SphereMesh) -> BoolArray:
 
 
 def pencil_positions(curvatures: FloatArray, first: FloatArray, second: FloatArray) -> IntArray:
-    """
-    Position of tangent spheres in the parabolic pencils of a surface.
+    """Position of tangent spheres in the parabolic pencils of a surface.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Energy E_ortho: node axes near the normals of a surface.
+"""Energy E_ortho: node axes near the normals of a surface.
 
 The centres ``v + λ n`` of tangent spheres form a triangle mesh; the node axes are orthogonal to
 its triangles. The residual of a triangle is ``max(0, cos² α - c |c|)``, with α the angle
@@ -17,8 +16,7 @@ from ..arrays import FloatArray, IntArray, dot, norm, unit
 def axis_deviations(
     points: FloatArray, normals: FloatArray, triangles: IntArray, offsets: FloatArray
 ) -> FloatArray:
-    """
-    Angles between node axes and surface normals.
+    """Angles between node axes and surface normals.
 
     Parameters
     ----------
@@ -46,12 +44,11 @@ def ortho_residuals(
     offsets: FloatArray,
     bound: float,
 ) -> tuple[FloatArray, FloatArray]:
-    """
-    Residuals of the node axes, and their derivatives.
+    """Residuals of the node axes, and their derivatives.
 
     Parameters
     ----------
-    points, normals, triangles, offsets
+    points, normals, triangles, offsets : arrays
         As for `axis_deviations`.
     bound : float
         Angle allowed between axis and normal, in radians.

@@ -14,8 +14,7 @@ RowDirection: TypeAlias = Literal["first", "second"]
 
 
 def shifted_rows(mesh: Mesh, along: RowDirection = "first") -> Mesh:
-    """
-    Nearly regular triangles from every second vertex of a quadrilateral grid.
+    """Nearly regular triangles from every second vertex of a quadrilateral grid.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Offsets of tangent spheres: on which side, how large they may be, how fast they may vary.
+"""Offsets of tangent spheres: on which side, how large they may be, how fast they may vary.
 
 The spheres touch a triangulation at its vertices v, their centres ``v + λ n`` lie all on one
 side. The offset λ must not pass the smallest curvature radius on that side, nor vary so fast
@@ -31,8 +30,7 @@ SMALLEST = 0.6
 
 @dataclass(frozen=True)
 class TangentSurface:
-    """
-    A triangulation whose vertices carry tangent spheres, in units of its mean edge.
+    """A triangulation whose vertices carry tangent spheres, in units of its mean edge.
 
     Attributes
     ----------
@@ -53,13 +51,10 @@ class TangentSurface:
 
 
 def tangent_surface(mesh: Mesh, side: CenterSide = "auto") -> tuple[TangentSurface, BoolArray]:
-    """
-    Normals and curvature radii of a triangulation on the side of the centres.
+    """Normals and curvature radii of a triangulation on the side of the centres.
 
     Parameters
     ----------
-    mesh : Mesh
-        A triangulation.
     side : {"auto", "plus", "minus"}
         Side of the centres.
 
@@ -93,12 +88,10 @@ def tangent_surface(mesh: Mesh, side: CenterSide = "auto") -> tuple[TangentSurfa
 
 
 def grow_offsets(surface: TangentSurface, aims: FloatArray, bound: float) -> FloatArray:
-    """
-    Largest offsets below an aim whose slopes between neighbours are bounded.
+    """Largest offsets below an aim whose slopes between neighbours are bounded.
 
     Parameters
     ----------
-    surface : TangentSurface
     aims : (V,) float array
         Upper bounds of the offsets.
     bound : float
@@ -157,13 +150,7 @@ def _neighbor_pairs(mesh: Mesh) -> tuple[IntArray, IntArray]:
 
 
 def least_offsets(mesh: Mesh) -> FloatArray:
-    """
-    Offsets below which the spheres of a triangle may have no point in common.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        A triangulation.
+    """Offsets below which the spheres of a triangle may have no point in common.
 
     Returns
     -------
@@ -179,12 +166,7 @@ def least_offsets(mesh: Mesh) -> FloatArray:
 
 
 def mesh_edges(mesh: Mesh) -> tuple[IntArray, IntArray]:
-    """
-    Ends of every edge, those on the boundary included.
-
-    Parameters
-    ----------
-    mesh : Mesh
+    """Ends of every edge, those on the boundary included.
 
     Returns
     -------

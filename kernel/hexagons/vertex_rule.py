@@ -1,5 +1,4 @@
-"""
-The vertices of hexagons: where three spheres meet, the point nearest the triangle (Sec. 7).
+"""The vertices of hexagons: where three spheres meet, the point nearest the triangle (Sec. 7).
 
 Three spheres meet in two points, mirror images in the plane of their centres.
 Rows are seen from points near the place where they meet, so that neither the position of the
@@ -18,8 +17,7 @@ from ..tolerances import DEGENERATE, EPSILON
 
 
 def meet_three(rows: FloatArray) -> tuple[FloatArray, BoolArray]:
-    """
-    The common point of three spheres or planes that lies nearest the origin.
+    """The common point of three spheres or planes that lies nearest the origin.
 
     Parameters
     ----------
@@ -79,12 +77,10 @@ def _meet_line(
 
 
 def vertex_rows(mesh: Mesh, spheres: ArrayLike) -> FloatArray:
-    """
-    Spheres at the vertices of a mesh, seen from their vertex.
+    """Spheres at the vertices of a mesh, seen from their vertex.
 
     Parameters
     ----------
-    mesh : Mesh
     spheres : (V, 5) array_like of float
         Real rows of any scale, in model coordinates; the orientation is kept.
 
@@ -129,13 +125,10 @@ def vertex_rows(mesh: Mesh, spheres: ArrayLike) -> FloatArray:
 def triangle_points(
     mesh: Mesh, rows: FloatArray, faces: IntArray | None = None
 ) -> tuple[FloatArray, BoolArray]:
-    """
-    Common point of the spheres of each triangle, the one nearest the triangle.
+    """Common point of the spheres of each triangle, the one nearest the triangle.
 
     Parameters
     ----------
-    mesh : Mesh
-        A triangulation.
     rows : (V, 5) float array
         Unit rows at the vertices, seen from them (`vertex_rows`).
     faces : (n,) int array, optional
@@ -162,13 +155,10 @@ def triangle_points(
 
 
 def corner_reach(mesh: Mesh, points: FloatArray) -> FloatArray:
-    """
-    How far the common points of triangles lie from them.
+    """How far the common points of triangles lie from them.
 
     Parameters
     ----------
-    mesh : Mesh
-        A triangulation.
     points : (T, 3) float array
         Points relative to the centroids (`triangle_points`).
 
@@ -186,8 +176,7 @@ def corner_reach(mesh: Mesh, points: FloatArray) -> FloatArray:
 def meet_near(
     rows: FloatArray, origins: FloatArray, size: float
 ) -> tuple[FloatArray, BoolArray]:
-    """
-    The common point of three spheres at each of many places, nearest the place.
+    """The common point of three spheres at each of many places, nearest the place.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Meshes of mixed face degrees: connectivity, curvature, subdivision, remeshing.
+"""Meshes of mixed face degrees: connectivity, curvature, subdivision, remeshing.
 
 mesh            The mesh: vertices, and faces of mixed degree in compressed rows.
 topology        Half-edges, edges and boundary of a mesh.

@@ -13,12 +13,7 @@ RING = 2
 
 
 def vertex_normals(mesh: Mesh) -> FloatArray:
-    """
-    Unit normals at the vertices, exact for vertices on a sphere or a plane.
-
-    Parameters
-    ----------
-    mesh : Mesh
+    """Unit normals at the vertices, exact for vertices on a sphere or a plane.
 
     Returns
     -------
@@ -76,12 +71,7 @@ def _mirror_to_boundary(mesh: Mesh, inner: FloatArray) -> FloatArray:
 
 
 def principal_curvatures(mesh: Mesh) -> tuple[FloatArray, FloatArray, BoolArray]:
-    """
-    Principal curvatures at the vertices, by quadrics fitted to two rings of neighbours.
-
-    Parameters
-    ----------
-    mesh : Mesh
+    """Principal curvatures at the vertices, by quadrics fitted to two rings of neighbours.
 
     Returns
     -------

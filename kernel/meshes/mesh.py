@@ -14,8 +14,7 @@ from .topology import Topology, build_topology
 
 @dataclass(frozen=True, init=False, eq=False)
 class Mesh:
-    """
-    An orientable manifold mesh with boundary, faces of mixed degree.
+    """An orientable manifold mesh with boundary, faces of mixed degree.
 
     Parameters
     ----------
@@ -67,8 +66,7 @@ class Mesh:
 
     @property
     def faces(self) -> tuple[IntArray, ...]:
-        """
-        Vertex ids of each face.
+        """Vertex ids of each face.
 
         Returns
         -------
@@ -79,8 +77,7 @@ class Mesh:
 
     @property
     def n_vertices(self) -> int:
-        """
-        Number of vertices.
+        """Number of vertices.
 
         Returns
         -------
@@ -91,8 +88,7 @@ class Mesh:
 
     @property
     def n_faces(self) -> int:
-        """
-        Number of faces.
+        """Number of faces.
 
         Returns
         -------
@@ -103,8 +99,7 @@ class Mesh:
 
     @property
     def degrees(self) -> IntArray:
-        """
-        Number of corners of each face, (F,).
+        """Number of corners of each face, (F,).
 
         Returns
         -------
@@ -115,8 +110,7 @@ class Mesh:
 
 
 def with_vertices(mesh: Mesh, vertices: FloatArray) -> Mesh:
-    """
-    The same faces on other points.
+    """The same faces on other points.
 
     Parameters
     ----------
@@ -188,8 +182,7 @@ def _check_elements(points: FloatArray, corners: IntArray, offsets: IntArray) ->
 
 
 def face_centroids(mesh: Mesh) -> FloatArray:
-    """
-    Mean of the corners of each face: the origin of the coordinates local to the face.
+    """Mean of the corners of each face: the origin of the coordinates local to the face.
 
     Parameters
     ----------
@@ -208,8 +201,7 @@ def face_centroids(mesh: Mesh) -> FloatArray:
 
 
 def local_corners(mesh: Mesh) -> FloatArray:
-    """
-    Corners in the coordinates local to their face.
+    """Corners in the coordinates local to their face.
 
     Parameters
     ----------
@@ -224,8 +216,7 @@ def local_corners(mesh: Mesh) -> FloatArray:
 
 
 def face_vector_areas(mesh: Mesh) -> FloatArray:
-    """
-    Vector area of each face: half the sum of the cross products along its boundary.
+    """Vector area of each face: half the sum of the cross products along its boundary.
 
     Parameters
     ----------
@@ -243,8 +234,7 @@ def face_vector_areas(mesh: Mesh) -> FloatArray:
 
 
 def face_normals(mesh: Mesh) -> FloatArray:
-    """
-    Unit normal of each face, along its vector area.
+    """Unit normal of each face, along its vector area.
 
     Parameters
     ----------
@@ -259,8 +249,7 @@ def face_normals(mesh: Mesh) -> FloatArray:
 
 
 def shortest_edge(mesh: Mesh) -> float:
-    """
-    Length of the shortest edge.
+    """Length of the shortest edge.
 
     Parameters
     ----------
@@ -276,8 +265,7 @@ def shortest_edge(mesh: Mesh) -> float:
 
 
 def mean_edge_length(mesh: Mesh) -> float:
-    """
-    Mean length of the sides of the faces: the unit in which tolerances are stated.
+    """Mean length of the sides of the faces: the unit in which tolerances are stated.
 
     Parameters
     ----------
@@ -293,8 +281,7 @@ def mean_edge_length(mesh: Mesh) -> float:
 
 
 def reversed_corners(mesh: Mesh) -> IntArray:
-    """
-    Vertices of the faces run the other way round, each from the same first one.
+    """Vertices of the faces run the other way round, each from the same first one.
 
     Parameters
     ----------
@@ -312,8 +299,7 @@ def reversed_corners(mesh: Mesh) -> IntArray:
 
 
 def edge_middles(mesh: Mesh) -> FloatArray:
-    """
-    Middles of the interior edges.
+    """Middles of the interior edges.
 
     Parameters
     ----------
@@ -328,8 +314,7 @@ def edge_middles(mesh: Mesh) -> FloatArray:
 
 
 def corner_edges(mesh: Mesh) -> IntArray:
-    """
-    Edge that leaves each corner, boundary edges included.
+    """Edge that leaves each corner, boundary edges included.
 
     Parameters
     ----------
@@ -347,8 +332,7 @@ def corner_edges(mesh: Mesh) -> IntArray:
 
 
 def edge_ends(mesh: Mesh, edges: IntArray) -> IntArray:
-    """
-    Vertices of all edges, boundary edges included.
+    """Vertices of all edges, boundary edges included.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Isotropic remeshing of triangle meshes.
+"""Isotropic remeshing of triangle meshes.
 
 Long edges are split, short ones merged, edges flipped towards six neighbours per vertex, and
 vertices moved along the surface to the middle of their neighbours, again and again.
@@ -33,8 +32,7 @@ EVEN_RANGE = (0.5, 1.6)
 def remesh_triangles(
     mesh: Mesh, edge_length: float, iterations: int = 10, crease_angle: float = CREASE
 ) -> Mesh:
-    """
-    Triangles with edges of nearly one length, on the surface of a mesh.
+    """Triangles with edges of nearly one length, on the surface of a mesh.
 
     Parameters
     ----------
@@ -86,12 +84,10 @@ def remesh_triangles(
 
 
 def even_share(mesh: Mesh, edge_length: float) -> float:
-    """
-    Share of the edges that have nearly a given length.
+    """Share of the edges that have nearly a given length.
 
     Parameters
     ----------
-    mesh : Mesh
     edge_length : float
         The length, in model units.
 

@@ -1,5 +1,4 @@
-"""
-Subdivision: finer meshes, by midpoints or smooth in the limit.
+"""Subdivision: finer meshes, by midpoints or smooth in the limit.
 
 All schemes keep the ids of the vertices; new vertices on edges follow, then those in faces.
 The parts of a face follow each other, in the order of the faces.
@@ -18,8 +17,7 @@ from .topology import previous_corners
 
 
 def subdivide_midpoint(mesh: Mesh) -> Mesh:
-    """
-    Split edges in the middle; the shape stays.
+    """Split edges in the middle; the shape stays.
 
     Parameters
     ----------
@@ -43,8 +41,7 @@ def subdivide_midpoint(mesh: Mesh) -> Mesh:
 
 
 def subdivide_catmull_clark(mesh: Mesh) -> Mesh:
-    """
-    One step towards the smooth surface of Catmull and Clark.
+    """One step towards the smooth surface of Catmull and Clark.
 
     Parameters
     ----------
@@ -94,12 +91,7 @@ def subdivide_catmull_clark(mesh: Mesh) -> Mesh:
 
 
 def subdivide_loop(mesh: Mesh) -> Mesh:
-    """
-    One step towards the smooth surface of Loop.
-
-    Parameters
-    ----------
-    mesh : Mesh
+    """One step towards the smooth surface of Loop.
 
     Returns
     -------

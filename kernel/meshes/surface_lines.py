@@ -1,5 +1,4 @@
-"""
-Boundary and creases of a surface as curves by arc length, which edits of triangles keep to.
+"""Boundary and creases of a surface as curves by arc length, which edits of triangles keep to.
 
 All curves are laid along one axis. A vertex on a line is a place on the axis, an edge of it an
 interval, and the intervals cover each curve once: how far the edges leave the curve is exact,
@@ -15,8 +14,7 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, norm
 
 @dataclass(frozen=True)
 class Curves:
-    """
-    Polylines laid along one axis, with gaps between them.
+    """Polylines laid along one axis, with gaps between them.
 
     Attributes
     ----------
@@ -30,8 +28,7 @@ class Curves:
     points: FloatArray
 
     def at(self, arcs: FloatArray) -> FloatArray:
-        """
-        Points of the curves.
+        """Points of the curves.
 
         Parameters
         ----------
@@ -51,8 +48,7 @@ class Curves:
         return result
 
     def deviations(self, chords: FloatArray, arcs: FloatArray) -> FloatArray:
-        """
-        How far curves leave chords that cover each of them once.
+        """How far curves leave chords that cover each of them once.
 
         Parameters
         ----------
@@ -83,8 +79,7 @@ class Curves:
 
 
 def loop_starts(lines: IntArray, is_fixed: BoolArray) -> IntArray:
-    """
-    First vertices of the lines that close without a fixed vertex.
+    """First vertices of the lines that close without a fixed vertex.
 
     Parameters
     ----------
@@ -107,8 +102,7 @@ def loop_starts(lines: IntArray, is_fixed: BoolArray) -> IntArray:
 def trace_curves(
     vertices: FloatArray, lines: IntArray, is_fixed: BoolArray
 ) -> tuple[Curves, FloatArray]:
-    """
-    Curves between the fixed vertices of lines.
+    """Curves between the fixed vertices of lines.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Connectivity of a mesh of mixed face degrees, from its half-edges.
+"""Connectivity of a mesh of mixed face degrees, from its half-edges.
 
 A *corner* is a vertex in a face. Corner h also names the half-edge that leaves it, so the
 arrays of length H serve both. Interior edges are counted once, by their first half-edge.
@@ -15,8 +14,7 @@ from ..errors import InputError, name_ids
 
 @dataclass(frozen=True)
 class Topology:
-    """
-    Half-edge arrays of an orientable manifold mesh with boundary.
+    """Half-edge arrays of an orientable manifold mesh with boundary.
 
     Attributes
     ----------
@@ -45,8 +43,7 @@ class Topology:
 
 
 def build_topology(corners: IntArray, offsets: IntArray, n_vertices: int) -> Topology:
-    """
-    Match half-edges and check that they form an orientable manifold with boundary.
+    """Match half-edges and check that they form an orientable manifold with boundary.
 
     Parameters
     ----------
@@ -54,12 +51,6 @@ def build_topology(corners: IntArray, offsets: IntArray, n_vertices: int) -> Top
         Vertex of each corner, face after face.
     offsets : (F + 1,) int array
         First corner of each face, and H.
-    n_vertices : int
-
-    Returns
-    -------
-    Topology
-        The connectivity.
 
     Raises
     ------
@@ -157,17 +148,7 @@ def _check_vertex_fans(
 
 
 def previous_corners(topology: Topology) -> IntArray:
-    """
-    The corner before each corner in its face: inverse of `Topology.next_corners`.
-
-    Parameters
-    ----------
-    topology : Topology
-
-    Returns
-    -------
-    (H,) int array
-    """
+    """The corner (H,) before each corner in its face: inverse of `Topology.next_corners`."""
     result = np.empty_like(topology.next_corners)
     result[topology.next_corners] = np.arange(len(result))
     return result

@@ -13,8 +13,7 @@ SLIVER = 0.15
 
 @dataclass(frozen=True)
 class Triangles:
-    """
-    Triangles that are being edited.
+    """Triangles that are being edited.
 
     Attributes
     ----------
@@ -42,8 +41,7 @@ class Triangles:
 
 @dataclass(frozen=True)
 class Edges:
-    """
-    Edges of triangles.
+    """Edges of triangles.
 
     Attributes
     ----------
@@ -77,8 +75,7 @@ class Edges:
 def to_be_edited(
     vertices: FloatArray, faces: IntArray, is_fixed: BoolArray, lines: IntArray
 ) -> Triangles:
-    """
-    Triangles with their lines as curves; one that closes without a corner gets a fixed vertex.
+    """Triangles with their lines as curves; one without a corner gets a fixed vertex.
 
     Parameters
     ----------
@@ -90,11 +87,6 @@ def to_be_edited(
         Vertices that stay in place: at least those where lines end or meet.
     lines : (n, 2) int array
         Vertices of the edges on the boundary and on creases.
-
-    Returns
-    -------
-    Triangles
-        The triangles.
     """
     is_fixed = is_fixed.copy()
     is_fixed[loop_starts(lines, is_fixed)] = True
@@ -103,18 +95,7 @@ def to_be_edited(
 
 
 def find_edges(triangles: Triangles) -> Edges:
-    """
-    Edges of triangles, by one sort of the half-edges.
-
-    Parameters
-    ----------
-    triangles : Triangles
-
-    Returns
-    -------
-    Edges
-        The edges.
-    """
+    """Edges of triangles, by one sort of the half-edges: the edges."""
     faces, count = triangles.faces, len(triangles.vertices)
     ends = np.stack([faces.ravel(), np.roll(faces, -1, axis=1).ravel()], 1)
     keys, first, ids = np.unique(pair_keys(ends, count), return_index=True, return_inverse=True)
@@ -146,13 +127,11 @@ def find_edges(triangles: Triangles) -> Edges:
 
 
 def pair_keys(pairs: IntArray, count: int) -> IntArray:
-    """
-    A number for each unordered pair of vertices.
+    """A number for each unordered pair of vertices.
 
     Parameters
     ----------
     pairs : (n, 2) int array
-    count : int
 
     Returns
     -------
@@ -163,13 +142,7 @@ def pair_keys(pairs: IntArray, count: int) -> IntArray:
 
 
 def edge_lengths(triangles: Triangles, edges: Edges) -> FloatArray:
-    """
-    Lengths of edges.
-
-    Parameters
-    ----------
-    triangles : Triangles
-    edges : Edges
+    """Lengths of edges.
 
     Returns
     -------
@@ -180,8 +153,7 @@ def edge_lengths(triangles: Triangles, edges: Edges) -> FloatArray:
 
 
 def exceeds(values: FloatArray | float, bounds: FloatArray | float) -> BoolArray:
-    """
-    Whether values are larger by more than rounding, so that what is equal is so on any machine.
+    """Whether values are larger by more than rounding, so that equal is equal on any machine.
 
     Parameters
     ----------
@@ -197,8 +169,7 @@ def exceeds(values: FloatArray | float, bounds: FloatArray | float) -> BoolArray
 
 
 def triangle_normals(corners: FloatArray) -> FloatArray:
-    """
-    Cross products of two sides: normals of twice the area of the triangles.
+    """Cross products of two sides: normals of twice the area of the triangles.
 
     Parameters
     ----------
@@ -214,8 +185,7 @@ def triangle_normals(corners: FloatArray) -> FloatArray:
 
 
 def thickness(corners: FloatArray) -> FloatArray:
-    """
-    Height of triangles over their longest side, relative to it.
+    """Height of triangles over their longest side, relative to it.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Splits, collapses and flips of the edges of a triangle mesh, many at a time.
+"""Splits, collapses and flips of the edges of a triangle mesh, many at a time.
 
 Every function takes triangles in units in which edges shall have length 1 and returns edited
 ones. Edits that could disturb each other are not made in the same batch, so that a batch is a
@@ -36,12 +35,7 @@ SLIVER_GAIN = 1000
 
 
 def split_long_edges(triangles: Triangles) -> Triangles:
-    """
-    Split edges of more than 4/3, and those on a line that leave it, until none are left.
-
-    Parameters
-    ----------
-    triangles : Triangles
+    """Split edges of more than 4/3, and those on a line that leave it, until none are left.
 
     Returns
     -------
@@ -84,13 +78,7 @@ def _halved(
 
 
 def strays(triangles: Triangles) -> BoolArray:
-    """
-    Edges on lines that their curve leaves by more than `STRAY`.
-
-    Parameters
-    ----------
-    triangles : Triangles
-        The triangles.
+    """Edges on lines that their curve leaves by more than `STRAY`.
 
     Returns
     -------
@@ -127,12 +115,10 @@ def _split_faces(vertices: FloatArray, faces: IntArray, middles: IntArray) -> In
 
 
 def collapse_short_edges(triangles: Triangles, max_batches: int = 12) -> Triangles:
-    """
-    Merge the ends of edges of less than 4/5 where nothing grows beyond 4/3, folds or strays.
+    """Merge the ends of edges of less than 4/5 where nothing grows beyond 4/3, folds or strays.
 
     Parameters
     ----------
-    triangles : Triangles
     max_batches : int
         Most batches to make.
 
@@ -270,12 +256,10 @@ def _merge(
 
 
 def flip_edges(triangles: Triangles, max_batches: int = 12) -> Triangles:
-    """
-    Flip edges to widen slivers, and to bring numbers of neighbours to 6, on the boundary to 4.
+    """Flip edges to widen slivers, and to bring valences to 6, on the boundary to 4.
 
     Parameters
     ----------
-    triangles : Triangles
     max_batches : int
         Most batches to make.
 

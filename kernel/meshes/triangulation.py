@@ -9,8 +9,7 @@ from .mesh import Mesh, face_normals, local_corners
 
 
 def triangulate(mesh: Mesh) -> Mesh:
-    """
-    Triangles in place of polygons, on the same vertices.
+    """Triangles in place of polygons, on the same vertices.
 
     Parameters
     ----------
@@ -110,12 +109,7 @@ def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def check_triangles(mesh: Mesh) -> None:
-    """
-    Refuse a mesh that is no triangulation.
-
-    Parameters
-    ----------
-    mesh : Mesh
+    """Refuse a mesh that is no triangulation.
 
     Raises
     ------

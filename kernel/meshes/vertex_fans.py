@@ -11,8 +11,7 @@ from .topology import Topology, previous_corners
 
 @dataclass(frozen=True)
 class VertexFans:
-    """
-    Corners around vertices, counter-clockwise.
+    """Corners around vertices, counter-clockwise.
 
     Attributes
     ----------
@@ -38,22 +37,16 @@ def vertex_fans(
     vertices: IntArray,
     closed_from: Literal["first", "last"] = "first",
 ) -> VertexFans:
-    """
-    Order the corners around vertices.
+    """Order the corners around vertices.
 
     Parameters
     ----------
-    topology : Topology
     tails : (H,) int array
         Vertex of each corner.
     vertices : (n,) int array
         Vertices that belong to faces.
     closed_from : {"first", "last"}
         Whether the fan of an inner vertex starts at its first or its last corner.
-
-    Returns
-    -------
-    VertexFans
     """
     corners, around = np.arange(len(tails)), topology.twins[previous_corners(topology)]
     start = np.full(len(topology.is_boundary_vertex), -1)

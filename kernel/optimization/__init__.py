@@ -1,5 +1,4 @@
-"""
-Spheres that meet smoothly, in few radii: angles, energy (6), strips, clusters.
+"""Spheres that meet smoothly, in few radii: angles, energy (6), strips, clusters.
 
 Meshes with Spherical Faces, Secs. 3, 4 and 6.3.
 

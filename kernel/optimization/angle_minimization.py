@@ -1,5 +1,4 @@
-"""
-Angle minimisation in the pencils of the faces' circles.
+"""Angle minimisation in the pencils of the faces' circles.
 
 Every sphere through the circle of a face is ``S(t) = cos t P + sin t Q``: one unknown per face,
 and the conditions of lying on the vertices and of being a unit row hold exactly. Across an
@@ -31,8 +30,7 @@ MAX_NEWTON_STEPS = 1000
 
 @dataclass(frozen=True)
 class AngleReport:
-    """
-    How a minimisation of angles went.
+    """How a minimisation of angles went.
 
     Attributes
     ----------
@@ -59,8 +57,7 @@ class AngleReport:
 
 @dataclass(frozen=True)
 class PencilCoupling:
-    """
-    Products of the pencil rows of the two faces of each edge.
+    """Products of the pencil rows of the two faces of each edge.
 
     Attributes
     ----------
@@ -79,8 +76,7 @@ class PencilCoupling:
 
 @dataclass(frozen=True)
 class EdgeProducts:
-    """
-    The product ``g = <<S, S'>>`` of each edge and its derivatives.
+    """The product ``g = <<S, S'>>`` of each edge and its derivatives.
 
     Attributes
     ----------
@@ -96,12 +92,10 @@ class EdgeProducts:
 
 
 def couple_pencils(mesh: Mesh, circles: Circles, weights: FloatArray) -> PencilCoupling:
-    """
-    Products of neighbouring pencils, from differences of centres only.
+    """Products of neighbouring pencils, from differences of centres only.
 
     Parameters
     ----------
-    mesh : Mesh
     circles : Circles
         Circle of each face, in the coordinates local to the face.
     weights : (E,) float array
@@ -130,8 +124,7 @@ def couple_pencils(mesh: Mesh, circles: Circles, weights: FloatArray) -> PencilC
 
 
 def edge_products(coupling: PencilCoupling, angles: FloatArray) -> EdgeProducts:
-    """
-    Products ``<<S, S'>>`` at given unknowns.
+    """Products ``<<S, S'>>`` at given unknowns.
 
     Parameters
     ----------
@@ -139,11 +132,6 @@ def edge_products(coupling: PencilCoupling, angles: FloatArray) -> EdgeProducts:
         Products of the pencil rows.
     angles : (F,) float array
         Unknown t of each face.
-
-    Returns
-    -------
-    EdgeProducts
-        Values and derivatives.
     """
     pp, pq, qp, qq = coupling.products
     cosine, sine = np.cos(angles), np.sin(angles)
@@ -162,8 +150,7 @@ EdgeEnergy = Callable[[FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
 
 
 def signed_density(products: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """
-    Density ``1 - g`` of stage 1.
+    """Density ``1 - g`` of stage 1.
 
     Parameters
     ----------
@@ -178,8 +165,7 @@ def signed_density(products: FloatArray) -> tuple[FloatArray, FloatArray, FloatA
 
 
 def angle_density(target: float) -> EdgeEnergy:
-    """
-    Density ``(g |g| - cos² α)²`` of stage 2: the paper's, told from a spike by its sign.
+    """Density ``(g |g| - cos² α)²`` of stage 2: the paper's, told from a spike by its sign.
 
     Parameters
     ----------
@@ -212,8 +198,7 @@ def minimize_angles(
     target_angle: float = 0.0,
     edge_weights: ArrayLike | None = None,
 ) -> tuple[SphereMesh, AngleReport]:
-    """
-    Spheres through the faces' circles that meet their neighbours most smoothly.
+    """Spheres through the faces' circles that meet their neighbours most smoothly.
 
     Parameters
     ----------
@@ -270,12 +255,10 @@ def minimize_angles(
 
 
 def pencil_angles(sphere_mesh: SphereMesh, circles: Circles) -> FloatArray:
-    """
-    Unknowns t of the members of the circle pencils nearest to given spheres.
+    """Unknowns t of the members of the circle pencils nearest to given spheres.
 
     Parameters
     ----------
-    sphere_mesh : SphereMesh
     circles : Circles
         Circle of each face, local to the face.
 
@@ -292,12 +275,10 @@ def pencil_angles(sphere_mesh: SphereMesh, circles: Circles) -> FloatArray:
 def check_angle_options(
     mesh: Mesh, target: float, edge_weights: ArrayLike | None
 ) -> FloatArray:
-    """
-    Check what is asked of the angles.
+    """Check what is asked of the angles.
 
     Parameters
     ----------
-    mesh : Mesh
     target : float
         Target angle, in radians.
     edge_weights : (E,) array_like of float, optional

@@ -1,5 +1,4 @@
-"""
-Few moulds: the radii of a sphere mesh gathered into clusters.
+"""Few moulds: the radii of a sphere mesh gathered into clusters.
 
 Curvatures are clustered, not radii: the radius of a nearly flat panel is arbitrarily large and
 would decide alone. The side to which a panel curves is no property of the mould; it is kept.
@@ -26,8 +25,7 @@ RELAXED_CLOSENESS = 0.05
 
 @dataclass(frozen=True)
 class RadiusClusters:
-    """
-    Moulds and the panels that are made on them.
+    """Moulds and the panels that are made on them.
 
     Attributes
     ----------
@@ -50,12 +48,10 @@ class RadiusClusters:
 def cluster_radii(
     sphere_mesh: SphereMesh, k: int, seed: int = 0
 ) -> tuple[SphereMesh, RadiusClusters]:
-    """
-    Replace the radii of all panels by at most k, vertices fixed.
+    """Replace the radii of all panels by at most k, vertices fixed.
 
     Parameters
     ----------
-    sphere_mesh : SphereMesh
     k : int
         Number of moulds, at least 1; fewer come out where fewer curvatures differ.
     seed : int
@@ -119,14 +115,12 @@ def relax_moulds(
     regularity: float = 0.0,
     support: float = 0.0,
 ) -> tuple[SphereMesh, Optimization]:
-    """
-    Let vertices and spheres of given radii move to where the angles are smallest.
+    """Let vertices and spheres of given radii move to where the angles are smallest.
 
     Parameters
     ----------
     sphere_mesh : SphereMesh
         Spheres of the moulds' radii, as `cluster_radii` returns them.
-    clusters : RadiusClusters
     tolerance : float
         How far vertices may move, in mean edges.
     regularity, support : float

@@ -1,5 +1,4 @@
-"""
-Strips: rows of faces whose spheres join smoothly along the row, and only there.
+"""Strips: rows of faces whose spheres join smoothly along the row, and only there.
 
 Seen from afar such a mesh is a sequence of canal surfaces along one family of its parameter
 lines (Sec. 6.3). All that it takes are weights on the edges between neighbours of a row.
@@ -17,8 +16,7 @@ Family = Literal["first", "second"]
 
 
 def strip_weights(mesh: Mesh, family: Family) -> FloatArray:
-    """
-    Weights that join quadrilaterals along one of their two directions.
+    """Weights that join quadrilaterals along one of their two directions.
 
     Parameters
     ----------
@@ -59,12 +57,10 @@ def strip_weights(mesh: Mesh, family: Family) -> FloatArray:
 
 
 def strip_weights_along(mesh: Mesh, direction: FloatArray) -> FloatArray:
-    """
-    Weights that join faces along a direction in space.
+    """Weights that join faces along a direction in space.
 
     Parameters
     ----------
-    mesh : Mesh
     direction : (3,) or (F, 3) float array
         Direction in which strips run, for all faces or for each.
 

@@ -1,5 +1,4 @@
-"""
-Energy (6) on sphere meshes: smooth spheres, upright planes between them, nodes with axes.
+"""Energy (6) on sphere meshes: smooth spheres, upright planes between them, nodes with axes.
 
 With a tolerance the vertices move, at most so far, until all spheres of a vertex pass through
 it. Not every mesh has such spheres nearby: a quad whose corners lie on no circle fixes its
@@ -47,8 +46,7 @@ of two curvatures, and small."""
 
 @dataclass(frozen=True)
 class Conditions:
-    """
-    What an optimisation has to respect.
+    """What an optimisation has to respect.
 
     Attributes
     ----------
@@ -81,8 +79,7 @@ class Conditions:
 
 @dataclass(frozen=True)
 class Stage:
-    """
-    One minimisation on the way.
+    """One minimisation on the way.
 
     Attributes
     ----------
@@ -90,8 +87,6 @@ class Stage:
         What it was for.
     status : {"converged", "stalled", "exhausted"}
         How it ended.
-    iterations : int
-        Linear systems solved.
     energies : mapping of str to (n,) float arrays
         Weighted energy of each term at the start and after each accepted step.
     """
@@ -104,8 +99,7 @@ class Stage:
 
 @dataclass(frozen=True)
 class Optimization:
-    """
-    How an optimisation went.
+    """How an optimisation went.
 
     Attributes
     ----------
@@ -128,14 +122,7 @@ class Optimization:
 
     @property
     def converged(self) -> bool:
-        """
-        Whether the last stage came to rest.
-
-        Returns
-        -------
-        bool
-            False if it used up its iterations.
-        """
+        """Whether the last stage came to rest: False if it used up its iterations."""
         return self.stages[-1].status != "exhausted"
 
 
@@ -144,12 +131,10 @@ def optimize_spheres(
     weights: EnergyWeights | None = None,
     conditions: Conditions | None = None,
 ) -> tuple[SphereMesh, Optimization]:
-    """
-    Minimise energy (6).
+    """Minimise energy (6).
 
     Parameters
     ----------
-    sphere_mesh : SphereMesh
     weights : EnergyWeights, optional
         Weights of the terms.
     conditions : Conditions, optional
@@ -200,13 +185,10 @@ def optimize_spheres(
 def move_vertices(
     sphere_mesh: SphereMesh, weights: EnergyWeights, conditions: Conditions
 ) -> tuple[SphereMesh, Optimization]:
-    """
-    Minimise energy (6) with vertices that move onto their spheres.
+    """Minimise energy (6) with vertices that move onto their spheres.
 
     Parameters
     ----------
-    sphere_mesh : SphereMesh
-    weights : EnergyWeights
     conditions : Conditions
         What has to be respected; its tolerance bounds every displacement.
 
@@ -310,8 +292,7 @@ def _angles_first(problem: _Problem, weights: EnergyWeights) -> _Problem:
 
 
 def _tightened(problem: _Problem, weights: EnergyWeights, hard: tuple[str, ...]) -> _Problem:
-    """
-    Minimise; then again and again with ten times the weight on what has to hold exactly.
+    """Minimise; then again and again with ten times the weight on what has to hold exactly.
 
     Where vertices stay, the first stage comes to rest. The valley of the energy is flat: a
     descent that ends halfway, or whose steps leave much out, ends where rounding has led it,

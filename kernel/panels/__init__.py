@@ -1,5 +1,4 @@
-"""
-Panels: pieces of spheres cut out by planes, what is known of them, and their moulds.
+"""Panels: pieces of spheres cut out by planes, what is known of them, and their moulds.
 
 checks        What keeps a panel from being made: crossing boundaries, lost corners, caps too
               deep.

@@ -19,8 +19,7 @@ NO_PANEL: Final = "P100"
 
 @dataclass(frozen=True)
 class Found:
-    """
-    What cutting the panels found.
+    """What cutting the panels found.
 
     Attributes
     ----------
@@ -44,15 +43,12 @@ Fault = tuple[str, BoolArray]
 
 
 def rejection_reasons(panels: Panels, found: Found) -> dict[int, str]:
-    """
-    Why panels cannot be made.
+    """Why panels cannot be made.
 
     Parameters
     ----------
     panels : Panels
         P panels with H corners, sound or not.
-    found : Found
-        What cutting them found.
 
     Returns
     -------

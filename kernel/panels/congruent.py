@@ -13,8 +13,7 @@ from .panels import Panels, panel_arcs
 
 @dataclass(frozen=True)
 class CongruentPanels:
-    """
-    Panels gathered by shape.
+    """Panels gathered by shape.
 
     Attributes
     ----------
@@ -39,12 +38,10 @@ class CongruentPanels:
 
 
 def congruent_panels(panels: Panels, tolerance: float = SAME_PANEL) -> CongruentPanels:
-    """
-    Find panels that are the same up to a rigid motion.
+    """Find panels that are the same up to a rigid motion.
 
     Parameters
     ----------
-    panels : Panels
     tolerance : float
         How far corners and middles of edges of the same shape may lie apart, in mean edges of
         all panels.
@@ -132,8 +129,7 @@ def _kinds(labels: IntArray, marks: FloatArray, reach: float) -> IntArray:
 def _best_motion(
     models: FloatArray, marks: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """
-    Rigid motions of models onto panels, over all turns of their corners.
+    """Rigid motions of models onto panels, over all turns of their corners.
 
     Returns rotations (n, 3, 3), translations (n, 3) and the largest misses (n,).
     """

@@ -1,5 +1,4 @@
-"""
-Cutting panels out of the spheres of a mesh, by one plane per edge.
+"""Cutting panels out of the spheres of a mesh, by one plane per edge.
 
 Neighbours share their cutting plane; their two arcs in it may differ by a gap, which is
 measured here. What cannot be made is listed with its reason.
@@ -29,12 +28,7 @@ EdgeMode = Literal["bisector", "intersection"]
 
 
 def flatten_nearly_plane(sphere_mesh: SphereMesh) -> SphereMesh:
-    """
-    Replace spheres that bulge less than a workshop can tell by planes.
-
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
+    """Replace spheres that bulge less than a workshop can tell by planes.
 
     Returns
     -------
@@ -61,8 +55,7 @@ def flatten_nearly_plane(sphere_mesh: SphereMesh) -> SphereMesh:
 
 
 def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray, FloatArray]:
-    """
-    Plane that cuts each panel along each of its edges.
+    """Plane that cuts each panel along each of its edges.
 
     Parameters
     ----------
@@ -121,8 +114,7 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
 
 @dataclass(frozen=True)
 class EdgeCuts:
-    """
-    A sphere mesh and the planes that cut its edges.
+    """A sphere mesh and the planes that cut its edges.
 
     Attributes
     ----------
@@ -147,21 +139,14 @@ class EdgeCuts:
 
 
 def cut_edges(sphere_mesh: SphereMesh, edges: EdgeMode, joint_gap: float = 0.0) -> EdgeCuts:
-    """
-    Cut the spheres of a mesh along its edges.
+    """Cut the spheres of a mesh along its edges.
 
     Parameters
     ----------
-    sphere_mesh : SphereMesh
     edges : {"bisector", "intersection"}
         In which planes, see `cutting_planes`.
     joint_gap : float
         Width of the joints: every plane moves into its face by half of it.
-
-    Returns
-    -------
-    EdgeCuts
-        Planes and corners.
     """
     sphere_mesh = flatten_nearly_plane(sphere_mesh)
     mesh = sphere_mesh.mesh
@@ -175,12 +160,10 @@ def cut_edges(sphere_mesh: SphereMesh, edges: EdgeMode, joint_gap: float = 0.0) 
 
 
 def edge_arcs(sphere_mesh: SphereMesh, edges: EdgeMode) -> Arcs:
-    """
-    Arc of each half-edge on the sphere of its face.
+    """Arc of each half-edge on the sphere of its face.
 
     Parameters
     ----------
-    sphere_mesh : SphereMesh
     edges : {"bisector", "intersection"}
         In which planes the arcs lie, see `cutting_planes`.
 
@@ -204,12 +187,10 @@ def edge_arcs(sphere_mesh: SphereMesh, edges: EdgeMode) -> Arcs:
 
 
 def edge_gaps(sphere_mesh: SphereMesh, edges: EdgeMode) -> FloatArray:
-    """
-    Largest distance between the two arcs of each interior edge.
+    """Largest distance between the two arcs of each interior edge.
 
     Parameters
     ----------
-    sphere_mesh : SphereMesh
     edges : {"bisector", "intersection"}
         How panels are cut, see `cutting_planes`.
 
@@ -247,12 +228,10 @@ def edge_gaps(sphere_mesh: SphereMesh, edges: EdgeMode) -> FloatArray:
 def gap_report(
     sphere_mesh: SphereMesh, edges: EdgeMode, face_ids: IntArray
 ) -> dict[str, float]:
-    """
-    Summary of the gaps between the arcs of neighbouring panels.
+    """Summary of the gaps between the arcs of neighbouring panels.
 
     Parameters
     ----------
-    sphere_mesh : SphereMesh
     edges : {"bisector", "intersection"}
         How panels are cut.
     face_ids : (P,) int array
@@ -288,12 +267,10 @@ def cut_panels(
     side: ThicknessSide = "inward",
     layer: ThicknessRule = "offset",
 ) -> tuple[Panels, tuple[RejectedPart, ...]]:
-    """
-    Cut a panel out of the sphere of every face.
+    """Cut a panel out of the sphere of every face.
 
     Parameters
     ----------
-    sphere_mesh : SphereMesh
     edges : {"bisector", "intersection"}
         How panels are cut, see `cutting_planes`.
     thickness : float
@@ -358,12 +335,7 @@ def cut_panels(
 
 
 def thickness_report(panels: Panels) -> dict[str, float]:
-    """
-    Summary of the thicknesses of panels.
-
-    Parameters
-    ----------
-    panels : Panels
+    """Summary of the thicknesses of panels.
 
     Returns
     -------

@@ -28,8 +28,7 @@ from .panels import (
 
 @dataclass(frozen=True)
 class PanelRadii:
-    """
-    Centres and radii of panels, in the unit of the panels; points in model coordinates.
+    """Centres and radii of panels, in the unit of the panels; points in model coordinates.
 
     Attributes
     ----------
@@ -50,8 +49,7 @@ class PanelRadii:
 
 @dataclass(frozen=True)
 class PanelFacts(PanelRadii):
-    """
-    Measures of panels, in the unit of the panels; points in model coordinates.
+    """Measures of panels, in the unit of the panels; points in model coordinates.
 
     Attributes
     ----------
@@ -97,18 +95,7 @@ class PanelFacts(PanelRadii):
 
 
 def panel_radii(panels: Panels) -> PanelRadii:
-    """
-    Measure the spheres of panels.
-
-    Parameters
-    ----------
-    panels : Panels
-
-    Returns
-    -------
-    PanelRadii
-        Centres and radii.
-    """
+    """Measure the spheres of panels."""
     centers, squares = center_radius(panels.design_spheres)
     return PanelRadii(
         radii=np.sqrt(squares),
@@ -119,12 +106,7 @@ def panel_radii(panels: Panels) -> PanelRadii:
 
 
 def panel_bulges(panels: Panels) -> list[str]:
-    """
-    To which side panels bulge, seen along the face normals.
-
-    Parameters
-    ----------
-    panels : Panels
+    """To which side panels bulge, seen along the face normals.
 
     Returns
     -------
@@ -137,18 +119,7 @@ def panel_bulges(panels: Panels) -> list[str]:
 
 
 def panel_facts(panels: Panels) -> PanelFacts:
-    """
-    Measure panels.
-
-    Parameters
-    ----------
-    panels : Panels
-
-    Returns
-    -------
-    PanelFacts
-        The measures.
-    """
+    """Measure panels."""
     arcs = panel_arcs(panels)
     tilts, steps = _neighborhood(panels)
     return PanelFacts(
@@ -171,12 +142,7 @@ _LAYERS, _LAYER_WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
 def panel_volumes(panels: Panels) -> FloatArray:
-    """
-    Volumes between the outer and inner faces.
-
-    Parameters
-    ----------
-    panels : Panels
+    """Volumes between the outer and inner faces.
 
     Returns
     -------

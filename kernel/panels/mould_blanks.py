@@ -17,8 +17,7 @@ _MAX_STEPS = 100
 
 @dataclass(frozen=True)
 class PanelCaps:
-    """
-    Smallest caps of the moulds that hold both faces of panels.
+    """Smallest caps of the moulds that hold both faces of panels.
 
     Attributes
     ----------
@@ -44,8 +43,7 @@ class PanelCaps:
 
 @dataclass(frozen=True)
 class MouldBlanks:
-    """
-    Blanks per mould: one size that holds every panel of the mould, or a few sizes.
+    """Blanks per mould: one size that holds every panel of the mould, or a few sizes.
 
     Attributes
     ----------
@@ -75,12 +73,7 @@ class MouldBlanks:
 
 
 def panel_caps(panels: Panels) -> PanelCaps:
-    """
-    Smallest cap of each panel's mould over which both of its faces lie.
-
-    Parameters
-    ----------
-    panels : Panels
+    """Smallest cap of each panel's mould over which both of its faces lie.
 
     Returns
     -------
@@ -131,8 +124,7 @@ def mould_blanks(
     size_step: float = 0.0,
     caps: PanelCaps | None = None,
 ) -> MouldBlanks:
-    """
-    How many blanks of which size every mould must give.
+    """How many blanks of which size every mould must give.
 
     Parameters
     ----------

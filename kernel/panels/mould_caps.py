@@ -15,8 +15,7 @@ _CORNERS = 4
 
 @dataclass(frozen=True)
 class MouldCaps:
-    """
-    Caps of M moulds, and where P panels lie on them.
+    """Caps of M moulds, and where P panels lie on them.
 
     Attributes
     ----------
@@ -42,8 +41,7 @@ class MouldCaps:
 
 
 def mould_caps(panels: Panels) -> MouldCaps:
-    """
-    The caps of moulds.
+    """The caps of moulds.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Panels: pieces of spheres cut out by planes, exact each in itself.
+"""Panels: pieces of spheres cut out by planes, exact each in itself.
 
 A panel is its sphere, one cutting plane per edge, and the corners where the sphere meets two
 consecutive planes. All geometry is local to the panel (its origin is the centroid of the mesh
@@ -21,8 +20,7 @@ from ..tolerances import PARALLEL_PLANES
 
 @dataclass(frozen=True)
 class Panels:
-    """
-    Panels that can be made, in the order of their faces.
+    """Panels that can be made, in the order of their faces.
 
     Attributes
     ----------
@@ -84,8 +82,7 @@ class Panels:
 
     @property
     def element_ids(self) -> IntArray:
-        """
-        Face of each panel.
+        """Face of each panel.
 
         Returns
         -------
@@ -96,20 +93,12 @@ class Panels:
 
     @property
     def n_panels(self) -> int:
-        """
-        Number of panels.
-
-        Returns
-        -------
-        int
-            P.
-        """
+        """Number of panels."""
         return len(self.face_ids)
 
     @property
     def degrees(self) -> IntArray:
-        """
-        Number of corners of each panel, (P,).
+        """Number of corners of each panel, (P,).
 
         Returns
         -------
@@ -120,8 +109,7 @@ class Panels:
 
     @property
     def corner_panels(self) -> IntArray:
-        """
-        Panel of each corner, (H,).
+        """Panel of each corner, (H,).
 
         Returns
         -------
@@ -132,8 +120,7 @@ class Panels:
 
     @property
     def next_corners(self) -> IntArray:
-        """
-        Following corner in the same panel, (H,).
+        """Following corner in the same panel, (H,).
 
         Returns
         -------
@@ -156,8 +143,7 @@ def corner_points(
     offsets: IntArray,
     references: FloatArray,
 ) -> tuple[FloatArray, BoolArray]:
-    """
-    Points in which spheres meet two consecutive cutting planes, nearest to references.
+    """Points in which spheres meet two consecutive cutting planes, nearest to references.
 
     Parameters
     ----------
@@ -205,12 +191,7 @@ def corner_points(
 
 
 def panel_ids(n_faces: int) -> tuple[str, ...]:
-    """
-    Stable names of the panels of a mesh.
-
-    Parameters
-    ----------
-    n_faces : int
+    """Stable names of the panels of a mesh.
 
     Returns
     -------
@@ -222,12 +203,7 @@ def panel_ids(n_faces: int) -> tuple[str, ...]:
 
 
 def opposite_corners(panels: Panels) -> IntArray:
-    """
-    The other panel's side of each edge.
-
-    Parameters
-    ----------
-    panels : Panels
+    """The other panel's side of each edge.
 
     Returns
     -------
@@ -245,12 +221,7 @@ def opposite_corners(panels: Panels) -> IntArray:
 
 
 def neighbor_ids(panels: Panels) -> list[str | None]:
-    """
-    Panel beyond each edge, by name.
-
-    Parameters
-    ----------
-    panels : Panels
+    """Panel beyond each edge, by name.
 
     Returns
     -------
@@ -262,12 +233,10 @@ def neighbor_ids(panels: Panels) -> list[str | None]:
 
 
 def scale_panels(panels: Panels, factor: float) -> Panels:
-    """
-    Panels in another unit of length.
+    """Panels in another unit of length.
 
     Parameters
     ----------
-    panels : Panels
     factor : float
         Positive number of new units in an old one.
 
@@ -292,12 +261,10 @@ def scale_panels(panels: Panels, factor: float) -> Panels:
 
 
 def move_origins(panels: Panels, origins: FloatArray) -> Panels:
-    """
-    The same panels in coordinates local to other points.
+    """The same panels in coordinates local to other points.
 
     Parameters
     ----------
-    panels : Panels
     origins : (P, 3) float array
         New origins, in model coordinates, near the old ones.
 
@@ -321,12 +288,10 @@ def move_origins(panels: Panels, origins: FloatArray) -> Panels:
 
 
 def panel_arcs(panels: Panels, face: Literal["outer", "inner"] = "outer") -> Arcs:
-    """
-    Edges of the outer or inner faces, in local coordinates.
+    """Edges of the outer or inner faces, in local coordinates.
 
     Parameters
     ----------
-    panels : Panels
     face : {"outer", "inner"}
 
     Returns
@@ -340,12 +305,7 @@ def panel_arcs(panels: Panels, face: Literal["outer", "inner"] = "outer") -> Arc
 
 
 def boundaries(panels: Panels) -> list[tuple[FloatArray, Arcs]]:
-    """
-    Faces of panels and their edges: the outer ones, and the inner ones if there is a thickness.
-
-    Parameters
-    ----------
-    panels : Panels
+    """Faces of panels and their edges: outer ones, and inner ones if there is a thickness.
 
     Returns
     -------
@@ -364,12 +324,7 @@ def _face_arcs(panels: Panels, rows: FloatArray, corners: FloatArray) -> Arcs:
 
 
 def panel_areas(panels: Panels) -> FloatArray:
-    """
-    Areas of the outer faces, in closed form.
-
-    Parameters
-    ----------
-    panels : Panels
+    """Areas of the outer faces, in closed form.
 
     Returns
     -------

@@ -11,8 +11,7 @@ from .mould_blanks import MouldBlanks
 
 @dataclass(frozen=True, eq=False)
 class CutReport(Report):
-    """
-    The panels that can be made, and the others.
+    """The panels that can be made, and the others.
 
     Attributes
     ----------
@@ -35,8 +34,7 @@ class CutReport(Report):
 
 @dataclass(frozen=True, eq=False)
 class BlanksReport(Report):
-    """
-    Blanks that the moulds must give, lengths in model units.
+    """Blanks that the moulds must give, lengths in model units.
 
     Attributes
     ----------
@@ -53,8 +51,7 @@ class BlanksReport(Report):
 
 
 def blanks_report(found: MouldBlanks, without_mould: int) -> BlanksReport:
-    """
-    The report of blanks.
+    """The report of blanks.
 
     Parameters
     ----------

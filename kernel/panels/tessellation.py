@@ -1,5 +1,4 @@
-"""
-Triangles for pictures and viewers: points and normals exact, only the faces between flat.
+"""Triangles for pictures and viewers: points and normals exact, only the faces between flat.
 
 A panel is triangulated as a fan about its middle, in the stereographic chart of its sphere: the
 chart keeps circles, so its outline stays as simple as the panel. Rings of points divide the
@@ -21,8 +20,7 @@ MAX_STEPS = 32
 
 @dataclass(frozen=True)
 class PanelTriangles:
-    """
-    Triangulated panels.
+    """Triangulated panels.
 
     Attributes
     ----------
@@ -50,12 +48,7 @@ class PanelTriangles:
 
 
 def surface_rows(panels: Panels) -> FloatArray:
-    """
-    All surfaces that bound panels, oriented outwards.
-
-    Parameters
-    ----------
-    panels : Panels
+    """All surfaces that bound panels, oriented outwards.
 
     Returns
     -------
@@ -71,12 +64,10 @@ def surface_rows(panels: Panels) -> FloatArray:
 def tessellate(
     panels: Panels, tolerance: float = 0.002, *, solid: bool = True
 ) -> PanelTriangles:
-    """
-    Triangulate panels.
+    """Triangulate panels.
 
     Parameters
     ----------
-    panels : Panels
     tolerance : float
         Largest distance of a triangle from its surface, relative to the radius of the panel
         (its farthest corner); reached by at most `MAX_STEPS` steps per edge.
@@ -249,8 +240,7 @@ def _numbered(piece: _Piece) -> IntArray:
 
 
 def _fan(degree: int, steps: int) -> IntArray:
-    """
-    Triangles of a fan of `degree` sectors, each divided in ``steps²``.
+    """Triangles of a fan of `degree` sectors, each divided in ``steps²``.
 
     Point 0 is the middle; ring j of ``degree * j`` points follows ring j - 1.
     """
@@ -274,8 +264,7 @@ def _fan(degree: int, steps: int) -> IntArray:
 
 @dataclass(frozen=True)
 class _Chart:
-    """
-    Stereographic charts of spheres, planes included.
+    """Stereographic charts of spheres, planes included.
 
     A point d from the middle has the chart coordinates ``(d·x, d·y) / (1 - A d·N)``.
     """
@@ -313,8 +302,7 @@ def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def cut_ears(outline: FloatArray) -> IntArray:
-    """
-    Triangulate a simple polygon by its ears.
+    """Triangulate a simple polygon by its ears.
 
     Parameters
     ----------

@@ -18,8 +18,7 @@ OUTWARD_SHARE = {"inward": 0.0, "outward": 1.0, "centred": 0.5}
 
 @dataclass(frozen=True)
 class PanelFaces:
-    """
-    Outer and inner faces.
+    """Outer and inner faces.
 
     Attributes
     ----------
@@ -40,8 +39,7 @@ class PanelFaces:
 def panel_faces(
     rows: FloatArray, thickness: float, side: ThicknessSide, layer: ThicknessRule
 ) -> PanelFaces:
-    """
-    Outer and inner faces of panels.
+    """Outer and inner faces of panels.
 
     Parameters
     ----------
@@ -56,11 +54,6 @@ def panel_faces(
         differ by the same κ everywhere, so that neighbours which bulge to the same side meet
         in the same plane on both faces. The thickness is then about κ / 2r: sharp panels are
         thicker than flat ones, and planes have none.
-
-    Returns
-    -------
-    PanelFaces
-        The faces.
 
     References
     ----------
@@ -82,8 +75,7 @@ def panel_faces(
 def _power_distances(
     rows: FloatArray, power: float, side: ThicknessSide
 ) -> tuple[FloatArray, FloatArray]:
-    """
-    Signed distances along N of the two faces whose squared radii differ by the power.
+    """Signed distances along N of the two faces whose squared radii differ by the power.
 
     With ``r'² = r² + δ`` the distance is ``r' - r = δ / (r' + r)``, written in the curvature k
     so that planes get zero. Faces beyond the centre end at the centre.

@@ -1,5 +1,4 @@
-"""
-What panels, beams and nodes are called, and what is said of them.
+"""What panels, beams and nodes are called, and what is said of them.
 
 colors    Names and colours of moulds: the same in every file and picture.
 findings  Findings: what checks say of parts, numbered, for people and programs to sort.

@@ -23,8 +23,7 @@ _CHROMA: Final = 0.11
 
 
 def mould_name(label: int, count: int) -> str:
-    """
-    Name of a mould, for layers and schedules.
+    """Name of a mould, for layers and schedules.
 
     Parameters
     ----------
@@ -51,8 +50,7 @@ def mould_name(label: int, count: int) -> str:
 
 
 def mould_number(label: int, count: int) -> str:
-    """
-    Number of a mould, as its name has it.
+    """Number of a mould, as its name has it.
 
     Parameters
     ----------
@@ -71,8 +69,7 @@ def mould_number(label: int, count: int) -> str:
 
 
 def mould_color(label: int, count: int) -> Color:
-    """
-    Colour of a mould.
+    """Colour of a mould.
 
     Parameters
     ----------

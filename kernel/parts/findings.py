@@ -16,8 +16,7 @@ Severity = Literal["error", "note"]
 
 @dataclass(frozen=True)
 class Finding:
-    """
-    One thing found.
+    """One thing found.
 
     Attributes
     ----------
@@ -41,25 +40,12 @@ class Finding:
 
 
 def rejected_report(rejected: Iterable[RejectedPart]) -> list[dict[str, str]]:
-    """
-    Parts that cannot be made as plain values.
-
-    Parameters
-    ----------
-    rejected : iterable of RejectedPart
-        Panels or beams.
-
-    Returns
-    -------
-    list of dict
-        ``id``, ``code`` and ``reason`` of each.
-    """
+    """Parts that cannot be made as plain values: ``id``, ``code`` and ``reason`` of each."""
     return [{"id": part.id, "code": part.code, "reason": part.reason} for part in rejected]
 
 
 def refusals(rejected: Iterable[Mapping[str, str]]) -> list[Finding]:
-    """
-    Parts that cannot be made as findings.
+    """Parts that cannot be made as findings.
 
     Parameters
     ----------
@@ -78,12 +64,10 @@ def refusals(rejected: Iterable[Mapping[str, str]]) -> list[Finding]:
 
 
 def repeated_names(ids: Iterable[str], code: str, kind: str) -> list[Finding]:
-    """
-    Names that several parts have.
+    """Names that several parts have.
 
     Parameters
     ----------
-    ids : iterable of str
     code : str
         Code of the findings.
     kind : str
@@ -109,8 +93,7 @@ def findings_where(
     message: str,
     severity: Severity = "note",
 ) -> list[Finding]:
-    """
-    The findings of one check.
+    """The findings of one check.
 
     Parameters
     ----------
@@ -140,8 +123,7 @@ def findings_where(
 
 @dataclass(frozen=True, eq=False)
 class AuditReport(Report):
-    """
-    Findings.
+    """Findings.
 
     Attributes
     ----------
@@ -157,8 +139,7 @@ class AuditReport(Report):
 
 
 def findings_report(findings: Sequence[Finding]) -> AuditReport:
-    """
-    Findings as plain values.
+    """Findings as plain values.
 
     Parameters
     ----------

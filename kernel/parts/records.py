@@ -17,8 +17,7 @@ MAY_BE_NAN: Final[Mapping[str, Any]] = {"may_be_nan": True}
 
 
 class Parts(Protocol):
-    """
-    A frozen record of parts.
+    """A frozen record of parts.
 
     Arrays and tuples have a row per part, or per corner where the metadata of the field say
     `PER_CORNER`. The parts share the numbers. Records within it are of the same kind.
@@ -42,8 +41,7 @@ PartsT = TypeVar("PartsT", bound=Parts)
 
 @dataclass(frozen=True)
 class RejectedPart:
-    """
-    A part that cannot be made.
+    """A part that cannot be made.
 
     Attributes
     ----------
@@ -64,19 +62,12 @@ class RejectedPart:
 
 
 def select_parts(parts: PartsT, keep: BoolArray) -> PartsT:
-    """
-    Some of the parts, in the same order.
+    """Some of the parts, in the same order.
 
     Parameters
     ----------
-    parts : PartsT
     keep : (n,) bool array
         Which ones.
-
-    Returns
-    -------
-    PartsT
-        The chosen ones.
     """
     return parts if keep.all() else cast("PartsT", _select(parts, keep))
 
@@ -104,12 +95,10 @@ def _select(value: object, keep: BoolArray) -> object:
 def reject_parts(
     parts: PartsT, reasons: Mapping[int, str], code: str
 ) -> tuple[PartsT, tuple[RejectedPart, ...]]:
-    """
-    Take out the parts that cannot be made.
+    """Take out the parts that cannot be made.
 
     Parameters
     ----------
-    parts : PartsT
     reasons : mapping of int to str
         Why, by row.
     code : str
@@ -132,12 +121,7 @@ def reject_parts(
 
 
 def finite_parts(parts: Parts) -> BoolArray:
-    """
-    Which parts have finite numbers only, but for fields of `MAY_BE_NAN`.
-
-    Parameters
-    ----------
-    parts : Parts
+    """Which parts have finite numbers only, but for fields of `MAY_BE_NAN`.
 
     Returns
     -------

@@ -1,5 +1,4 @@
-"""
-Quadrilateral sphere meshes from congruences of spheres (Sec. 6.4).
+"""Quadrilateral sphere meshes from congruences of spheres (Sec. 6.4).
 
 `pipeline.remesh` is the order of the steps. The spheres around each vertex are fitted by
 polynomials of degree 3, 5 or 7; Mallows' criterion picks one degree for the whole mesh, 7

@@ -33,8 +33,7 @@ FINEST = 0.2
 
 @dataclass(frozen=True)
 class Remeshing:
-    """
-    A quadrilateral net of spheres and how it was reached.
+    """A quadrilateral net of spheres and how it was reached.
 
     Attributes
     ----------
@@ -105,13 +104,10 @@ def remesh(
     degree: int | None = None,
     rings: int = 4,
 ) -> Remeshing:
-    """
-    Remesh a sphere congruence along its conjugate directions.
+    """Remesh a sphere congruence along its conjugate directions.
 
     Parameters
     ----------
-    mesh : Mesh
-        A connected triangle mesh.
     spheres : (V, 5) array_like of float
         A real sphere or plane for every vertex, in model coordinates.
     edge_length : float

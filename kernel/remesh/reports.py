@@ -19,8 +19,7 @@ from .planar.planarize import Planarization
 
 @dataclass(frozen=True, eq=False)
 class DirectionsReport(Report):
-    """
-    Conjugate directions of a congruence; None stands for infinite.
+    """Conjugate directions of a congruence; None stands for infinite.
 
     Attributes
     ----------
@@ -50,8 +49,7 @@ class DirectionsReport(Report):
 
 @dataclass(frozen=True, eq=False)
 class RemeshingReport(Report):
-    """
-    What remeshing reached; None stands for what is infinite or does not exist.
+    """What remeshing reached; None stands for what is infinite or does not exist.
 
     Attributes
     ----------
@@ -107,12 +105,10 @@ class RemeshingReport(Report):
 
 @dataclass(frozen=True, eq=False)
 class PlanarizationReport(Report):
-    """
-    What planarisation reached, and what it cost; four measures ``before`` and ``after``.
+    """What planarisation reached, and what it cost; four measures ``before`` and ``after``.
 
     Attributes
     ----------
-    status, iterations : str, int
     planarity : dict
         Largest fourth singular value of the spheres around a node, relative to the first.
     corner_gap : dict
@@ -143,8 +139,7 @@ class PlanarizationReport(Report):
 
 @dataclass(frozen=True, eq=False)
 class RelaxationReport(Report):
-    """
-    How much a congruence was changed.
+    """How much a congruence was changed.
 
     Attributes
     ----------
@@ -161,19 +156,7 @@ class RelaxationReport(Report):
 
 
 def directions_report(found: ConjugateDirections, mesh: Mesh) -> DirectionsReport:
-    """
-    The report of conjugate directions.
-
-    Parameters
-    ----------
-    found : ConjugateDirections
-    mesh : Mesh
-
-    Returns
-    -------
-    DirectionsReport
-        Lengths relative to the edges of `mesh`.
-    """
+    """The report of conjugate directions: lengths relative to the edges of `mesh`."""
     radii = sphere_radii(found.curvatures)
     return DirectionsReport(
         complex_share=found.complex_share,
@@ -193,23 +176,15 @@ def remeshing_report(
     planarized: PlanarizationReport | None,
     distance: dict[str, float],
 ) -> RemeshingReport:
-    """
-    The report of a net.
+    """The report of a net.
 
     Parameters
     ----------
-    done : Remeshing
     mesh : Mesh
         Its mesh in the end, with the same faces.
     edge_length : float
         Length of the edges asked for.
     planarized : PlanarizationReport, optional
-    distance : dict
-
-    Returns
-    -------
-    RemeshingReport
-        Plain values.
     """
     degrees: Counter[int] = Counter(mesh.degrees.tolist())
     return RemeshingReport(
@@ -242,19 +217,12 @@ def remeshing_report(
 
 
 def planarization_report(start: SphereMesh, result: Planarization) -> PlanarizationReport:
-    """
-    The report of a planarisation.
+    """The report of a planarisation.
 
     Parameters
     ----------
-    start : SphereMesh
     result : Planarization
         On the same faces.
-
-    Returns
-    -------
-    PlanarizationReport
-        Plain values.
     """
     after = result.sphere_mesh
     nodes = measure_nodes(after)
@@ -275,18 +243,7 @@ def planarization_report(start: SphereMesh, result: Planarization) -> Planarizat
 
 
 def relaxation_report(result: Relaxation) -> RelaxationReport:
-    """
-    The report of a relaxed congruence.
-
-    Parameters
-    ----------
-    result : Relaxation
-
-    Returns
-    -------
-    RelaxationReport
-        Plain values.
-    """
+    """The report of a relaxed congruence."""
     before, after = result.before, result.after
     return RelaxationReport(
         result.blend,
@@ -329,8 +286,7 @@ def _spread(angles: FloatArray) -> dict[str, float | None]:
 
 
 def angle_report(angles: FloatArray) -> dict[str, float | None]:
-    """
-    Median, 95th percentile and largest of the angles that exist.
+    """Median, 95th percentile and largest of the angles that exist.
 
     Parameters
     ----------
@@ -350,8 +306,7 @@ def angle_report(angles: FloatArray) -> dict[str, float | None]:
 
 
 def sphere_radii(curvatures: FloatArray) -> FloatArray:
-    """
-    Radii of spheres.
+    """Radii of spheres.
 
     Parameters
     ----------
@@ -367,8 +322,7 @@ def sphere_radii(curvatures: FloatArray) -> FloatArray:
 
 
 def radius_report(radii: FloatArray) -> dict[str, float | None]:
-    """
-    Least and median radius.
+    """Least and median radius.
 
     Parameters
     ----------
@@ -385,16 +339,5 @@ def radius_report(radii: FloatArray) -> dict[str, float | None]:
 
 
 def finite(value: float) -> float | None:
-    """
-    A value for a report.
-
-    Parameters
-    ----------
-    value : float
-
-    Returns
-    -------
-    float or None
-        None if it is not finite.
-    """
+    """A value for a report: None if it is not finite."""
     return float(value) if np.isfinite(value) else None

@@ -1,5 +1,4 @@
-"""
-Solvers of least-squares problems and of the linear systems in them.
+"""Solvers of least-squares problems and of the linear systems in them.
 
 levenberg_marquardt  Least squares with steps that are taken only if the energy falls.
 normal_equations     Damped Gauss-Newton steps of large sparse problems.

@@ -1,5 +1,4 @@
-"""
-Sparse Jacobians made of small dense blocks.
+"""Sparse Jacobians made of small dense blocks.
 
 The unknowns fall into groups (the spheres of faces, say, and the points of vertices), each with
 so many elements of so many numbers. A residual depends on a few elements; which ones is known
@@ -19,8 +18,7 @@ from .factorization import SparseArray
 
 
 class Block(NamedTuple):
-    """
-    The elements of one group that the rows of a term depend on.
+    """The elements of one group that the rows of a term depend on.
 
     Attributes
     ----------
@@ -36,8 +34,7 @@ class Block(NamedTuple):
 
 @dataclass(frozen=True)
 class Layout:
-    """
-    Groups of unknowns, one after the other in a flat vector.
+    """Groups of unknowns, one after the other in a flat vector.
 
     Attributes
     ----------
@@ -52,8 +49,7 @@ class Layout:
 
     @property
     def starts(self) -> IntArray:
-        """
-        First unknown of each group, and their number.
+        """First unknown of each group, and their number.
 
         Returns
         -------
@@ -64,8 +60,7 @@ class Layout:
         return np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
 
     def split(self, vector: FloatArray) -> tuple[FloatArray, ...]:
-        """
-        Views of a flat vector, one table per group.
+        """Views of a flat vector, one table per group.
 
         Parameters
         ----------
@@ -84,12 +79,7 @@ class Layout:
         )
 
     def columns(self, block: Block) -> IntArray:
-        """
-        Columns that a block fills.
-
-        Parameters
-        ----------
-        block : Block
+        """Columns that a block fills.
 
         Returns
         -------
@@ -103,13 +93,10 @@ class Layout:
 
 @dataclass(frozen=True)
 class JacobianPattern:
-    """
-    Where the entries of a Jacobian go.
+    """Where the entries of a Jacobian go.
 
     Attributes
     ----------
-    layout : Layout
-        The unknowns.
     blocks : tuple of tuples of Block
         Blocks of each term that lie in groups taking part.
     columns : (nnz,) int32 array
@@ -125,12 +112,10 @@ class JacobianPattern:
 
 
 def jacobian_pattern(layout: Layout, terms: Sequence[Sequence[Block]]) -> JacobianPattern:
-    """
-    Pattern of the Jacobian of several terms.
+    """Pattern of the Jacobian of several terms.
 
     Parameters
     ----------
-    layout : Layout
     terms : sequence of sequences of Block
 
     Returns
@@ -152,12 +137,10 @@ def jacobian_pattern(layout: Layout, terms: Sequence[Sequence[Block]]) -> Jacobi
 def jacobian_matrix(
     pattern: JacobianPattern, entries: Sequence[Sequence[FloatArray]]
 ) -> SparseArray:
-    """
-    The Jacobian as a sparse matrix.
+    """The Jacobian as a sparse matrix.
 
     Parameters
     ----------
-    pattern : JacobianPattern
     entries : sequence of sequences of (m, width) float arrays
         Values of the blocks of each term, as in `JacobianPattern.blocks`.
 
@@ -183,12 +166,10 @@ def jacobian_matrix(
 def diagonal_blocks(
     pattern: JacobianPattern, entries: Sequence[Sequence[FloatArray]]
 ) -> tuple[FloatArray, ...]:
-    """
-    Blocks on the diagonal of ``JᵀJ``.
+    """Blocks on the diagonal of ``JᵀJ``.
 
     Parameters
     ----------
-    pattern : JacobianPattern
     entries : sequence of sequences of (m, width) float arrays
         Values of the blocks of each term.
 
@@ -215,8 +196,7 @@ def diagonal_blocks(
 
 
 def block_diagonal(blocks: FloatArray) -> SparseArray:
-    """
-    The matrix with given blocks on its diagonal.
+    """The matrix with given blocks on its diagonal.
 
     Parameters
     ----------

@@ -10,8 +10,7 @@ from .products import Product
 
 
 class CgStep(NamedTuple):
-    """
-    A step, and whether more iterations would better it noticeably.
+    """A step, and whether more iterations would better it noticeably.
 
     Attributes
     ----------
@@ -32,8 +31,7 @@ def truncated_step(
     max_iterations: int,
     share: float = STEP_MODEL,
 ) -> CgStep:
-    """
-    Minimise the quadratic model ``x·Hx / 2 - x·b`` until it gains no more.
+    """Minimise the quadratic model ``x·Hx / 2 - x·b`` until it gains no more.
 
     Parameters
     ----------

@@ -17,8 +17,7 @@ Solver: TypeAlias = Callable[[FloatArray], FloatArray]
 
 
 def factorize(matrix: SparseArray) -> Solver:
-    """
-    Factorise a square matrix.
+    """Factorise a square matrix.
 
     Parameters
     ----------
@@ -36,8 +35,7 @@ def factorize(matrix: SparseArray) -> Solver:
 
 
 def factorize_symmetric(matrix: SparseArray) -> Solver:
-    """
-    Factorise a symmetric positive definite matrix.
+    """Factorise a symmetric positive definite matrix.
 
     Parameters
     ----------
@@ -73,8 +71,7 @@ def _solver(factors: SparseArray) -> Solver:
 
 
 def solve_definite(matrix: SparseArray, shift: float, right: FloatArray) -> FloatArray:
-    """
-    Solve ``(H + shift I) x = b`` by factorisation.
+    """Solve ``(H + shift I) x = b`` by factorisation.
 
     Parameters
     ----------
@@ -104,8 +101,7 @@ def solve_definite(matrix: SparseArray, shift: float, right: FloatArray) -> Floa
 
 
 def solve_by_cholmod(matrix: SparseArray, right: FloatArray) -> FloatArray:
-    """
-    Solve ``H x = b`` by CHOLMOD; needs scikit-sparse 0.4.
+    """Solve ``H x = b`` by CHOLMOD; needs scikit-sparse 0.4.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Levenberg-Marquardt: least squares with steps that are taken only if the energy falls.
+"""Levenberg-Marquardt: least squares with steps that are taken only if the energy falls.
 
 The method knows nothing of matrices: a problem hands it the energy of a state, a damped
 Gauss-Newton step at a state, and the way to move along a step (which may keep unit vectors
@@ -23,8 +22,7 @@ FIRST_DAMPING = 1e-3
 
 
 class DampedStep(NamedTuple):
-    """
-    A step and the energy that its linear model promises.
+    """A step and the energy that its linear model promises.
 
     Attributes
     ----------
@@ -40,13 +38,10 @@ class DampedStep(NamedTuple):
 
 @dataclass(frozen=True)
 class Descent(Generic[State]):
-    """
-    How a minimisation went.
+    """How a minimisation went.
 
     Attributes
     ----------
-    state : object
-        The best state found.
     status : {"converged", "stalled", "exhausted"}
         ``converged``: the energy fell by less than the tolerance asked for, or is as good as
         zero; ``stalled``: no
@@ -73,8 +68,7 @@ def levenberg_marquardt(
     max_iterations: int = 100,
     least_energy: float = 0.0,
 ) -> Descent[State]:
-    """
-    Minimise a sum of squares.
+    """Minimise a sum of squares.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Damped Gauss-Newton steps of large sparse problems.
+"""Damped Gauss-Newton steps of large sparse problems.
 
 ``(JᵀJ + μ σ I) x = -Jᵀr`` is solved by conjugate gradients on J itself, never forming ``JᵀJ``,
 with the inverted diagonal blocks as preconditioner. Where these do not settle and the problem
@@ -38,13 +37,10 @@ MAX_FACTORIZED = 100_000
 
 @dataclass(frozen=True)
 class Linearization:
-    """
-    A least-squares problem near a point.
+    """A least-squares problem near a point.
 
     Attributes
     ----------
-    layout : Layout
-        The unknowns.
     jacobian : (m, n) csr_array
         Derivatives of the residuals.
     residuals : (m,) float array
@@ -64,12 +60,10 @@ def linearization(
     residuals: FloatArray,
     entries: Sequence[Sequence[FloatArray]],
 ) -> Linearization:
-    """
-    Collect what a step needs.
+    """Collect what a step needs.
 
     Parameters
     ----------
-    pattern : JacobianPattern
     residuals : (m,) float array
         Residuals.
     entries : sequence of sequences of (m, width) float arrays
@@ -91,12 +85,10 @@ def linearization(
 def damped_step(
     problem: Linearization, damping: float, share: float = STEP_MODEL
 ) -> DampedStep:
-    """
-    Step that minimises ``|r + J x|² + μ σ |x|²``.
+    """Step that minimises ``|r + J x|² + μ σ |x|²``.
 
     Parameters
     ----------
-    problem : Linearization
     damping : float
         μ; the scale σ is the mean of the diagonal of ``JᵀJ``.
     share : float

@@ -15,8 +15,7 @@ Product: TypeAlias = Callable[[FloatArray], FloatArray]
 
 
 def normal_product(matrix: SparseArray) -> Product:
-    """
-    Multiplication by ``JᵀJ``.
+    """Multiplication by ``JᵀJ``.
 
     Parameters
     ----------
@@ -34,8 +33,7 @@ def normal_product(matrix: SparseArray) -> Product:
 
 
 def normal_product_by_scipy(matrix: SparseArray) -> Product:
-    """
-    `normal_product` in two passes.
+    """`normal_product` in two passes.
 
     Parameters
     ----------
@@ -51,8 +49,7 @@ def normal_product_by_scipy(matrix: SparseArray) -> Product:
 
 
 def normal_product_by_numba(matrix: SparseArray) -> Product:
-    """
-    `normal_product` row by row, compiled.
+    """`normal_product` row by row, compiled.
 
     Parameters
     ----------

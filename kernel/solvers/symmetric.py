@@ -13,8 +13,7 @@ MAX_CG_ITERATIONS = 400
 
 @dataclass(frozen=True)
 class SymmetricPattern:
-    """
-    Compressed rows of a symmetric matrix with a diagonal and one entry per pair.
+    """Compressed rows of a symmetric matrix with a diagonal and one entry per pair.
 
     Attributes
     ----------
@@ -32,8 +31,7 @@ class SymmetricPattern:
 
 
 def symmetric_pattern(pairs: IntArray, size: int) -> SymmetricPattern:
-    """
-    Pattern of the matrices whose entries sit on the diagonal and on pairs.
+    """Pattern of the matrices whose entries sit on the diagonal and on pairs.
 
     Parameters
     ----------
@@ -58,12 +56,10 @@ def symmetric_pattern(pairs: IntArray, size: int) -> SymmetricPattern:
 def solve_symmetric(
     pattern: SymmetricPattern, diagonal: FloatArray, mixed: FloatArray, right: FloatArray
 ) -> FloatArray:
-    """
-    Solve by conjugate gradients with the diagonal as preconditioner.
+    """Solve by conjugate gradients with the diagonal as preconditioner.
 
     Parameters
     ----------
-    pattern : SymmetricPattern
     diagonal : (n,) float array
         Diagonal, no entry zero.
     mixed : (m,) float array

@@ -1,5 +1,4 @@
-"""
-Meshes with a sphere for every face: fit, central spheres, changes of model (Sec. 3, 5, 6.1).
+"""Meshes with a sphere for every face: fit, central spheres, changes of model (Sec. 3, 5, 6.1).
 
 sphere_mesh            The sphere mesh, its vertex errors and the angles between its spheres.
 fit                    Spheres to start from: face planes, and least squares.

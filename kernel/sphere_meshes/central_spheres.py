@@ -1,5 +1,4 @@
-"""
-Central and principal spheres of circular meshes.
+"""Central and principal spheres of circular meshes.
 
 Two neighbouring circular faces share two vertices, so both of their circles lie on one sphere:
 the sphere of their edge. It belongs to the pencil of either circle and estimates the curvature
@@ -28,8 +27,7 @@ NAMED_FACES = 4
 
 
 def edge_spheres(mesh: Mesh) -> FloatArray:
-    """
-    Sphere of each interior edge, through the circumcircles of its two faces.
+    """Sphere of each interior edge, through the circumcircles of its two faces.
 
     Parameters
     ----------
@@ -67,8 +65,7 @@ def edge_spheres(mesh: Mesh) -> FloatArray:
 
 
 def bisectors(s: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """
-    Both spheres that bisect the angles of two spheres.
+    """Both spheres that bisect the angles of two spheres.
 
     Parameters
     ----------
@@ -108,8 +105,7 @@ def _acute_bisector(s: FloatArray, t: FloatArray) -> FloatArray:
 
 
 def principal_spheres(mesh: Mesh) -> tuple[SphereMesh, SphereMesh]:
-    """
-    Discrete principal spheres: one per quad and direction.
+    """Discrete principal spheres: one per quad and direction.
 
     Parameters
     ----------
@@ -152,8 +148,7 @@ def principal_spheres(mesh: Mesh) -> tuple[SphereMesh, SphereMesh]:
 
 
 def central_spheres(mesh: Mesh) -> SphereMesh:
-    """
-    Discrete central spheres: the Möbius-invariant mean of the curvatures at each face.
+    """Discrete central spheres: the Möbius-invariant mean of the curvatures at each face.
 
     Parameters
     ----------
@@ -211,8 +206,7 @@ def _circumcircles(mesh: Mesh) -> Circles:
 
 
 def _edge_angles(mesh: Mesh, circles: Circles) -> tuple[FloatArray, BoolArray]:
-    """
-    Unknown t of the edge sphere in the pencil of the face of each half-edge.
+    """Unknown t of the edge sphere in the pencil of the face of each half-edge.
 
     Both axes lie in the plane that bisects the edge: where they meet is the centre of the
     sphere. Unknown on the boundary, and where both faces have the same circle.
@@ -252,8 +246,7 @@ def _principal_rows(mesh: Mesh, circles: Circles, quads: IntArray) -> FloatArray
 
 
 def _mean_rows(mesh: Mesh, circles: Circles) -> FloatArray:
-    """
-    Member of each face's pencil with the largest sum of squared products with its edges.
+    """Member of each face's pencil with the largest sum of squared products with its edges.
 
     That sum is constant plus half of ``cos 2t sum(cos 2t') + sin 2t sum(sin 2t')``.
     """
@@ -270,8 +263,7 @@ def _oriented(rows: FloatArray, planes: FloatArray) -> FloatArray:
 
 
 def _direction_labels(mesh: Mesh) -> IntArray:
-    """
-    Direction (0 or 1) of each quad that continues direction 0 of its piece's first quad.
+    """Direction (0 or 1) of each quad that continues direction 0 of its piece's first quad.
 
     Each quad has two nodes, one per direction; along a spanning tree of the quads they fall
     apart into two sets per piece.

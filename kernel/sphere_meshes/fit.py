@@ -15,12 +15,7 @@ from .sphere_mesh import SphereMesh
 
 
 def face_planes(mesh: Mesh) -> SphereMesh:
-    """
-    The plane of every face.
-
-    Parameters
-    ----------
-    mesh : Mesh
+    """The plane of every face.
 
     Returns
     -------
@@ -42,12 +37,10 @@ def face_planes(mesh: Mesh) -> SphereMesh:
 
 
 def fit_spheres(mesh: Mesh, ring: int = 1) -> SphereMesh:
-    """
-    Sphere of every face that fits its vertices and those of the faces around it.
+    """Sphere of every face that fits its vertices and those of the faces around it.
 
     Parameters
     ----------
-    mesh : Mesh
     ring : int
         How many rings of faces, joined along edges, take part around each face.
 
@@ -114,8 +107,7 @@ def _rings(mesh: Mesh, ring: int) -> tuple[IntArray, IntArray]:
 def _pencil_fit(
     faces: IntArray, first: FloatArray, second: FloatArray, count: int, rounding: float
 ) -> FloatArray:
-    """
-    Angle t that minimises the sum of ``(cos t P(x) + sin t Q(x))²``: a 2x2 eigenproblem.
+    """Angle t that minimises the sum of ``(cos t P(x) + sin t Q(x))²``: a 2x2 eigenproblem.
 
     Zero, the plane, where all points lie on the circle up to `rounding`.
     """
@@ -142,8 +134,7 @@ def _pratt_fit(faces: IntArray, points: FloatArray, count: int) -> FloatArray:
 
 
 def _best_unit_rows(points: FloatArray) -> FloatArray:
-    """
-    Rows (n, 5) of norm 1 with the least sum of squares over their points (n, k, 3).
+    """Rows (n, 5) of norm 1 with the least sum of squares over their points (n, k, 3).
 
     Rows are written as ``T y`` with ``|y|²`` proportional to the sum of squares: the best is
     the one of the largest norm, a symmetric eigenproblem. T comes from the singular values of

@@ -27,12 +27,10 @@ from .sphere_mesh import SphereMesh
 
 
 def map_mesh(mesh: Mesh, transform: ArrayLike) -> Mesh:
-    """
-    Image of a mesh: of its vertices, with straight sides between them.
+    """Image of a mesh: of its vertices, with straight sides between them.
 
     Parameters
     ----------
-    mesh : Mesh
     transform : (5, 5) array_like of float
 
     Returns
@@ -51,12 +49,10 @@ def map_mesh(mesh: Mesh, transform: ArrayLike) -> Mesh:
 
 
 def map_sphere_mesh(sphere_mesh: SphereMesh, transform: ArrayLike) -> SphereMesh:
-    """
-    Image of a sphere mesh: spheres, vertices and the angles between the spheres.
+    """Image of a sphere mesh: spheres, vertices and the angles between the spheres.
 
     Parameters
     ----------
-    sphere_mesh : SphereMesh
     transform : (5, 5) array_like of float
 
     Returns

@@ -1,5 +1,4 @@
-"""
-Sphere meshes from planar ones, by changing the model of a geometry.
+"""Sphere meshes from planar ones, by changing the model of a geometry.
 
 Hyperbolic space inside a ball, and elliptic space about a point, have a model in which planes
 are planes and a conformal one in which they are spheres. The map δ from the one to the other
@@ -42,8 +41,7 @@ SIGNS: dict[str, float] = {"hyperbolic": 1.0, "elliptic": -1.0}
 def model_points(
     points: FloatArray, geometry: Geometry, radius: float, branch: Branch = "inner"
 ) -> FloatArray:
-    """
-    Images δ of points, the absolute sphere being centred at the origin.
+    """Images δ of points, the absolute sphere being centred at the origin.
 
     Parameters
     ----------
@@ -83,8 +81,7 @@ def model_points(
 def model_spheres(
     normals: FloatArray, distances: FloatArray, geometry: Geometry, radius: float
 ) -> FloatArray:
-    """
-    Spheres that planes become, the absolute sphere being centred at the origin.
+    """Spheres that planes become, the absolute sphere being centred at the origin.
 
     Parameters
     ----------
@@ -114,8 +111,7 @@ def model_spheres(
 def change_model(
     mesh: Mesh, geometry: Geometry, radius: float, center: ArrayLike, branch: Branch = "inner"
 ) -> SphereMesh:
-    """
-    Sphere mesh with a support structure, from a mesh with planar faces.
+    """Sphere mesh with a support structure, from a mesh with planar faces.
 
     Parameters
     ----------
@@ -172,8 +168,7 @@ def change_model(
 
 
 def sphere_bundle(mesh: Mesh, center: ArrayLike, radius: float) -> SphereMesh:
-    """
-    Sphere mesh whose spheres all pass through one point: an inversion of planar faces.
+    """Sphere mesh whose spheres all pass through one point: an inversion of planar faces.
 
     Parameters
     ----------

@@ -8,12 +8,7 @@ from ..spheres.circles import face_circles
 
 
 def planarity(mesh: Mesh) -> FloatArray:
-    """
-    How far the corners of each face lie off its plane.
-
-    Parameters
-    ----------
-    mesh : Mesh
+    """How far the corners of each face lie off its plane.
 
     Returns
     -------
@@ -27,12 +22,7 @@ def planarity(mesh: Mesh) -> FloatArray:
 
 
 def circularity(mesh: Mesh) -> FloatArray:
-    """
-    How far the corners of each face lie off its best-fit circle.
-
-    Parameters
-    ----------
-    mesh : Mesh
+    """How far the corners of each face lie off its best-fit circle.
 
     Returns
     -------

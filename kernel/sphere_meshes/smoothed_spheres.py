@@ -12,8 +12,7 @@ from .sphere_mesh import SphereMesh
 
 
 def smoothed_spheres(mesh: Mesh) -> SphereMesh:
-    """
-    Spheres through the circles of the faces and an apex each, the apexes placed by smoothing.
+    """Spheres through the circles of the faces and an apex each, placed by smoothing.
 
     Parameters
     ----------

@@ -16,8 +16,7 @@ from ..tolerances import EPSILON
 
 @dataclass(frozen=True, init=False, eq=False)
 class SphereMesh:
-    """
-    A mesh whose faces are pieces of spheres or planes.
+    """A mesh whose faces are pieces of spheres or planes.
 
     Parameters
     ----------
@@ -58,8 +57,7 @@ class SphereMesh:
 
     @classmethod
     def from_local(cls, mesh: Mesh, local_spheres: FloatArray) -> "SphereMesh":
-        """
-        A sphere mesh from rows in the coordinates local to each face.
+        """A sphere mesh from rows in the coordinates local to each face.
 
         Parameters
         ----------
@@ -121,8 +119,7 @@ def _localize(mesh: Mesh, rows: FloatArray) -> FloatArray:
 
 
 def vertex_error(sphere_mesh: SphereMesh) -> FloatArray:
-    """
-    Distance of each vertex from the farthest of the spheres of its faces.
+    """Distance of each vertex from the farthest of the spheres of its faces.
 
     Parameters
     ----------
@@ -142,8 +139,7 @@ def vertex_error(sphere_mesh: SphereMesh) -> FloatArray:
 
 
 def intersection_angles(sphere_mesh: SphereMesh) -> FloatArray:
-    """
-    Oriented angle at which the spheres of neighbouring faces meet.
+    """Oriented angle at which the spheres of neighbouring faces meet.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-The sphere ω to which all spheres of a mesh are orthogonal, and what kind of sphere it is.
+"""The sphere ω to which all spheres of a mesh are orthogonal, and what kind of sphere it is.
 
 A triangular sphere mesh with a support structure has one: real, imaginary or a point, and the
 planes and axes of the structure pass through its centre. It may be a plane as well, or, for a
@@ -24,8 +23,7 @@ SupportKind = Literal["real", "imaginary", "point", "plane", "infinity", "none"]
 
 @dataclass(frozen=True)
 class SupportType:
-    """
-    What all spheres of a mesh have in common.
+    """What all spheres of a mesh have in common.
 
     Attributes
     ----------
@@ -47,12 +45,10 @@ class SupportType:
 
 
 def support_type(sphere_mesh: SphereMesh, tolerance: float = SUPPORT_MISS) -> SupportType:
-    """
-    Find the sphere, plane or point orthogonal to all spheres of a mesh.
+    """Find the sphere, plane or point orthogonal to all spheres of a mesh.
 
     Parameters
     ----------
-    sphere_mesh : SphereMesh
     tolerance : float
         Largest residual at which there is said to be one.
 

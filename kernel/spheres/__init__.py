@@ -1,5 +1,4 @@
-"""
-Spheres, circles and arcs as rows of numbers, and the Möbius group (Sec. 2.1).
+"""Spheres, circles and arcs as rows of numbers, and the Möbius group (Sec. 2.1).
 
 A sphere is a row ``(A, Bx, By, Bz, C)``: the points x with ``A |x|² - B·x + C = 0``. Planes are
 the rows with A = 0 (B the normal, C the offset of ``n·x = d``) and are never a special case;

@@ -15,8 +15,7 @@ def crossing_boundaries(
     plane_offsets: FloatArray,
     arcs: Arcs,
 ) -> BoolArray:
-    """
-    Whether two arcs of a boundary meet elsewhere than in their common corner.
+    """Whether two arcs of a boundary meet elsewhere than in their common corner.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Circular arcs on spheres, and what is bounded by them.
+"""Circular arcs on spheres, and what is bounded by them.
 
 An arc is kept by its chord and its sagitta, so that straight edges of plane panels are arcs of
 sagitta zero and nothing is divided by a curvature. With half chord h and bulge ``b = s / h``
@@ -18,8 +17,7 @@ from .incidence import normals, project
 
 @dataclass(frozen=True)
 class Arcs:
-    """
-    Arcs of at most a half circle.
+    """Arcs of at most a half circle.
 
     Attributes
     ----------
@@ -39,8 +37,7 @@ class Arcs:
 
 @dataclass(frozen=True)
 class ArcCircles:
-    """
-    The circles that carry arcs, for writers. Defined where the sagitta is not zero.
+    """The circles that carry arcs, for writers. Defined where the sagitta is not zero.
 
     Attributes
     ----------
@@ -62,8 +59,7 @@ class ArcCircles:
 def sphere_arcs(
     rows: FloatArray, plane_normals: FloatArray, starts: FloatArray, ends: FloatArray
 ) -> Arcs:
-    """
-    Shorter arcs in which planes cut spheres, between two points of both.
+    """Shorter arcs in which planes cut spheres, between two points of both.
 
     Parameters
     ----------
@@ -102,12 +98,10 @@ def sphere_arcs(
 
 
 def arc_points(arcs: Arcs, parameters: FloatArray) -> FloatArray:
-    """
-    Points of arcs.
+    """Points of arcs.
 
     Parameters
     ----------
-    arcs : Arcs
     parameters : (n,) float array
         Values of τ in [-1, 1]; the ends and the middle are exact.
 
@@ -140,12 +134,7 @@ def _bulges(arcs: Arcs) -> FloatArray:
 
 
 def arc_lengths(arcs: Arcs) -> FloatArray:
-    """
-    Lengths of arcs.
-
-    Parameters
-    ----------
-    arcs : Arcs
+    """Lengths of arcs.
 
     Returns
     -------
@@ -160,12 +149,7 @@ def arc_lengths(arcs: Arcs) -> FloatArray:
 
 
 def segment_areas(arcs: Arcs) -> FloatArray:
-    """
-    Areas between arcs and their chords.
-
-    Parameters
-    ----------
-    arcs : Arcs
+    """Areas between arcs and their chords.
 
     Returns
     -------
@@ -184,12 +168,7 @@ def segment_areas(arcs: Arcs) -> FloatArray:
 
 
 def arc_circles(arcs: Arcs) -> ArcCircles:
-    """
-    Centre, axis, radius and sweep of each arc.
-
-    Parameters
-    ----------
-    arcs : Arcs
+    """Centre, axis, radius and sweep of each arc.
 
     Returns
     -------
@@ -210,13 +189,7 @@ def arc_circles(arcs: Arcs) -> ArcCircles:
 
 
 def circle_axes(arcs: Arcs, circles: ArcCircles) -> tuple[FloatArray, FloatArray]:
-    """
-    Unit vectors from the centres to the starts, and along the arcs at their starts.
-
-    Parameters
-    ----------
-    arcs : Arcs
-    circles : ArcCircles
+    """Unit vectors from the centres to the starts, and along the arcs at their starts.
 
     Returns
     -------
@@ -235,8 +208,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
 def patch_areas(rows: FloatArray, arcs: Arcs, arc_rows: IntArray) -> FloatArray:
-    """
-    Areas of the pieces of spheres that lie to the left of closed chains of arcs.
+    """Areas of the pieces of spheres that lie to the left of closed chains of arcs.
 
     Parameters
     ----------
@@ -269,12 +241,7 @@ def patch_areas(rows: FloatArray, arcs: Arcs, arc_rows: IntArray) -> FloatArray:
 
 
 def arc_tangents(arcs: Arcs) -> tuple[FloatArray, FloatArray]:
-    """
-    Directions in which arcs leave their starts and reach their ends.
-
-    Parameters
-    ----------
-    arcs : Arcs
+    """Directions in which arcs leave their starts and reach their ends.
 
     Returns
     -------
@@ -288,12 +255,10 @@ def arc_tangents(arcs: Arcs) -> tuple[FloatArray, FloatArray]:
 
 
 def arc_reaches(arcs: Arcs, directions: FloatArray) -> FloatArray:
-    """
-    How far arcs reach in a direction.
+    """How far arcs reach in a direction.
 
     Parameters
     ----------
-    arcs : Arcs
     directions : (H, 3) float array
         Unit vectors in the planes of the arcs.
 

@@ -1,5 +1,4 @@
-"""
-Circles: as intersections of spheres, through points, and as carriers of pencils of spheres.
+"""Circles: as intersections of spheres, through points, and as carriers of pencils of spheres.
 
 All spheres through a circle of radius ρ are ``S(t) = cos t P + sin t Q``, with P the oriented
 plane of the circle and Q the sphere that has it as a great circle; both are unit rows and
@@ -30,8 +29,7 @@ class PencilKind(IntEnum):
 
 @dataclass(frozen=True)
 class Circles:
-    """
-    Oriented circles.
+    """Oriented circles.
 
     Attributes
     ----------
@@ -48,8 +46,7 @@ class Circles:
 
 
 def pencil_kind(s: FloatArray, t: FloatArray) -> IntArray:
-    """
-    Kind of the pencil that two different spheres span.
+    """Kind of the pencil that two different spheres span.
 
     Parameters
     ----------
@@ -81,8 +78,7 @@ def pencil_kind(s: FloatArray, t: FloatArray) -> IntArray:
 
 
 def intersection_circles(s: FloatArray, t: FloatArray) -> Circles:
-    """
-    Circles in which spheres meet.
+    """Circles in which spheres meet.
 
     Parameters
     ----------
@@ -120,12 +116,7 @@ def intersection_circles(s: FloatArray, t: FloatArray) -> Circles:
 
 
 def circle_pencils(circles: Circles) -> tuple[FloatArray, FloatArray]:
-    """
-    Orthogonal unit rows that span the spheres through real circles.
-
-    Parameters
-    ----------
-    circles : Circles
+    """Orthogonal unit rows that span the spheres through real circles.
 
     Returns
     -------
@@ -150,8 +141,7 @@ def circle_pencils(circles: Circles) -> tuple[FloatArray, FloatArray]:
 def pencil_spheres(
     planes: FloatArray, great_spheres: FloatArray, angles: FloatArray
 ) -> FloatArray:
-    """
-    Members ``cos t P + sin t Q`` of circle pencils.
+    """Members ``cos t P + sin t Q`` of circle pencils.
 
     Parameters
     ----------
@@ -169,8 +159,7 @@ def pencil_spheres(
 
 
 def sphere_through_points(points: FloatArray) -> FloatArray:
-    """
-    Spheres or planes through four points.
+    """Spheres or planes through four points.
 
     Parameters
     ----------
@@ -200,8 +189,7 @@ def sphere_through_points(points: FloatArray) -> FloatArray:
 def angle_through_points(
     planes: FloatArray, great_spheres: FloatArray, points: FloatArray
 ) -> FloatArray:
-    """
-    Spheres of circle pencils through a further point each.
+    """Spheres of circle pencils through a further point each.
 
     Parameters
     ----------
@@ -221,12 +209,7 @@ def angle_through_points(
 
 
 def face_circles(mesh: Mesh) -> tuple[Circles, FloatArray]:
-    """
-    Best-fit circle of each face, in the coordinates local to the face.
-
-    Parameters
-    ----------
-    mesh : Mesh
+    """Best-fit circle of each face, in the coordinates local to the face.
 
     Returns
     -------

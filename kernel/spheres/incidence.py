@@ -6,8 +6,7 @@ from ..arrays import BoolArray, FloatArray, dot, norm
 
 
 def evaluate(rows: FloatArray, points: FloatArray) -> FloatArray:
-    """
-    Left side ``A |x|² - B·x + C`` of the sphere equation.
+    """Left side ``A |x|² - B·x + C`` of the sphere equation.
 
     Parameters
     ----------
@@ -28,8 +27,7 @@ def evaluate(rows: FloatArray, points: FloatArray) -> FloatArray:
 
 
 def normals(rows: FloatArray, points: FloatArray) -> FloatArray:
-    """
-    Gradient field ``N(p) = B - 2 A p``: the unit normal where p lies on a unit row.
+    """Gradient field ``N(p) = B - 2 A p``: the unit normal where p lies on a unit row.
 
     Parameters
     ----------
@@ -45,8 +43,7 @@ def normals(rows: FloatArray, points: FloatArray) -> FloatArray:
 
 
 def signed_distance(rows: FloatArray, points: FloatArray) -> FloatArray:
-    """
-    Distance of points from unit rows, positive on the side to which N points.
+    """Distance of points from unit rows, positive on the side to which N points.
 
     Parameters
     ----------
@@ -63,8 +60,7 @@ def signed_distance(rows: FloatArray, points: FloatArray) -> FloatArray:
 
 
 def project(rows: FloatArray, points: FloatArray) -> FloatArray:
-    """
-    Nearest points of unit rows.
+    """Nearest points of unit rows.
 
     Parameters
     ----------
@@ -87,8 +83,7 @@ def project(rows: FloatArray, points: FloatArray) -> FloatArray:
 def meet_lines(
     rows: FloatArray, points: FloatArray, directions: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
-    """
-    Where lines meet spheres, nearest to a point of the line.
+    """Where lines meet spheres, nearest to a point of the line.
 
     Parameters
     ----------

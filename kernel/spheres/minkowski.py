@@ -7,8 +7,7 @@ from ..tolerances import EPSILON
 
 
 def minkowski(s: FloatArray, t: FloatArray) -> FloatArray:
-    """
-    Minkowski product ``B·B' - 2 (A C' + A' C)`` of rows.
+    """Minkowski product ``B·B' - 2 (A C' + A' C)`` of rows.
 
     Parameters
     ----------
@@ -33,8 +32,7 @@ def minkowski(s: FloatArray, t: FloatArray) -> FloatArray:
 
 
 def minkowski_gradient(rows: FloatArray) -> FloatArray:
-    """
-    Derivative of the Minkowski product by its other factor: the polar hyperplane of the rows.
+    """Derivative of the Minkowski product by its other factor: polar hyperplane of the rows.
 
     Parameters
     ----------
@@ -50,8 +48,7 @@ def minkowski_gradient(rows: FloatArray) -> FloatArray:
 
 
 def angle(s: FloatArray, t: FloatArray) -> FloatArray:
-    """
-    Oriented angle between unit rows, in [0, π]; accurate at smooth contact and at spikes.
+    """Oriented angle between unit rows, in [0, π]; accurate at smooth contact and at spikes.
 
     Parameters
     ----------
@@ -73,8 +70,7 @@ def angle(s: FloatArray, t: FloatArray) -> FloatArray:
 
 
 def is_orthogonal(s: FloatArray, t: FloatArray) -> BoolArray:
-    """
-    Whether spheres meet at a right angle: ``<<s, t>> = 0`` up to rounding.
+    """Whether spheres meet at a right angle: ``<<s, t>> = 0`` up to rounding.
 
     Parameters
     ----------

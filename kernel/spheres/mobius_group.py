@@ -1,5 +1,4 @@
-"""
-The Möbius group: similarities, inversions, their products, and what they do to everything.
+"""The Möbius group: similarities, inversions, their products, and what they do to everything.
 
 A transform is a (5, 5) Lorentz matrix on pentaspherical coordinates: ``Mᵀ J M = J`` with
 ``J = diag(1, 1, 1, 1, -1)``. M and -M are the same map.
@@ -28,8 +27,7 @@ from .rows import Kind, kind, normalize
 
 
 def check_transform(transform: ArrayLike) -> FloatArray:
-    """
-    Refuse a matrix that is no Möbius map.
+    """Refuse a matrix that is no Möbius map.
 
     Parameters
     ----------
@@ -64,8 +62,7 @@ def check_transform(transform: ArrayLike) -> FloatArray:
 def similarity(
     scale: float = 1.0, rotation: ArrayLike | None = None, translation: ArrayLike | None = None
 ) -> FloatArray:
-    """
-    The map ``x -> scale rotation x + translation``.
+    """The map ``x -> scale rotation x + translation``.
 
     Parameters
     ----------
@@ -109,8 +106,7 @@ def similarity(
 
 
 def inversion(center: ArrayLike, radius: float) -> FloatArray:
-    """
-    Inversion in a sphere: ``x -> c + r² (x - c) / |x - c|²``.
+    """Inversion in a sphere: ``x -> c + r² (x - c) / |x - c|²``.
 
     Parameters
     ----------
@@ -146,8 +142,7 @@ def inversion(center: ArrayLike, radius: float) -> FloatArray:
 
 
 def reflection(row: ArrayLike) -> FloatArray:
-    """
-    Reflection ``s -> s - 2 <<s, w>> w`` in a sphere (an inversion) or plane.
+    """Reflection ``s -> s - 2 <<s, w>> w`` in a sphere (an inversion) or plane.
 
     Parameters
     ----------
@@ -184,8 +179,7 @@ def _reflect_in(unit_row: FloatArray) -> FloatArray:
 
 
 def rotation_about(vector: ArrayLike) -> FloatArray:
-    """
-    Rotation about an axis through the origin.
+    """Rotation about an axis through the origin.
 
     Parameters
     ----------
@@ -210,8 +204,7 @@ def rotation_about(vector: ArrayLike) -> FloatArray:
 
 
 def compose(transforms: Sequence[ArrayLike]) -> FloatArray:
-    """
-    Maps one after another.
+    """Maps one after another.
 
     Parameters
     ----------
@@ -245,8 +238,7 @@ def compose(transforms: Sequence[ArrayLike]) -> FloatArray:
 
 
 def inverse(transform: ArrayLike) -> FloatArray:
-    """
-    The map that undoes another.
+    """The map that undoes another.
 
     Parameters
     ----------
@@ -266,8 +258,7 @@ def inverse(transform: ArrayLike) -> FloatArray:
 
 
 def read_transform(transform: ArrayLike) -> LocalMap:
-    """
-    A checked transform in the form in which it maps geometry without loss of digits.
+    """A checked transform in the form in which it maps geometry without loss of digits.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Images of points, spheres, circles and arcs under Möbius maps.
+"""Images of points, spheres, circles and arcs under Möbius maps.
 
 Everything is mapped in closed form about its own place (`mobius_local`); the matrix is never
 multiplied onto geometry, which would lose digits with the fourth power of the distance. What
@@ -20,8 +19,7 @@ from .rows import recenter
 
 
 def map_spheres(rows: FloatArray, transform: ArrayLike) -> FloatArray:
-    """
-    Images of spheres, planes and points seen as rows.
+    """Images of spheres, planes and points seen as rows.
 
     Parameters
     ----------
@@ -51,8 +49,7 @@ def map_spheres(rows: FloatArray, transform: ArrayLike) -> FloatArray:
 
 
 def sent_to_infinity(points: FloatArray, transform: ArrayLike) -> BoolArray:
-    """
-    Which points have no image in space.
+    """Which points have no image in space.
 
     Parameters
     ----------
@@ -74,8 +71,7 @@ def sent_to_infinity(points: FloatArray, transform: ArrayLike) -> BoolArray:
 
 
 def map_points(points: FloatArray, transform: ArrayLike) -> FloatArray:
-    """
-    Images of points.
+    """Images of points.
 
     Parameters
     ----------
@@ -101,8 +97,7 @@ def map_points(points: FloatArray, transform: ArrayLike) -> FloatArray:
 
 
 def map_circles(circles: Circles, transform: ArrayLike) -> Circles:
-    """
-    Images of real circles.
+    """Images of real circles.
 
     Parameters
     ----------
@@ -154,8 +149,7 @@ def map_circles(circles: Circles, transform: ArrayLike) -> Circles:
 
 
 def map_arcs(arcs: Arcs, transform: ArrayLike) -> Arcs:
-    """
-    Images of arcs, by their ends and their middle.
+    """Images of arcs, by their ends and their middle.
 
     Parameters
     ----------
@@ -203,8 +197,7 @@ def map_arcs(arcs: Arcs, transform: ArrayLike) -> Arcs:
 
 
 def refuse_rows(is_bad: BoolArray, message: str) -> None:
-    """
-    Raise an error that names rows.
+    """Raise an error that names rows.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Möbius maps near a point: the form in which they act on geometry without loss of digits.
+"""Möbius maps near a point: the form in which they act on geometry without loss of digits.
 
 About any point that is not sent to infinity a Möbius map is
 
@@ -28,8 +27,7 @@ MAP_ROUNDING = 64 * EPSILON
 
 @dataclass(frozen=True)
 class LocalMap:
-    """
-    A Möbius map seen from a point.
+    """A Möbius map seen from a point.
 
     Attributes
     ----------
@@ -54,8 +52,7 @@ class LocalMap:
 
     @property
     def reverses(self) -> bool:
-        """
-        Whether right and left change places, as in every inversion.
+        """Whether right and left change places, as in every inversion.
 
         Returns
         -------
@@ -68,8 +65,7 @@ class LocalMap:
 def make_local(
     origin: FloatArray, image: FloatArray, scale: float, rotation: FloatArray, bend: FloatArray
 ) -> LocalMap:
-    """
-    A map from its bend vector.
+    """A map from its bend vector.
 
     Parameters
     ----------
@@ -81,11 +77,6 @@ def make_local(
         Nearly orthogonal; the nearest orthogonal matrix is taken.
     bend : (3,) float array
         The vector g.
-
-    Returns
-    -------
-    LocalMap
-        The map.
     """
     strength = float(norm(bend))
     direction = bend / strength if strength > 0 else np.array([1.0, 0.0, 0.0])
@@ -99,12 +90,10 @@ def _mirror_matrix(direction: FloatArray) -> FloatArray:
 
 
 def bend_vectors(local: LocalMap, points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """
-    How the map bends about other points than its origin.
+    """How the map bends about other points than its origin.
 
     Parameters
     ----------
-    local : LocalMap
     points : (..., 3) float array
         Points, in model coordinates.
 
@@ -135,8 +124,7 @@ def _move_origin(local: LocalMap, origin: FloatArray) -> LocalMap:
 
 
 def after(second: LocalMap, first: LocalMap) -> LocalMap:
-    """
-    One map after another.
+    """One map after another.
 
     Parameters
     ----------
@@ -186,12 +174,10 @@ def _follow(first: LocalMap, second: LocalMap) -> LocalMap:
 
 
 def point_images(local: LocalMap, points: FloatArray) -> FloatArray:
-    """
-    Images of points that are not sent to infinity.
+    """Images of points that are not sent to infinity.
 
     Parameters
     ----------
-    local : LocalMap
     points : (..., 3) float array
 
     Returns
@@ -207,12 +193,10 @@ def point_images(local: LocalMap, points: FloatArray) -> FloatArray:
 
 
 def turn_vectors(local: LocalMap, points: FloatArray, vectors: FloatArray) -> FloatArray:
-    """
-    Directions at points turned as the map turns them there, without its stretch.
+    """Directions at points turned as the map turns them there, without its stretch.
 
     Parameters
     ----------
-    local : LocalMap
     points : (..., 3) float array
     vectors : (..., 3) float array
         Vectors at the points.
@@ -230,12 +214,10 @@ def turn_vectors(local: LocalMap, points: FloatArray, vectors: FloatArray) -> Fl
 
 
 def row_images(local: LocalMap, rows: FloatArray, points: FloatArray) -> FloatArray:
-    """
-    Images of rows seen from points, seen from the images of the points.
+    """Images of rows seen from points, seen from the images of the points.
 
     Parameters
     ----------
-    local : LocalMap
     rows : (..., 5) float array
         Rows seen from the points.
     points : (..., 3) float array
@@ -267,12 +249,10 @@ def row_images(local: LocalMap, rows: FloatArray, points: FloatArray) -> FloatAr
 
 
 def offset_images(local: LocalMap, points: FloatArray, offsets: FloatArray) -> FloatArray:
-    """
-    What small steps from points become, seen from the images of the points.
+    """What small steps from points become, seen from the images of the points.
 
     Parameters
     ----------
-    local : LocalMap
     points : (..., 3) float array
         Points that are not sent to infinity.
     offsets : (..., 3) float array

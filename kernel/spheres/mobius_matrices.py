@@ -15,12 +15,7 @@ _FROM_PENTASPHERICAL = np.linalg.inv(_TO_PENTASPHERICAL)
 
 
 def to_matrix(local: LocalMap) -> FloatArray:
-    """
-    Lorentz matrix of a map on pentaspherical coordinates.
-
-    Parameters
-    ----------
-    local : LocalMap
+    """Lorentz matrix of a map on pentaspherical coordinates.
 
     Returns
     -------
@@ -46,8 +41,7 @@ def _translation(shift: FloatArray) -> FloatArray:
 
 
 def read_matrix(transform: FloatArray) -> LocalMap:
-    """
-    The map that a Lorentz matrix stands for.
+    """The map that a Lorentz matrix stands for.
 
     Parameters
     ----------

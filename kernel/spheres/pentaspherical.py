@@ -10,8 +10,7 @@ SIGNATURE = np.diag([1.0, 1.0, 1.0, 1.0, -1.0])
 
 
 def pentaspherical(rows: FloatArray) -> FloatArray:
-    """
-    Pentaspherical coordinates ``(B, C - A, C + A)``, of signature (+, +, +, +, -).
+    """Pentaspherical coordinates ``(B, C - A, C + A)``, of signature (+, +, +, +, -).
 
     Parameters
     ----------
@@ -27,8 +26,7 @@ def pentaspherical(rows: FloatArray) -> FloatArray:
 
 
 def from_pentaspherical(coordinates: FloatArray) -> FloatArray:
-    """
-    Rows of pentaspherical coordinates.
+    """Rows of pentaspherical coordinates.
 
     Parameters
     ----------
@@ -47,8 +45,7 @@ def from_pentaspherical(coordinates: FloatArray) -> FloatArray:
 
 
 def stereographic(points: FloatArray) -> FloatArray:
-    """
-    Stereographic image of points of space on the unit 3-sphere, from the north pole.
+    """Stereographic image of points of space on the unit 3-sphere, from the north pole.
 
     Parameters
     ----------
@@ -64,8 +61,7 @@ def stereographic(points: FloatArray) -> FloatArray:
 
 
 def inverse_stereographic(points: FloatArray) -> FloatArray:
-    """
-    Central projection from the north pole of the 3-sphere back to space.
+    """Central projection from the north pole of the 3-sphere back to space.
 
     Parameters
     ----------
@@ -82,8 +78,7 @@ def inverse_stereographic(points: FloatArray) -> FloatArray:
 
 
 def pole(rows: FloatArray) -> tuple[FloatArray, BoolArray]:
-    """
-    Pole, with respect to the unit 3-sphere, of the stereographic image of a sphere.
+    """Pole, with respect to the unit 3-sphere, of the stereographic image of a sphere.
 
     Parameters
     ----------

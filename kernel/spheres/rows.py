@@ -21,8 +21,7 @@ class Kind(IntEnum):
 
 
 def kind(rows: FloatArray) -> IntArray:
-    """
-    Classify rows as sphere, plane, point or imaginary sphere.
+    """Classify rows as sphere, plane, point or imaginary sphere.
 
     Parameters
     ----------
@@ -45,8 +44,7 @@ def kind(rows: FloatArray) -> IntArray:
 
 
 def from_center_radius(center: FloatArray, radius_squared: FloatArray) -> FloatArray:
-    """
-    Rows with A = 1, the paper's standard lift: N points to the centre.
+    """Rows with A = 1, the paper's standard lift: N points to the centre.
 
     Parameters
     ----------
@@ -70,8 +68,7 @@ def from_center_radius(center: FloatArray, radius_squared: FloatArray) -> FloatA
 
 
 def from_plane(normal: FloatArray, distance: FloatArray) -> FloatArray:
-    """
-    Rows of the planes ``n·x = d``.
+    """Rows of the planes ``n·x = d``.
 
     Parameters
     ----------
@@ -92,8 +89,7 @@ def from_plane(normal: FloatArray, distance: FloatArray) -> FloatArray:
 
 
 def lift_points(points: FloatArray) -> FloatArray:
-    """
-    Rows of points, seen as spheres of radius zero.
+    """Rows of points, seen as spheres of radius zero.
 
     Parameters
     ----------
@@ -109,8 +105,7 @@ def lift_points(points: FloatArray) -> FloatArray:
 
 
 def center_radius(rows: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """
-    Centres and squared radii, for display and for writers.
+    """Centres and squared radii, for display and for writers.
 
     Parameters
     ----------
@@ -134,8 +129,7 @@ def center_radius(rows: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def normalize(rows: FloatArray) -> FloatArray:
-    """
-    Rows scaled to norm +1 (real) or -1 (imaginary); the orientation is kept.
+    """Rows scaled to norm +1 (real) or -1 (imaginary); the orientation is kept.
 
     Parameters
     ----------
@@ -160,8 +154,7 @@ def normalize(rows: FloatArray) -> FloatArray:
 
 
 def recenter(rows: FloatArray, origin: FloatArray) -> FloatArray:
-    """
-    The same spheres in coordinates whose origin is another point.
+    """The same spheres in coordinates whose origin is another point.
 
     Parameters
     ----------
@@ -181,8 +174,7 @@ def recenter(rows: FloatArray, origin: FloatArray) -> FloatArray:
 
 
 def rescale(rows: FloatArray, factor: float) -> FloatArray:
-    """
-    Unit rows of the spheres scaled from the origin.
+    """Unit rows of the spheres scaled from the origin.
 
     Parameters
     ----------
@@ -200,8 +192,7 @@ def rescale(rows: FloatArray, factor: float) -> FloatArray:
 
 
 def offset(rows: FloatArray, distance: FloatArray | float) -> FloatArray:
-    """
-    Parallel surfaces at a signed distance along N: concentric spheres, parallel planes.
+    """Parallel surfaces at a signed distance along N: concentric spheres, parallel planes.
 
     Parameters
     ----------

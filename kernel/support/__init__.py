@@ -1,5 +1,4 @@
-"""
-Support structures: node axes, torsion, and the flat annuli between them (Sec. 4.1).
+"""Support structures: node axes, torsion, and the flat annuli between them (Sec. 4.1).
 
 annuli           Annuli: flat beams, bounded by two circular arcs and the lines of their ends.
 annulus_checks   What keeps an annulus from being made: planes that lie flat, ends that lean

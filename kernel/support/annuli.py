@@ -1,5 +1,4 @@
-"""
-Annuli: flat beams, bounded by two circular arcs and the lines of their ends.
+"""Annuli: flat beams, bounded by two circular arcs and the lines of their ends.
 
 Each annulus has its own origin, near the middle of its edge and in its plane. A circle is kept
 as the unit row of the sphere that has it as a great circle, so that straight beams are planes
@@ -15,8 +14,7 @@ from ..arrays import FloatArray, IntArray, dot, norm, sum_by
 
 @dataclass(frozen=True)
 class Annuli:
-    """
-    Annuli that can be made, in the order of their edges.
+    """Annuli that can be made, in the order of their edges.
 
     Points and rows are local: seen from the origin of the annulus, not turned.
 
@@ -73,8 +71,7 @@ class Annuli:
 
     @property
     def element_ids(self) -> IntArray:
-        """
-        Edge of each annulus.
+        """Edge of each annulus.
 
         Returns
         -------
@@ -85,20 +82,12 @@ class Annuli:
 
     @property
     def n_annuli(self) -> int:
-        """
-        Number of annuli.
-
-        Returns
-        -------
-        int
-            B.
-        """
+        """Number of annuli."""
         return len(self.edge_ids)
 
 
 def beam_ids(n_edges: int) -> tuple[str, ...]:
-    """
-    Stable names of the beams of a mesh.
+    """Stable names of the beams of a mesh.
 
     Parameters
     ----------
@@ -120,12 +109,7 @@ def beam_ids(n_edges: int) -> tuple[str, ...]:
 
 
 def corner_mismatch(annuli: Annuli) -> FloatArray:
-    """
-    How far the ends of the annuli that meet at a node are apart.
-
-    Parameters
-    ----------
-    annuli : Annuli
+    """How far the ends of the annuli that meet at a node are apart.
 
     Returns
     -------
@@ -145,12 +129,7 @@ def corner_mismatch(annuli: Annuli) -> FloatArray:
 
 
 def twist_angles(annuli: Annuli) -> FloatArray:
-    """
-    Angles by which the planes of the annuli miss the node axes: 0 where a node has no torsion.
-
-    Parameters
-    ----------
-    annuli : Annuli
+    """Angles by which the planes of annuli miss node axes: 0 where a node has no torsion.
 
     Returns
     -------
@@ -162,12 +141,7 @@ def twist_angles(annuli: Annuli) -> FloatArray:
 
 
 def end_depths(annuli: Annuli) -> FloatArray:
-    """
-    Lengths of the ends, along the lines that the beams of a node share.
-
-    Parameters
-    ----------
-    annuli : Annuli
+    """Lengths of the ends, along the lines that the beams of a node share.
 
     Returns
     -------
@@ -178,12 +152,7 @@ def end_depths(annuli: Annuli) -> FloatArray:
 
 
 def mean_end_depth(annuli: Annuli) -> float:
-    """
-    Mean length of the ends of the annuli.
-
-    Parameters
-    ----------
-    annuli : Annuli
+    """Mean length of the ends of the annuli.
 
     Returns
     -------

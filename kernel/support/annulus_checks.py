@@ -17,8 +17,7 @@ NO_CUT: Final = "B101"
 
 
 def standing_reasons(annuli: Annuli, is_real: BoolArray, max_tilt: float) -> dict[int, str]:
-    """
-    Why annuli cannot stand, whatever their depth; of several reasons the first.
+    """Why annuli cannot stand, whatever their depth; of several reasons the first.
 
     Parameters
     ----------
@@ -56,12 +55,10 @@ def standing_reasons(annuli: Annuli, is_real: BoolArray, max_tilt: float) -> dic
 
 
 def inner_reasons(annuli: Annuli, size: float) -> dict[int, str]:
-    """
-    Why annuli have no inner arc; of several reasons the first.
+    """Why annuli have no inner arc; of several reasons the first.
 
     Parameters
     ----------
-    annuli : Annuli
     size : float
         Mean edge of the mesh.
 

@@ -1,5 +1,4 @@
-"""
-Finding the annuli of a sphere mesh: planes, circles, ends, and what cannot be made.
+"""Finding the annuli of a sphere mesh: planes, circles, ends, and what cannot be made.
 
 The outer arc of an annulus is the circle in which the spheres of its two faces meet. The inner
 one is either concentric with constant power ``R² - r² = κ``, so that all annuli of a node meet
@@ -36,8 +35,7 @@ from .node_axes import SupportStructure, arc_planes, support_structure
 
 @dataclass(frozen=True)
 class AnnulusSupport:
-    """
-    The annuli of a sphere mesh, and what cannot be made of it.
+    """The annuli of a sphere mesh, and what cannot be made of it.
 
     Attributes
     ----------
@@ -61,12 +59,10 @@ def annulus_support(
     kappa: float | None = None,
     max_tilt: float = BEAM_TILT,
 ) -> AnnulusSupport:
-    """
-    Annuli under all edges, of constant depth or of constant power.
+    """Annuli under all edges, of constant depth or of constant power.
 
     Parameters
     ----------
-    sphere_mesh : SphereMesh
     depth : float, optional
         Length of the ends, along the node axes to the inner side, in model units.
     kappa : float, optional
@@ -212,8 +208,7 @@ def _panel_ids_beside(
 def _great_spheres(
     left: FloatArray, right: FloatArray, plane_normals: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
-    """
-    Unit rows orthogonal to planes through the origin, through the circles of rows there.
+    """Unit rows orthogonal to planes through the origin, through the circles of rows there.
 
     Of the two spheres, that which stands more upright on the plane tells the circle better.
     """
@@ -288,8 +283,7 @@ def _with_depth(annuli: Annuli, depth: float) -> Annuli:
 
 @dataclass(frozen=True, eq=False)
 class AnnuliReport(Report):
-    """
-    What a user must know about annuli.
+    """What a user must know about annuli.
 
     Attributes
     ----------
@@ -305,7 +299,6 @@ class AnnuliReport(Report):
         ``min`` and ``max`` length of the ends.
     outward : int
         Ends that reach to the outer side.
-    made : int
     rejected : list of dict
         ``id``, ``code`` and ``reason`` of each annulus that cannot be made.
     """
@@ -321,19 +314,7 @@ class AnnuliReport(Report):
 
 
 def annulus_report(support: AnnulusSupport, size: float) -> AnnuliReport:
-    """
-    The report of annuli.
-
-    Parameters
-    ----------
-    support : AnnulusSupport
-    size : float
-
-    Returns
-    -------
-    AnnuliReport
-        Plain values.
-    """
+    """The report of annuli."""
     annuli = support.annuli
     tilt = np.degrees(annuli.tilt)
     steps = annuli.corners[:, :, 1] - annuli.corners[:, :, 0]

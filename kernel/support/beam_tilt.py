@@ -8,12 +8,7 @@ from ..sphere_meshes.sphere_mesh import SphereMesh
 
 
 def beam_tilt(sphere_mesh: SphereMesh) -> FloatArray:
-    """
-    Angle between the plane in which two spheres meet and the plane that bisects them.
-
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
+    """Angle between the plane in which two spheres meet and the plane that bisects them.
 
     Returns
     -------

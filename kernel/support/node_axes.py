@@ -1,5 +1,4 @@
-"""
-Support structures: the axes of nodes, and whether the beams that meet there share them.
+"""Support structures: the axes of nodes, and whether the beams that meet there share them.
 
 Neighbouring spheres meet in a circle, and a beam along their edge lies in the plane of that
 circle. The node at a vertex is free of torsion if the planes of its beams have a line in
@@ -37,8 +36,7 @@ from .rim_axes import rim_axes
 
 @dataclass(frozen=True)
 class ArcPlanes:
-    """
-    Planes of the circles in which neighbouring spheres meet, one per interior edge.
+    """Planes of the circles in which neighbouring spheres meet, one per interior edge.
 
     Attributes
     ----------
@@ -57,8 +55,7 @@ class ArcPlanes:
 
 @dataclass(frozen=True)
 class SupportStructure:
-    """
-    The nodes of a support structure, one per vertex.
+    """The nodes of a support structure, one per vertex.
 
     Attributes
     ----------
@@ -93,8 +90,7 @@ class SupportStructure:
 
 
 def arc_planes(sphere_mesh: SphereMesh) -> ArcPlanes:
-    """
-    Planes of the circles in which neighbouring spheres meet.
+    """Planes of the circles in which neighbouring spheres meet.
 
     Parameters
     ----------
@@ -136,12 +132,7 @@ def arc_planes(sphere_mesh: SphereMesh) -> ArcPlanes:
 
 
 def support_structure(sphere_mesh: SphereMesh) -> SupportStructure:
-    """
-    Node axes, and how far the nodes are from being free of torsion.
-
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
+    """Node axes, and how far the nodes are from being free of torsion.
 
     Returns
     -------
@@ -239,13 +230,7 @@ def _fourth_value(rows: FloatArray, corners: IntArray, n_vertices: int) -> Float
 
 
 def node_reasons(structure: SupportStructure) -> dict[int, str]:
-    """
-    Why nodes are not valid; of several reasons the first.
-
-    Parameters
-    ----------
-    structure : SupportStructure
-        The nodes.
+    """Why nodes are not valid; of several reasons the first.
 
     Returns
     -------
@@ -270,13 +255,7 @@ def node_reasons(structure: SupportStructure) -> dict[int, str]:
 
 
 def axis_lean(structure: SupportStructure) -> FloatArray:
-    """
-    Angles between the axes and the normals of the vertices.
-
-    Parameters
-    ----------
-    structure : SupportStructure
-        The nodes.
+    """Angles between the axes and the normals of the vertices.
 
     Returns
     -------
@@ -289,8 +268,7 @@ def axis_lean(structure: SupportStructure) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class NodesReport(Report):
-    """
-    What a user must know about the nodes and beams of a sphere mesh.
+    """What a user must know about the nodes and beams of a sphere mesh.
 
     Attributes
     ----------
@@ -305,7 +283,6 @@ class NodesReport(Report):
         Axes that end one mean edge inside.
     edges_without_circle : int
         Neighbours on the same sphere.
-    valid : int
     invalid : list of dict
         ``id``, ``vertex`` and ``reason`` of each node.
     """
@@ -320,19 +297,7 @@ class NodesReport(Report):
 
 
 def support_report(sphere_mesh: SphereMesh, structure: SupportStructure) -> NodesReport:
-    """
-    The report of nodes.
-
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
-    structure : SupportStructure
-
-    Returns
-    -------
-    NodesReport
-        Plain values.
-    """
+    """The report of nodes."""
     topology = sphere_mesh.mesh.topology
     inside = ~topology.is_boundary_vertex
     degrees = np.degrees(structure.torsion)
@@ -362,13 +327,7 @@ def support_report(sphere_mesh: SphereMesh, structure: SupportStructure) -> Node
 
 
 def node_name(vertex: int) -> str:
-    """
-    Stable name of a node.
-
-    Parameters
-    ----------
-    vertex : int
-        Its vertex.
+    """Stable name of a node.
 
     Returns
     -------

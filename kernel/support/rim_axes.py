@@ -1,5 +1,4 @@
-"""
-Node axes along the boundary: where one plane is given at a node, and edges ask for more.
+"""Node axes along the boundary: where one plane is given at a node, and edges ask for more.
 
 A beam on the boundary is flat if the axes at its two ends lie in one plane with its edge. At a
 node where one beam comes from inside, the axis lies in the plane of that beam, so an axis at
@@ -25,12 +24,10 @@ SCANS = 4
 
 
 def rim_axes(mesh: Mesh, directions: FloatArray, planes: FloatArray) -> FloatArray:
-    """
-    Turn the axes of sides of the boundary until their beams are flat.
+    """Turn the axes of sides of the boundary until their beams are flat.
 
     Parameters
     ----------
-    mesh : Mesh
     directions : (V, 3) float array
         Unit axes; where one plane is given, the direction of it nearest to the normal.
     planes : (V, 3) float array
@@ -62,8 +59,7 @@ def rim_axes(mesh: Mesh, directions: FloatArray, planes: FloatArray) -> FloatArr
 
 
 class _Side(NamedTuple):
-    """
-    Nodes of a side, one after the other.
+    """Nodes of a side, one after the other.
 
     Attributes
     ----------

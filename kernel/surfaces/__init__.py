@@ -1,5 +1,4 @@
-"""
-Surfaces to start from: exactly circular nets, triangulated samples, NURBS.
+"""Surfaces to start from: exactly circular nets, triangulated samples, NURBS.
 
 circular_nets  Exactly circular nets to start from: every face has a circumcircle.
 nurbs          NURBS surfaces: exact points, derivatives and principal curvatures.

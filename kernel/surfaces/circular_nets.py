@@ -1,5 +1,4 @@
-"""
-Exactly circular nets to start from: every face has a circumcircle.
+"""Exactly circular nets to start from: every face has a circumcircle.
 
 Surfaces of revolution give nets of isosceles trapezoids, Möbius maps keep circles, and the
 Christoffel dual of a net on the sphere with cross-ratio -1 is a discrete minimal surface. The
@@ -14,8 +13,7 @@ from ..meshes.mesh import Mesh
 
 
 def torus_net(n_around: int, n_across: int, major_radius: float, minor_radius: float) -> Mesh:
-    """
-    Closed net on a torus about the z axis.
+    """Closed net on a torus about the z axis.
 
     Parameters
     ----------
@@ -49,8 +47,7 @@ def torus_net(n_around: int, n_across: int, major_radius: float, minor_radius: f
 def ellipsoid_net(
     n_around: int, n_across: int, radius: float, height: float, latitude: float
 ) -> Mesh:
-    """
-    Net on a spheroid about the z axis, without its two caps.
+    """Net on a spheroid about the z axis, without its two caps.
 
     Parameters
     ----------
@@ -81,15 +78,12 @@ def ellipsoid_net(
 
 
 def catenoid_net(n_around: int, n_across: int, waist: float, height: float) -> Mesh:
-    """
-    Net on a catenoid about the z axis.
+    """Net on a catenoid about the z axis.
 
     Parameters
     ----------
     n_around, n_across : int
         Faces along the parallels (at least 3) and along the meridians.
-    waist : float
-        Smallest radius.
     height : float
         Half of the height.
 
@@ -113,8 +107,7 @@ def catenoid_net(n_around: int, n_across: int, waist: float, height: float) -> M
 def vase_net(
     n_around: int, n_across: int, radius: float, height: float, amplitude: float
 ) -> Mesh:
-    """
-    Net on a vase about the z axis: a cylinder whose radius swings by a sine.
+    """Net on a vase about the z axis: a cylinder whose radius swings by a sine.
 
     Parameters
     ----------
@@ -145,8 +138,7 @@ def vase_net(
 
 
 def enneper_net(n: int, size: float) -> Mesh:
-    """
-    Discrete Enneper surface: a circular net that is exactly minimal.
+    """Discrete Enneper surface: a circular net that is exactly minimal.
 
     Parameters
     ----------
@@ -189,8 +181,7 @@ def enneper_net(n: int, size: float) -> Mesh:
 
 
 def roof_net(n_span: int, n_length: int, length: float) -> Mesh:
-    """
-    Freeform roof over a long hall: three domes in a row, bent in plan and of growing size.
+    """Freeform roof over a long hall: three domes in a row, bent in plan and of growing size.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-NURBS surfaces: exact points, derivatives and principal curvatures.
+"""NURBS surfaces: exact points, derivatives and principal curvatures.
 
 A surface is a net of homogeneous control points (w x, w y, w z, w) over two knot vectors. Only
 the ``degree + 1`` basis functions that do not vanish are evaluated, by the recursion of Cox and
@@ -23,8 +22,7 @@ _STEPS = 20
 
 @dataclass(frozen=True)
 class NurbsSurface:
-    """
-    A rational tensor-product B-spline surface.
+    """A rational tensor-product B-spline surface.
 
     Attributes
     ----------
@@ -64,8 +62,7 @@ class NurbsSurface:
 
     @property
     def degrees(self) -> tuple[int, int]:
-        """
-        Degrees along u and v.
+        """Degrees along u and v.
 
         Returns
         -------
@@ -77,8 +74,7 @@ class NurbsSurface:
 
     @property
     def domain(self) -> FloatArray:
-        """
-        Range of u and range of v, (2, 2).
+        """Range of u and range of v, (2, 2).
 
         Returns
         -------
@@ -111,19 +107,12 @@ class SurfaceCurvature(NamedTuple):
 
 
 def evaluate_nurbs(surface: NurbsSurface, u: FloatArray, v: FloatArray) -> SurfaceJet:
-    """
-    Points of a surface with their derivatives.
+    """Points of a surface with their derivatives.
 
     Parameters
     ----------
-    surface : NurbsSurface
     u, v : (N,) float array
         Parameters in its domain.
-
-    Returns
-    -------
-    SurfaceJet
-        Points and derivatives.
 
     Raises
     ------
@@ -220,12 +209,10 @@ def _differences(
 
 
 def nurbs_curvatures(surface: NurbsSurface, u: FloatArray, v: FloatArray) -> SurfaceCurvature:
-    """
-    Exact principal curvatures of a surface.
+    """Exact principal curvatures of a surface.
 
     Parameters
     ----------
-    surface : NurbsSurface
     u, v : (N,) float array
         Parameters in its domain.
 
@@ -269,12 +256,10 @@ def nurbs_curvatures(surface: NurbsSurface, u: FloatArray, v: FloatArray) -> Sur
 def nearest_parameters(
     surface: NurbsSurface, points: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """
-    Parameters of the points of a surface nearest to given points on or near it.
+    """Parameters of the points of a surface nearest to given points on or near it.
 
     Parameters
     ----------
-    surface : NurbsSurface
     points : (N, 3) float array
 
     Returns

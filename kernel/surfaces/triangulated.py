@@ -1,5 +1,4 @@
-"""
-Triangulated sample surfaces with exact normals, to remesh and to measure with.
+"""Triangulated sample surfaces with exact normals, to remesh and to measure with.
 
 A surface is a map of a rectangle of parameters with its two derivatives; opposite sides of the
 rectangle may be glued.
@@ -40,8 +39,7 @@ class ParametricShape(NamedTuple):
 def triangulated_surface(
     shape: SampleShape, edge_length: float, seed: int | None = None
 ) -> tuple[Mesh, FloatArray]:
-    """
-    A triangulated sample surface of size about 2 with its exact normals.
+    """A triangulated sample surface of size about 2 with its exact normals.
 
     Parameters
     ----------
@@ -78,12 +76,10 @@ def triangulated_surface(
 
 
 def grid_counts(shape: ParametricShape, edge_length: float) -> tuple[int, int]:
-    """
-    Numbers of grid steps along u and v.
+    """Numbers of grid steps along u and v.
 
     Parameters
     ----------
-    shape : ParametricShape
     edge_length : float
         Length of a step.
 
@@ -113,12 +109,10 @@ def grid_counts(shape: ParametricShape, edge_length: float) -> tuple[int, int]:
 def parameter_grid(
     shape: ParametricShape, counts: tuple[int, int], seed: int | None
 ) -> tuple[FloatArray, FloatArray, IntArray]:
-    """
-    Parameters of the vertices and the triangles of a grid.
+    """Parameters of the vertices and the triangles of a grid.
 
     Parameters
     ----------
-    shape : ParametricShape
     counts : (int, int)
         Steps along u and v.
     seed : int, optional

@@ -1,5 +1,4 @@
-"""
-The framework: typed functions as nodes, and the lazy graph that runs them.
+"""The framework: typed functions as nodes, and the lazy graph that runs them.
 
 annotations  How types are read: alternatives, elements, what arrays hold, and their names.
 cache        Structural keys, and the results found by them.

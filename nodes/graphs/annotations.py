@@ -28,8 +28,7 @@ _NAMES: dict[Hint, str] = {NoneType: "None", os.PathLike: "path"}
 
 @dataclass(frozen=True)
 class ArrayFacts:
-    """
-    What an array holds, as a fact in ``Annotated``.
+    """What an array holds, as a fact in ``Annotated``.
 
     A wire between two arrays that both say it is refused if shapes or kinds of numbers differ;
     an array that does not say it fits all others.
@@ -60,12 +59,7 @@ class Member(NamedTuple):
 
 
 def element_type(hint: Hint) -> Hint:
-    """
-    Type of the elements of a list.
-
-    Parameters
-    ----------
-    hint : type
+    """Type of the elements of a list.
 
     Returns
     -------
@@ -86,12 +80,7 @@ def element_type(hint: Hint) -> Hint:
 
 
 def type_name(hint: Hint) -> str:
-    """
-    A type in the words of a message.
-
-    Parameters
-    ----------
-    hint : type
+    """A type in the words of a message.
 
     Returns
     -------
@@ -124,12 +113,10 @@ def _name(member: Member) -> str:
 
 
 def members(hint: Hint, facts: ArrayFacts | None = None) -> tuple[Member, ...]:
-    """
-    The alternatives that an annotation stands for, seen through names and type variables.
+    """The alternatives that an annotation stands for, seen through names and type variables.
 
     Parameters
     ----------
-    hint : type
     facts : ArrayFacts, optional
         What was said around it.
 
@@ -171,30 +158,17 @@ def _alias_value(alias: Hint) -> Hint:
 
 
 def scalar_type(member: Member) -> Hint:
-    """
-    The scalar type of ``NDArray[...]``.
-
-    Parameters
-    ----------
-    member : Member
-
-    Returns
-    -------
-    type
-        None if it is not said, or abstract.
-    """
+    """The scalar type of ``NDArray[...]``: None if it is not said, or abstract."""
     arguments = get_args(member.hint)
     scalar = get_args(arguments[1]) if len(arguments) == 2 else ()
     return scalar[0] if scalar and scalar[0] in np.sctypeDict.values() else None
 
 
 def is_subclass(kind: Hint, base: Hint, *, undecided: bool = True) -> bool:
-    """
-    Whether values of one class are values of another.
+    """Whether values of one class are values of another.
 
     Parameters
     ----------
-    kind, base : type
     undecided : bool
         The answer for what is no class, such as the signature of a callable.
 

@@ -19,8 +19,7 @@ FileState = tuple[int, int] | None
 
 
 def digest(value: object) -> bytes:
-    """
-    A fingerprint of a value by its content.
+    """A fingerprint of a value by its content.
 
     Parameters
     ----------
@@ -127,12 +126,7 @@ def _(value: Set[Any], state: xxhash.xxh3_128) -> None:
 
 
 def file_state(path: str | os.PathLike[str]) -> FileState:
-    """
-    What tells that a file has changed.
-
-    Parameters
-    ----------
-    path : path
+    """What tells that a file has changed.
 
     Returns
     -------
@@ -148,8 +142,7 @@ def file_state(path: str | os.PathLike[str]) -> FileState:
 
 @dataclass(frozen=True, eq=False)
 class Entry:
-    """
-    The outcome of a step.
+    """The outcome of a step.
 
     Attributes
     ----------
@@ -167,8 +160,7 @@ class Entry:
 
 
 class Cache:
-    """
-    Results by key, the longest unused forgotten first.
+    """Results by key, the longest unused forgotten first.
 
     Parameters
     ----------
@@ -184,12 +176,7 @@ class Cache:
         self._lock = Lock()
 
     def get(self, key: bytes) -> Entry | None:
-        """
-        The result of a key, if it is there and the files it wrote are too.
-
-        Parameters
-        ----------
-        key : bytes
+        """The result of a key, if it is there and the files it wrote are too.
 
         Returns
         -------
@@ -210,14 +197,7 @@ class Cache:
             return entry
 
     def put(self, key: bytes, entry: Entry) -> None:
-        """
-        Keep a result.
-
-        Parameters
-        ----------
-        key : bytes
-        entry : Entry
-        """
+        """Keep a result."""
         with self._lock:
             self._entries[key] = entry
             self._entries.move_to_end(key)
@@ -226,12 +206,7 @@ class Cache:
                 self._messages[key] = entry.messages
 
     def messages(self, key: bytes) -> tuple[str, ...]:
-        """
-        What a step warned about; remembered when its result is forgotten.
-
-        Parameters
-        ----------
-        key : bytes
+        """What a step warned about; remembered when its result is forgotten.
 
         Returns
         -------
@@ -241,8 +216,7 @@ class Cache:
         return self._messages.get(key, ())
 
     def trim(self, at_least: int = 0) -> None:
-        """
-        Forget the results that were not used for longest.
+        """Forget the results that were not used for longest.
 
         Parameters
         ----------

@@ -17,8 +17,7 @@ from .wires import Each, Param, Wire
 
 @singledispatch
 def encode(value: Value) -> Value:
-    """
-    A value, a wire or a slider as JSON.
+    """A value, a wire or a slider as JSON.
 
     Parameters
     ----------
@@ -112,14 +111,7 @@ class Names(NamedTuple):
 
 
 def decode(value: Value, names: Names) -> Value:
-    """
-    The inverse of `encode`.
-
-    Parameters
-    ----------
-    value : object
-        JSON.
-    names : Names
+    """The inverse of `encode`.
 
     Returns
     -------

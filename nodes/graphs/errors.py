@@ -13,8 +13,7 @@ class UnknownPortError(GraphError, AttributeError):
 
 
 class NodeError(RuntimeError):
-    """
-    A step failed while it ran.
+    """A step failed while it ran.
 
     Parameters
     ----------
@@ -40,13 +39,7 @@ class NodeError(RuntimeError):
 
 
 def nearest(name: str, names: Iterable[str]) -> str:
-    """
-    The end of a message about an unknown name.
-
-    Parameters
-    ----------
-    name : str
-    names : iterable of str
+    """The end of a message about an unknown name.
 
     Returns
     -------

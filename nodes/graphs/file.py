@@ -29,12 +29,10 @@ RENAMED_PORTS: dict[str, dict[str, str]] = {}
 def encode_graph(
     title: str, units: str, params: Mapping[str, Param], steps: Mapping[str, Step]
 ) -> str:
-    """
-    The text of a graph file.
+    """The text of a graph file.
 
     Parameters
     ----------
-    title, units : str
     params : mapping of str to Param
         Its sliders, with their present values.
     steps : mapping of str to Step
@@ -94,13 +92,7 @@ class _Graph(Protocol):
 
 
 def decode_graph(text: str) -> dict[str, Any]:
-    """
-    The content of a graph file, its form checked.
-
-    Parameters
-    ----------
-    text : str
-        JSON.
+    """The content of a graph file, its form checked.
 
     Returns
     -------
@@ -141,12 +133,10 @@ def decode_graph(text: str) -> dict[str, Any]:
 
 
 def add_content(graph: _Graph, content: Mapping[str, Any]) -> None:
-    """
-    Give an empty graph the sliders and steps of a graph file.
+    """Give an empty graph the sliders and steps of a graph file.
 
     Parameters
     ----------
-    graph : Graph
     content : mapping
         From `decode_graph`.
 
@@ -193,25 +183,16 @@ def _present(node: Node, port: str, ports: Mapping[str, Port]) -> str:
 
 
 def write_graph(path: str | os.PathLike[str], text: str) -> None:
-    """
-    Write a graph file: the whole or nothing.
-
-    Parameters
-    ----------
-    path : path
-    text : str
-    """
+    """Write a graph file: the whole or nothing."""
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
 
 
 def read_graph(path: str | os.PathLike[str], parse: Callable[[str], _Parsed]) -> _Parsed:
-    """
-    Read a graph file; errors name it.
+    """Read a graph file; errors name it.
 
     Parameters
     ----------
-    path : path
     parse : callable
         Makes the graph of its text.
 

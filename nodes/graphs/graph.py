@@ -35,8 +35,7 @@ from .wires import (
 
 
 class Graph:
-    """
-    Nodes wired together; only what a target needs is run, and only once.
+    """Nodes wired together; only what a target needs is run, and only once.
 
     Parameters
     ----------
@@ -106,8 +105,7 @@ class Graph:
         max: float | None = None,  # noqa: A002
         choices: Sequence[Any] = (),
     ) -> Param:
-        """
-        Add a slider.
+        """Add a slider.
 
         Parameters
         ----------
@@ -140,8 +138,7 @@ class Graph:
     def add(
         self, node: str | Callable[..., Any], name: str | None = None, /, **inputs: Value
     ) -> Step:
-        """
-        Add a step and wire its inputs.
+        """Add a step and wire its inputs.
 
         Parameters
         ----------
@@ -183,8 +180,7 @@ class Graph:
         return free
 
     def set(self, /, **params: Value) -> None:
-        """
-        Move sliders; none if a name is unknown or a value not allowed.
+        """Move sliders; none if a name is unknown or a value not allowed.
 
         Parameters
         ----------
@@ -193,8 +189,7 @@ class Graph:
         self._values.update(self.check_params(params))
 
     def check_params(self, params: Mapping[str, Any]) -> dict[str, Any]:
-        """
-        Values for sliders, checked against their ranges and the inputs that they feed.
+        """Values for sliders, checked against their ranges and the inputs that they feed.
 
         Parameters
         ----------
@@ -224,8 +219,7 @@ class Graph:
         read_from: str | os.PathLike[str] | None = None,
         write_to: str | os.PathLike[str] | None = None,
     ) -> Value:
-        """
-        The values of targets; only the steps that they need and that have changed are run.
+        """The values of targets; only the steps that they need and that have changed are run.
 
         What is changed while it runs is for the next run.
 
@@ -282,8 +276,7 @@ class Graph:
         return values[0] if len(values) == 1 else values
 
     def wire(self, name: str) -> Step | Wire:
-        """
-        A step or an output by name.
+        """A step or an output by name.
 
         Parameters
         ----------
@@ -302,8 +295,7 @@ class Graph:
         return getattr(step, port) if dot else step
 
     def slider(self, name: str) -> Param:
-        """
-        A slider by name.
+        """A slider by name.
 
         Parameters
         ----------
@@ -319,8 +311,7 @@ class Graph:
         return self._params[name]
 
     def to_json(self) -> str:
-        """
-        The graph as the text of a graph file.
+        """The graph as the text of a graph file.
 
         Returns
         -------
@@ -331,8 +322,7 @@ class Graph:
 
     @classmethod
     def from_json(cls, text: str, *, cache: Cache | None = None) -> "Graph":
-        """
-        The graph of a graph file's text.
+        """The graph of a graph file's text.
 
         Parameters
         ----------
@@ -352,8 +342,7 @@ class Graph:
         return graph
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """
-        Write a graph file.
+        """Write a graph file.
 
         Parameters
         ----------
@@ -364,8 +353,7 @@ class Graph:
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> "Graph":
-        """
-        Read a graph file.
+        """Read a graph file.
 
         Parameters
         ----------
@@ -380,8 +368,7 @@ class Graph:
         return read_graph(path, cls.from_json)
 
     def mermaid(self) -> str:
-        """
-        The graph as a Mermaid flowchart.
+        """The graph as a Mermaid flowchart.
 
         Returns
         -------

@@ -22,13 +22,7 @@ from .annotations import (
 
 
 def accepts(hint: Hint, value: Value) -> bool:
-    """
-    Whether a value may go into an input of a type.
-
-    Parameters
-    ----------
-    hint : type
-    value : object
+    """Whether a value may go into an input of a type.
 
     Returns
     -------
@@ -44,8 +38,7 @@ def accepts(hint: Hint, value: Value) -> bool:
 
 
 def fits(source: Hint, target: Hint) -> bool:
-    """
-    Whether an output of one type may be wired into an input of another.
+    """Whether an output of one type may be wired into an input of another.
 
     Parameters
     ----------
@@ -72,12 +65,10 @@ def _fits(source: Member, target: Member) -> bool:
 
 
 def convert(hint: Hint, value: Value) -> Value:
-    """
-    The value in the form that a function expects: lists become arrays, texts paths.
+    """The value in the form that a function expects: lists become arrays, texts paths.
 
     Parameters
     ----------
-    hint : type
     value : object
         A value that it accepts.
 
@@ -98,8 +89,7 @@ def convert(hint: Hint, value: Value) -> Value:
 
 @dataclass(frozen=True)
 class _Row:
-    """
-    What an input of one kind takes: values, and wires by their source; and what it converts.
+    """What an input of one kind takes: values, and wires by their source; and what it converts.
 
     All rules are given the alternative of the input first.
     """
@@ -126,18 +116,7 @@ _BOOLS = (bool, np.bool_)
 
 
 def is_bool(value: Value) -> bool:
-    """
-    Whether a value is True or False, of Python or of NumPy.
-
-    Parameters
-    ----------
-    value : object
-
-    Returns
-    -------
-    bool
-        False for 0 and 1.
-    """
+    """Whether a value is True or False, of Python or of NumPy: False for 0 and 1."""
     return isinstance(value, _BOOLS)
 
 

@@ -7,8 +7,7 @@ from .wires import Each, Param, Step
 
 
 def mermaid_text(values: Mapping[str, Value], steps: Mapping[str, Step]) -> str:
-    """
-    A graph as a Mermaid flowchart.
+    """A graph as a Mermaid flowchart.
 
     Parameters
     ----------

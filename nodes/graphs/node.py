@@ -39,8 +39,7 @@ class NodeWarning(UserWarning):
 
 @dataclass(frozen=True, eq=False)
 class Node:
-    """
-    What is known about a registered function.
+    """What is known about a registered function.
 
     Attributes
     ----------
@@ -93,8 +92,7 @@ def node(  # numpydoc ignore=GL08
 def node(
     function: Callable[..., Any] | None = None, /, *, version: str = "1"
 ) -> Callable[..., Any]:
-    """
-    Register a typed function as a node and return it unchanged.
+    """Register a typed function as a node and return it unchanged.
 
     Parameters
     ----------
@@ -127,8 +125,7 @@ def node(
 
 
 def find_node(node: str | Callable[..., Any]) -> Node:
-    """
-    The node of a name or of a function.
+    """The node of a name or of a function.
 
     Parameters
     ----------
@@ -161,8 +158,7 @@ def find_node(node: str | Callable[..., Any]) -> Node:
 
 
 def replaced(node: Node) -> tuple[str, ...]:
-    """
-    What is to be said of a step whose node has been defined anew since it was added.
+    """What is to be said of a step whose node has been defined anew since it was added.
 
     Parameters
     ----------
@@ -191,8 +187,7 @@ def load_library() -> None:
 
 
 def warn(text: str) -> None:
-    """
-    Say something about the result of the node that is running.
+    """Say something about the result of the node that is running.
 
     Parameters
     ----------
@@ -206,8 +201,7 @@ def warn(text: str) -> None:
 
 
 def running_graph() -> str:
-    """
-    The graph that is running, for files that carry how they were made.
+    """The graph that is running, for files that carry how they were made.
 
     Returns
     -------
@@ -223,8 +217,7 @@ def running_graph() -> str:
 
 @contextmanager
 def known_graph(text: Callable[[], str]) -> Generator[None]:
-    """
-    Let nodes ask for the graph that runs them.
+    """Let nodes ask for the graph that runs them.
 
     Parameters
     ----------
@@ -245,8 +238,7 @@ def known_graph(text: Callable[[], str]) -> Generator[None]:
 
 @contextmanager
 def collected_messages() -> Generator[list[str]]:
-    """
-    Collect what nodes warn about.
+    """Collect what nodes warn about.
 
     Yields
     ------

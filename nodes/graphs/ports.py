@@ -18,8 +18,7 @@ UNITS = ("mm", "cm", "m", "in", "ft")
 
 @dataclass(frozen=True, eq=False)
 class Port:
-    """
-    Facts about one input or output of a node.
+    """Facts about one input or output of a node.
 
     In a signature only what the annotation cannot say is given, for example
     ``Annotated[float, Port(unit="deg", min=0, max=90)]``; `@node` fills in the rest.
@@ -68,8 +67,7 @@ Units: TypeAlias = Annotated[Literal["mm", "cm", "m", "in", "ft"], Port(graph_un
 
 
 def check_value(port: Port, value: object, where: str) -> None:
-    """
-    Refuse a value that an input does not accept.
+    """Refuse a value that an input does not accept.
 
     Parameters
     ----------
@@ -91,8 +89,7 @@ def check_value(port: Port, value: object, where: str) -> None:
 
 
 def check_range(value: object, port: Port, where: str) -> None:
-    """
-    Refuse a number out of range, or a value that is none of the choices.
+    """Refuse a number out of range, or a value that is none of the choices.
 
     Parameters
     ----------

@@ -17,8 +17,7 @@ Share: TypeAlias = Callable[[NDArray[Any]], NDArray[Any]]
 
 
 def locked(array: NDArray[Any]) -> NDArray[Any]:
-    """
-    The array itself, closed for writing.
+    """The array itself, closed for writing.
 
     Parameters
     ----------
@@ -35,8 +34,7 @@ def locked(array: NDArray[Any]) -> NDArray[Any]:
 
 
 def snapshot(array: NDArray[Any]) -> NDArray[Any]:
-    """
-    An array as it is now, although somebody may still write to it.
+    """An array as it is now, although somebody may still write to it.
 
     Parameters
     ----------
@@ -57,26 +55,19 @@ def snapshot(array: NDArray[Any]) -> NDArray[Any]:
 
 
 def remade(several: list[Any] | tuple[Any, ...], items: list[Any]) -> Value:
-    """
-    A list or tuple of the same class with other items.
+    """A list or tuple of the same class with other items.
 
     Parameters
     ----------
     several : list or tuple
         Also a NamedTuple.
     items : list
-
-    Returns
-    -------
-    list or tuple
-        Anew.
     """
     return getattr(several, "_make", type(several))(items)
 
 
 def own(value: Value, share: Share = locked) -> Value:
-    """
-    A value that its receiver cannot change for others, nor others for it.
+    """A value that its receiver cannot change for others, nor others for it.
 
     Lists, dictionaries and sets are anew, and with them the tuples and dataclasses that hold
     one. Whatever holds none, such as the frozen records of the kernel, is the very same

@@ -21,8 +21,7 @@ OnStep = Callable[[str, str], None]
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """
-    A run under way: nobody else changes what it is given.
+    """A run under way: nobody else changes what it is given.
 
     Attributes
     ----------
@@ -30,7 +29,6 @@ class Run:
         The steps of the graph, each after those it depends on.
     values : mapping of str to object
         Values of the sliders.
-    units : str
     cache : Cache
         Results of earlier runs.
     on_step : callable
@@ -39,8 +37,6 @@ class Run:
     read_from, write_to : Path, optional
         Folders of the relative paths that nodes read and write; the working directory by
         default. What a step has written is read where it was written.
-    keys : dict of str to bytes
-        Keys found so far.
     entries : dict of str to Entry
         Results at hand so far.
     given : dict of (str, str) to object
@@ -60,8 +56,7 @@ class Run:
 
 
 def run_steps(run: Run, targets: Iterable[str]) -> None:
-    """
-    Bring the entries of steps up to date, running as little as possible.
+    """Bring the entries of steps up to date, running as little as possible.
 
     Parameters
     ----------
@@ -91,14 +86,12 @@ def run_steps(run: Run, targets: Iterable[str]) -> None:
 
 
 def output(run: Run, source: Step | Wire | Param) -> Value:
-    """
-    The value of a target.
+    """The value of a target.
 
     Parameters
     ----------
     run : Run
         A run that has reached it.
-    source : Step, Wire or Param
 
     Returns
     -------

@@ -15,8 +15,7 @@ from .wires import Each, Param, Step, Target, Wire
 
 
 def each(values: Value) -> Each:
-    """
-    Map a step over a list, instead of giving it the list as one value.
+    """Map a step over a list, instead of giving it the list as one value.
 
     With several lists the longest counts and the shorter ones repeat their last item. The
     outputs of the step are lists.
@@ -45,8 +44,7 @@ def sweep(
     executor: Executor | None = None,
     **params: Iterable[Any],
 ) -> list[tuple[dict[str, Any], Any]]:
-    """
-    Results for all combinations of slider values.
+    """Results for all combinations of slider values.
 
     Parameters
     ----------

@@ -14,18 +14,14 @@ from .ports import REQUIRED, Port, check_value
 
 @dataclass(frozen=True, eq=False)
 class Param:
-    """
-    A slider.
+    """A slider.
 
     Attributes
     ----------
     graph : object
         The graph that it belongs to.
-    name : str
     value : object
         Its value when the graph was put together; `Graph.values` holds the present one.
-    port : Port
-        Range and choices.
     """
 
     graph: object = field(repr=False)
@@ -36,14 +32,7 @@ class Param:
 
 @dataclass(frozen=True, eq=False)
 class Wire:
-    """
-    An output of a step.
-
-    Attributes
-    ----------
-    step : Step
-    port : Port
-    """
+    """An output of a step."""
 
     step: "Step"
     port: Port
@@ -59,8 +48,7 @@ class Wire:
 
 @dataclass(frozen=True, eq=False)
 class Each:
-    """
-    A list that a step is mapped over.
+    """A list that a step is mapped over.
 
     Attributes
     ----------
@@ -73,15 +61,12 @@ class Each:
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """
-    A node within a graph; its outputs are its attributes.
+    """A node within a graph; its outputs are its attributes.
 
     Attributes
     ----------
     graph : object
         The graph that it belongs to.
-    name : str
-    node : Node
     inputs : mapping of str to object
         What was given for the inputs: `Wire`, `Param`, `Each` or a value.
     """
@@ -122,8 +107,7 @@ Target: TypeAlias = Step | Wire | Param | str
 
 
 def sources(value: Value) -> Iterator[Wire | Param]:
-    """
-    What a value given for an input is wired to.
+    """What a value given for an input is wired to.
 
     Parameters
     ----------
@@ -145,32 +129,18 @@ def sources(value: Value) -> Iterator[Wire | Param]:
 
 
 def parents(step: Step) -> list[str]:
-    """
-    Names of the steps that a step takes its inputs from.
-
-    Parameters
-    ----------
-    step : Step
-
-    Returns
-    -------
-    list of str
-        Names.
-    """
+    """Names of the steps that a step takes its inputs from."""
     return [wire.step.name for _, wire in step.sources if isinstance(wire, Wire)]
 
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """
-    Where an input is wired.
+    """Where an input is wired.
 
     Attributes
     ----------
-    graph : object
     values : mapping of str to object
         Of its sliders.
-    step : str
     """
 
     graph: object
@@ -179,13 +149,10 @@ class Place:
 
 
 def connect(place: Place, port: Port, given: Value, at: str = "") -> Value:
-    """
-    What is kept of a value given for an input: steps become wires.
+    """What is kept of a value given for an input: steps become wires.
 
     Parameters
     ----------
-    place : Place
-    port : Port
     given : object
         A step, output, slider, value, list of these, or ``each`` of such a list.
     at : str
@@ -225,12 +192,10 @@ def connect(place: Place, port: Port, given: Value, at: str = "") -> Value:
 
 
 def check_owner(graph: object, target: Step | Wire | Param) -> None:
-    """
-    Refuse what belongs to another graph.
+    """Refuse what belongs to another graph.
 
     Parameters
     ----------
-    graph : object
     target : Step, Wire or Param
         Something that should be part of it.
 
@@ -248,12 +213,10 @@ def check_owner(graph: object, target: Step | Wire | Param) -> None:
 
 
 def check_name(name: str, what: str) -> None:
-    """
-    Refuse a name that could not be told from others in ``step.port``.
+    """Refuse a name that could not be told from others in ``step.port``.
 
     Parameters
     ----------
-    name : str
     what : str
         Of what, for the message.
 
@@ -267,13 +230,10 @@ def check_name(name: str, what: str) -> None:
 
 
 def connect_all(place: Place, node: Node, inputs: Mapping[str, Value]) -> dict[str, Value]:
-    """
-    What is kept of all that is given for a step.
+    """What is kept of all that is given for a step.
 
     Parameters
     ----------
-    place : Place
-    node : Node
     inputs : mapping of str to object
         By name of the port, as for `connect`.
 

@@ -1,5 +1,4 @@
-"""
-The nodes by chapters: typed functions from meshes to files.
+"""The nodes by chapters: typed functions from meshes to files.
 
 analyse     Numbers that tell how good a sphere mesh is.
 arrays      Types of the arrays that go by wire.

@@ -24,8 +24,7 @@ from .arrays import EdgeAngles, EdgeDistances, FaceDistances, FaceMarks, VertexD
 def intersection_angles(
     sphere_mesh: SphereMesh, reference: Literal["spheres", "planes"] = "spheres"
 ) -> EdgeAngles:
-    """
-    Angle at which neighbouring faces meet.
+    """Angle at which neighbouring faces meet.
 
     Parameters
     ----------
@@ -53,8 +52,7 @@ def intersection_angles(
 
 @node
 def vertex_error(sphere_mesh: SphereMesh) -> VertexDistances:
-    """
-    Distance of each vertex from the spheres of its faces.
+    """Distance of each vertex from the spheres of its faces.
 
     Parameters
     ----------
@@ -77,8 +75,7 @@ def vertex_error(sphere_mesh: SphereMesh) -> VertexDistances:
 
 @node
 def planarity(sphere_mesh: SphereMesh | Mesh) -> FaceDistances:
-    """
-    How far the corners of each face lie off its plane.
+    """How far the corners of each face lie off its plane.
 
     Parameters
     ----------
@@ -101,8 +98,7 @@ def planarity(sphere_mesh: SphereMesh | Mesh) -> FaceDistances:
 
 @node
 def circularity(sphere_mesh: SphereMesh | Mesh) -> FaceDistances:
-    """
-    How far the corners of each face lie off its best-fit circle.
+    """How far the corners of each face lie off its best-fit circle.
 
     Parameters
     ----------
@@ -125,8 +121,7 @@ def circularity(sphere_mesh: SphereMesh | Mesh) -> FaceDistances:
 
 @node
 def beam_tilt(sphere_mesh: SphereMesh) -> EdgeAngles:
-    """
-    Tilt of the beams that lie in the planes where neighbouring spheres meet.
+    """Tilt of the beams that lie in the planes where neighbouring spheres meet.
 
     Parameters
     ----------
@@ -149,8 +144,7 @@ def beam_tilt(sphere_mesh: SphereMesh) -> EdgeAngles:
 
 @node
 def deviation(sphere_mesh: SphereMesh, mesh: Mesh) -> FaceDistances:
-    """
-    How far the panels stand off a reference surface.
+    """How far the panels stand off a reference surface.
 
     Parameters
     ----------
@@ -175,8 +169,7 @@ def deviation(sphere_mesh: SphereMesh, mesh: Mesh) -> FaceDistances:
 
 @node
 def spiky_faces(sphere_mesh: SphereMesh) -> FaceMarks:
-    """
-    Faces that bulge to the wrong side.
+    """Faces that bulge to the wrong side.
 
     Parameters
     ----------
@@ -199,8 +192,7 @@ def spiky_faces(sphere_mesh: SphereMesh) -> FaceMarks:
 
 @dataclass(frozen=True, eq=False)
 class HistogramReport(Report):
-    """
-    Numbers of edges by the angle between neighbours.
+    """Numbers of edges by the angle between neighbours.
 
     Attributes
     ----------
@@ -219,8 +211,7 @@ class HistogramReport(Report):
 def angle_histogram(
     sphere_mesh: SphereMesh, n_bins: Annotated[int, Port(min=1, max=1000)] = 20
 ) -> HistogramReport:
-    """
-    Count the angles between neighbours, for the spheres and for the planes of the faces.
+    """Count the angles between neighbours, for the spheres and for the planes of the faces.
 
     Parameters
     ----------
@@ -257,8 +248,7 @@ class EdgeArcs(NamedTuple):
 def edge_arcs(
     sphere_mesh: SphereMesh, mode: Literal["intersection", "bisector"] = "intersection"
 ) -> EdgeArcs:
-    """
-    Arcs along the edges: where spheres meet, or where planes that bisect the faces cut them.
+    """Arcs along the edges: where spheres meet, or where planes that bisect the faces cut them.
 
     Parameters
     ----------

@@ -17,8 +17,7 @@ from .arrays import FaceLabels, MouldRadii
 
 @dataclass(frozen=True, eq=False)
 class MouldsReport(Report):
-    """
-    Moulds, and what they cost.
+    """Moulds, and what they cost.
 
     Attributes
     ----------
@@ -64,8 +63,7 @@ def cluster_radii(
     support: Annotated[float, Port(min=0)] = 0.0,
     seed: Annotated[int, Port(min=0)] = 0,
 ) -> Clusters:
-    """
-    Give all panels at most k radii.
+    """Give all panels at most k radii.
 
     Parameters
     ----------

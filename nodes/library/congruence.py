@@ -77,8 +77,7 @@ def sphere_congruence(
     offset: float | VertexDistances | None = None,
     which: Literal["first", "second"] = "first",
 ) -> VertexSpheres:
-    """
-    A sphere at every vertex of a surface mesh, touching the surface there.
+    """A sphere at every vertex of a surface mesh, touching the surface there.
 
     Parameters
     ----------
@@ -116,8 +115,7 @@ def sphere_congruence(
 
 @node
 def edge_spheres(mesh: Mesh) -> EdgeSpheres:
-    """
-    Spheres of the edges of a circular mesh: through the circles of both faces.
+    """Spheres of the edges of a circular mesh: through the circles of both faces.
 
     Parameters
     ----------
@@ -144,8 +142,7 @@ def edge_spheres(mesh: Mesh) -> EdgeSpheres:
 def envelope(
     mesh: Mesh, spheres: VertexSpheres, order: Literal["nearest", "oriented"] = "nearest"
 ) -> Envelope:
-    """
-    Points in which the spheres at the corners of each face meet: the two enveloped surfaces.
+    """Points in which the spheres at the corners of each face meet: the two enveloped surfaces.
 
     Parameters
     ----------
@@ -199,8 +196,7 @@ def smooth_envelope(
     radii_u: FloatArray,
     radii_v: FloatArray,
 ) -> SmoothEnvelope:
-    """
-    Points in which the spheres of a smooth congruence touch the two surfaces they envelop.
+    """Points in which the spheres of a smooth congruence touch the two surfaces they envelop.
 
     Parameters
     ----------
@@ -235,8 +231,7 @@ def conjugacy(
     mixed: FloatArray,
     lift: FloatArray | None = None,
 ) -> FloatArray:
-    """
-    How far a parametrisation or a net is from conjugate: distance of f_uv from a span.
+    """How far a parametrisation or a net is from conjugate: distance of f_uv from a span.
 
     Parameters
     ----------
@@ -262,8 +257,7 @@ def conjugacy(
 
 @node
 def mirror_points(sphere_mesh: SphereMesh) -> MirrorPoints:
-    """
-    Points in which the spheres around each vertex meet once more: the second envelope.
+    """Points in which the spheres around each vertex meet once more: the second envelope.
 
     Parameters
     ----------
@@ -293,8 +287,7 @@ def mirror_points(sphere_mesh: SphereMesh) -> MirrorPoints:
 
 @node
 def contact_points(sphere_mesh: SphereMesh) -> ContactPoints:
-    """
-    Points nearest to all spheres around each vertex: the vertices that spheres ask for.
+    """Points nearest to all spheres around each vertex: the vertices that spheres ask for.
 
     Parameters
     ----------
@@ -319,8 +312,7 @@ def contact_points(sphere_mesh: SphereMesh) -> ContactPoints:
 
 @node
 def circular_envelopes(sphere_mesh: SphereMesh) -> CircularEnvelopes:
-    """
-    Test for a discrete Ribaucour congruence: both envelopes of a sphere mesh are circular.
+    """Test for a discrete Ribaucour congruence: both envelopes of a sphere mesh are circular.
 
     Parameters
     ----------

@@ -41,8 +41,7 @@ def panels(
     side: Literal["inward", "outward", "centred"] = "inward",
     layer: Literal["offset", "power"] = "offset",
 ) -> PanelSet:
-    """
-    Cut a panel out of the sphere of every face.
+    """Cut a panel out of the sphere of every face.
 
     Parameters
     ----------
@@ -103,8 +102,7 @@ def write_step(
     copies: Literal["shapes", "instances"] = "shapes",
     beams: Beams | None = None,
 ) -> str:
-    """
-    Write panels and beams to a STEP file: exact solids, or faces without thickness.
+    """Write panels and beams to a STEP file: exact solids, or faces without thickness.
 
     Parameters
     ----------
@@ -144,8 +142,7 @@ def write_step(
 def cadquery_solids(
     panels: Panels | None = None, beams: Beams | None = None, units: Units = "m"
 ) -> object:
-    """
-    Panels and beams as a CadQuery assembly, for further modelling.
+    """Panels and beams as a CadQuery assembly, for further modelling.
 
     Parameters
     ----------
@@ -187,8 +184,7 @@ def write_3dm(
     shape: Literal["panels", "blocks", "shell"] = "panels",
     layers: tuple[Literal["Edges", "Centres", "Moulds"], ...] = ("Edges",),
 ) -> str:
-    """
-    Write panels and beams to a Rhino file: exact trimmed spheres, layers per mould, user text.
+    """Write panels and beams to a Rhino file: exact trimmed spheres, layers, user text.
 
     Parameters
     ----------
@@ -238,8 +234,7 @@ def write_dxf(
     sheet: tuple[float, float] = (3000.0, 1500.0),
     spacing: Length = 10.0,
 ) -> str:
-    """
-    Write cutting drawings of beams: exact contours, nested on sheets, in millimetres.
+    """Write cutting drawings of beams: exact contours, nested on sheets, in millimetres.
 
     Parameters
     ----------
@@ -279,8 +274,7 @@ def write_schedule(
     units: Units = "m",
     beams: Beams | None = None,
 ) -> str:
-    """
-    Write the list of panels or beams with sizes, edges and neighbours, in millimetres.
+    """Write the list of panels or beams with sizes, edges and neighbours, in millimetres.
 
     Parameters
     ----------
@@ -310,8 +304,7 @@ def write_schedule(
 
 @node
 def write_mould_drawings(panels: Panels, path: WritePath, units: Units = "m") -> str:
-    """
-    Draw every panel in the blank of its mould, with radius, sizes and ids, in millimetres.
+    """Draw every panel in the blank of its mould, with radius, sizes and ids, in millimetres.
 
     Parameters
     ----------
@@ -360,8 +353,7 @@ def render(
     *,
     legend: bool = False,
 ) -> str:
-    """
-    Draw panels into a PNG, from exact spheres and without a graphics card.
+    """Draw panels into a PNG, from exact spheres and without a graphics card.
 
     Parameters
     ----------

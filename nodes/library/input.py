@@ -25,8 +25,7 @@ class SampledSurface(NamedTuple):
 
 @node
 def read_mesh(path: ReadPath, layer: str = "", n_u: Count = 24, n_v: Count = 24) -> Mesh:
-    """
-    Read a mesh from a file.
+    """Read a mesh from a file.
 
     Parameters
     ----------
@@ -55,8 +54,7 @@ def read_mesh(path: ReadPath, layer: str = "", n_u: Count = 24, n_v: Count = 24)
 
 @node
 def write_mesh(mesh: Mesh | SphereMesh, path: WritePath) -> str:
-    """
-    Write a mesh to a file.
+    """Write a mesh to a file.
 
     Parameters
     ----------
@@ -89,8 +87,7 @@ def torus_mesh(
     n_around: Count = 48, n_across: Count = 24, major_radius: Length = 2.0,
     minor_radius: Length = 1.0,
 ) -> Mesh:  # fmt: skip
-    """
-    Closed circular net on a torus.
+    """Closed circular net on a torus.
 
     Parameters
     ----------
@@ -122,8 +119,7 @@ def ellipsoid_mesh(
     height: Length = 1.5,
     latitude: Annotated[float, Port(unit="deg", min=0, max=90)] = 70.0,
 ) -> Mesh:
-    """
-    Circular net on an ellipsoid of revolution, cut off below its poles.
+    """Circular net on an ellipsoid of revolution, cut off below its poles.
 
     Parameters
     ----------
@@ -153,8 +149,7 @@ def ellipsoid_mesh(
 def catenoid_mesh(
     n_around: Count = 32, n_across: Count = 16, waist: Length = 1.0, height: Length = 1.0
 ) -> Mesh:
-    """
-    Circular net on a catenoid.
+    """Circular net on a catenoid.
 
     Parameters
     ----------
@@ -181,8 +176,7 @@ def catenoid_mesh(
 
 @node
 def enneper_mesh(n: Count = 16, size: Length = 0.9) -> Mesh:
-    """
-    Circular net that is a discrete Enneper surface.
+    """Circular net that is a discrete Enneper surface.
 
     Parameters
     ----------
@@ -213,8 +207,7 @@ def vase_mesh(
     height: Length = 3.0,
     amplitude: Annotated[float, Port(min=-1, max=1)] = 0.3,
 ) -> Mesh:
-    """
-    Circular net on a vase: a cylinder whose radius swings by a sine.
+    """Circular net on a vase: a cylinder whose radius swings by a sine.
 
     Parameters
     ----------
@@ -242,8 +235,7 @@ def vase_mesh(
 
 @node
 def roof_mesh(n_span: Count = 24, n_length: Count = 60, length: Length = 80.0) -> Mesh:
-    """
-    Circular net of a freeform hall roof, to try things on.
+    """Circular net of a freeform hall roof, to try things on.
 
     Parameters
     ----------
@@ -272,8 +264,7 @@ def triangulated_surface(
     edge_length: Annotated[float, Port(min=0)] = 0.1,
     seed: int | None = None,
 ) -> SampledSurface:
-    """
-    A triangulated sample surface with exact normals, to try remeshing on.
+    """A triangulated sample surface with exact normals, to try remeshing on.
 
     Parameters
     ----------

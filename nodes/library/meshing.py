@@ -19,8 +19,7 @@ SCHEMES = {
 
 @node
 def triangulate(mesh: Mesh) -> Mesh:
-    """
-    Cut polygons into triangles along their short diagonals.
+    """Cut polygons into triangles along their short diagonals.
 
     Parameters
     ----------
@@ -47,8 +46,7 @@ def subdivide(
     scheme: Literal["loop", "catmull-clark", "midpoint"] | None = None,
     iterations: Annotated[int, Port(min=0, max=8)] = 1,
 ) -> Mesh:
-    """
-    Split every face into smaller ones.
+    """Split every face into smaller ones.
 
     Parameters
     ----------
@@ -84,8 +82,7 @@ def remesh_triangles(
     iterations: Annotated[int, Port(min=0, max=100)] = 10,
     crease_angle: Annotated[float, Port(unit="deg", min=0, max=180)] = 40.0,
 ) -> Mesh:
-    """
-    Cover the surface of a mesh with triangles whose edges have nearly one length.
+    """Cover the surface of a mesh with triangles whose edges have nearly one length.
 
     Parameters
     ----------

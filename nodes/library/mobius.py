@@ -21,8 +21,7 @@ Geometry = TypeVar("Geometry", SphereMesh, Mesh, Circles, Arcs, Points | Spheres
 
 @node
 def inversion(center: Vector, radius: Annotated[float, Port(min=0)] = 1.0) -> Transform:
-    """
-    Inversion in a sphere: turns the model inside out about a point.
+    """Inversion in a sphere: turns the model inside out about a point.
 
     Parameters
     ----------
@@ -53,8 +52,7 @@ def similarity(
     rotation: Vector | Matrix | None = None,
     translation: Vector | None = None,
 ) -> Transform:
-    """
-    Scaling, then rotation, both about the origin, then translation.
+    """Scaling, then rotation, both about the origin, then translation.
 
     Parameters
     ----------
@@ -84,8 +82,7 @@ def similarity(
 
 @node
 def reflection(mirror: Sphere) -> Transform:
-    """
-    Reflection in a plane, or inversion in a sphere, given as a row.
+    """Reflection in a plane, or inversion in a sphere, given as a row.
 
     Parameters
     ----------
@@ -108,8 +105,7 @@ def reflection(mirror: Sphere) -> Transform:
 
 @node
 def inverse(transform: Transform) -> Transform:
-    """
-    The transform that undoes another.
+    """The transform that undoes another.
 
     Parameters
     ----------
@@ -131,8 +127,7 @@ def inverse(transform: Transform) -> Transform:
 
 @node
 def sent_to_infinity(points: Points, transform: Transform) -> BoolArray:
-    """
-    Which points a transform sends to infinity: `apply_mobius` refuses them.
+    """Which points a transform sends to infinity: `apply_mobius` refuses them.
 
     Parameters
     ----------
@@ -154,8 +149,7 @@ def sent_to_infinity(points: Points, transform: Transform) -> BoolArray:
 
 @node
 def compose(transforms: list[Transform]) -> Transform:
-    """
-    One transform that does what several do one after another.
+    """One transform that does what several do one after another.
 
     Parameters
     ----------
@@ -179,8 +173,7 @@ def compose(transforms: list[Transform]) -> Transform:
 
 @node
 def apply_mobius(geometry: Geometry, transform: Transform) -> Geometry:
-    """
-    Carry geometry through a transform; the angles between spheres stay as they are.
+    """Carry geometry through a transform; the angles between spheres stay as they are.
 
     Parameters
     ----------
@@ -231,8 +224,7 @@ class Poles(NamedTuple):
 
 @node
 def stereographic(points: Points) -> FloatArray:
-    """
-    Stereographic image of points on the unit 3-sphere, from its north pole.
+    """Stereographic image of points on the unit 3-sphere, from its north pole.
 
     Parameters
     ----------
@@ -253,8 +245,7 @@ def stereographic(points: Points) -> FloatArray:
 
 @node
 def inverse_stereographic(points: FloatArray) -> Points:
-    """
-    Central projection from the north pole of the unit 3-sphere back to space.
+    """Central projection from the north pole of the unit 3-sphere back to space.
 
     Parameters
     ----------
@@ -276,8 +267,7 @@ def inverse_stereographic(points: FloatArray) -> Points:
 
 @node
 def poles(spheres: Spheres) -> Poles:
-    """
-    Poles of the stereographic images of spheres: the points of projective four-space.
+    """Poles of the stereographic images of spheres: the points of projective four-space.
 
     Parameters
     ----------
@@ -303,8 +293,7 @@ def poles(spheres: Spheres) -> Poles:
 
 @node
 def pentaspherical_coordinates(spheres: Spheres) -> FloatArray:
-    """
-    Coordinates (B, C - A, C + A) of spheres, on which Möbius transforms act as matrices.
+    """Coordinates (B, C - A, C + A) of spheres, on which Möbius transforms act as matrices.
 
     Parameters
     ----------
@@ -326,8 +315,7 @@ def pentaspherical_coordinates(spheres: Spheres) -> FloatArray:
 
 @node
 def polar_hyperplanes(spheres: Spheres) -> FloatArray:
-    """
-    Coefficients of the rows that are orthogonal to spheres.
+    """Coefficients of the rows that are orthogonal to spheres.
 
     Parameters
     ----------

@@ -29,8 +29,7 @@ def model_change(
     center: Vector | None = None,
     branch: Literal["inner", "outer"] = "inner",
 ) -> SphereMesh:
-    """
-    Turn planar faces into spheres that meet a fixed sphere at right angles or in great circles.
+    """Turn planar faces into spheres that meet a fixed one at right angles or in great circles.
 
     Parameters
     ----------
@@ -65,8 +64,7 @@ def model_change(
 
 @node
 def sphere_bundle(mesh: Mesh, center: Vector, radius: Length = 1.0) -> SphereMesh:
-    """
-    Turn planar faces into spheres through one point, by an inversion.
+    """Turn planar faces into spheres through one point, by an inversion.
 
     Parameters
     ----------
@@ -93,8 +91,7 @@ def sphere_bundle(mesh: Mesh, center: Vector, radius: Length = 1.0) -> SphereMes
 
 @node
 def support_type(sphere_mesh: SphereMesh) -> SupportType:
-    """
-    Find the sphere or point that all spheres of a mesh are orthogonal to.
+    """Find the sphere or point that all spheres of a mesh are orthogonal to.
 
     Parameters
     ----------

@@ -30,8 +30,7 @@ class OptimumReport(Report):
 
 @dataclass(frozen=True, eq=False)
 class AnglesReport(OptimumReport):
-    """
-    How the smallest angles were reached.
+    """How the smallest angles were reached.
 
     Attributes
     ----------
@@ -57,8 +56,7 @@ class AnglesReport(OptimumReport):
 
 @dataclass(frozen=True, eq=False)
 class EnergyReport(OptimumReport):
-    """
-    How the least energy was reached.
+    """How the least energy was reached.
 
     Attributes
     ----------
@@ -96,8 +94,7 @@ def minimize_angles(
     edge_weights: EdgeWeights | None = None,
     max_miss: Annotated[float | None, Port(min=0)] = None,
 ) -> Optimum:
-    """
-    Choose the spheres through the faces' circles that meet their neighbours most smoothly.
+    """Choose the spheres through the faces' circles that meet their neighbours most smoothly.
 
     Parameters
     ----------
@@ -177,8 +174,7 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     boundary: Literal["free", "glide", "fixed"] = "free",
     max_iterations: Annotated[int, Port(min=1)] = 100,
 ) -> Optimum:
-    """
-    Minimise a weighted sum of what a sphere mesh should fulfil.
+    """Minimise a weighted sum of what a sphere mesh should fulfil.
 
     Parameters
     ----------
@@ -263,8 +259,7 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
 
 @node
 def strip_weights(mesh: Mesh, direction: int | Vector | FaceVectors = 0) -> EdgeWeights:
-    """
-    Weights that let spheres join smoothly along strips, and only there.
+    """Weights that let spheres join smoothly along strips, and only there.
 
     Parameters
     ----------

@@ -55,8 +55,7 @@ class Remeshed(NamedTuple):
 def conjugate_directions(
     mesh: Mesh, spheres: VertexSpheres, degree: Degree = None, rings: Rings = 4
 ) -> Directions:
-    """
-    The directions that a net of these spheres must follow to have a support structure.
+    """The directions that a net of these spheres must follow to have a support structure.
 
     Parameters
     ----------
@@ -105,8 +104,7 @@ def p4_remesh(
     rings: Rings = 4,
     fairness: Annotated[float, Port(min=0)] = 1.0,
 ) -> Remeshed:
-    """
-    Remesh a congruence of spheres by quadrilaterals along its conjugate directions.
+    """Remesh a congruence of spheres by quadrilaterals along its conjugate directions.
 
     Parameters
     ----------
@@ -250,8 +248,7 @@ class Planarized(NamedTuple):
 def planarize_p4(
     sphere_mesh: SphereMesh, fairness: Annotated[float, Port(min=0)] = 1.0
 ) -> Planarized:
-    """
-    Give a sphere mesh torsion-free nodes: planar faces in the point model of Möbius geometry.
+    """Give a sphere mesh torsion-free nodes: planar faces in Möbius geometry's point model.
 
     Parameters
     ----------
@@ -326,8 +323,7 @@ def relax_congruence(
     max_axis_angle: Annotated[float, Port(unit="deg", min=0, max=90)] = 20.0,
     radius: float | None = None,
 ) -> Relaxed:
-    """
-    Change the radii of a congruence as little as gives it a real net and upright node axes.
+    """Change the radii of a congruence as little as gives it a real net and upright node axes.
 
     Parameters
     ----------

@@ -24,8 +24,7 @@ from .arrays import FaceShapes, VertexDistances, VertexSpheres
 
 @dataclass(frozen=True, eq=False)
 class EvolutionReport(Report):
-    """
-    How spheres grew.
+    """How spheres grew.
 
     Attributes
     ----------
@@ -61,8 +60,7 @@ class EvolutionReport(Report):
 
 @dataclass(frozen=True, eq=False)
 class HexagonsReport(Report):
-    """
-    Faces of a dual sphere mesh, and those that cannot be made.
+    """Faces of a dual sphere mesh, and those that cannot be made.
 
     Attributes
     ----------
@@ -113,8 +111,7 @@ class Hexagons(NamedTuple):
 
 @node
 def shifted_rows(mesh: Mesh, along: Literal["first", "second"] = "first") -> Mesh:
-    """
-    Nearly regular triangles from every second vertex of a quadrilateral grid.
+    """Nearly regular triangles from every second vertex of a quadrilateral grid.
 
     Parameters
     ----------
@@ -141,8 +138,7 @@ def shifted_rows(mesh: Mesh, along: Literal["first", "second"] = "first") -> Mes
 
 @node
 def tangent_spheres(mesh: Mesh, offset: float | VertexDistances) -> VertexSpheres:
-    """
-    Spheres that touch a surface at the vertices of its mesh.
+    """Spheres that touch a surface at the vertices of its mesh.
 
     Parameters
     ----------
@@ -173,8 +169,7 @@ def evolve_spheres(
     *,
     flips: bool = True,
 ) -> EvolvedSpheres:
-    """
-    Grow tangent spheres towards the curvature spheres, with upright node axes.
+    """Grow tangent spheres towards the curvature spheres, with upright node axes.
 
     Parameters
     ----------
@@ -259,8 +254,7 @@ def _by_valence(mesh: Mesh) -> dict[str, list[int]]:
 def tangent_sphere_shex(
     mesh: Mesh, spheres: VertexSpheres, boundary: Literal["drop", "clip"] = "drop"
 ) -> Hexagons:
-    """
-    Sphere mesh with a face for every vertex of a triangulation: hexagons, where it is regular.
+    """Sphere mesh with a face for every vertex of a triangulation: hexagons where regular.
 
     Parameters
     ----------
@@ -335,8 +329,7 @@ def _name_faces(dual: shex.DualSpheres, faces: list[int]) -> list[dict[str, int]
 
 @node
 def classify_hexagons(sphere_mesh: SphereMesh) -> FaceShapes:
-    """
-    Tell convex faces from bow-ties and from those that cross themselves.
+    """Tell convex faces from bow-ties and from those that cross themselves.
 
     Parameters
     ----------
@@ -365,8 +358,7 @@ def classify_hexagons(sphere_mesh: SphereMesh) -> FaceShapes:
 def pencil_positions(
     curvatures: FloatArray, first: FloatArray, second: FloatArray
 ) -> NDArray[np.str_]:
-    """
-    Where touching spheres lie among the curvature spheres: faces are convex or bow-ties.
+    """Where touching spheres lie among the curvature spheres: faces are convex or bow-ties.
 
     Parameters
     ----------

@@ -26,8 +26,7 @@ class PrincipalSpheres(NamedTuple):
 
 @node
 def face_planes(mesh: Mesh) -> SphereMesh:
-    """
-    The plane of every face: the start that any mesh allows, and the one to compare with.
+    """The plane of every face: the start that any mesh allows, and the one to compare with.
 
     Parameters
     ----------
@@ -50,8 +49,7 @@ def face_planes(mesh: Mesh) -> SphereMesh:
 
 @node
 def fit_spheres(mesh: Mesh, ring: Annotated[int, Port(min=0, max=10)] = 1) -> SphereMesh:
-    """
-    Spheres by least squares on each face and the faces around it.
+    """Spheres by least squares on each face and the faces around it.
 
     Parameters
     ----------
@@ -76,8 +74,7 @@ def fit_spheres(mesh: Mesh, ring: Annotated[int, Port(min=0, max=10)] = 1) -> Sp
 
 @node
 def central_spheres(mesh: Mesh) -> SphereMesh:
-    """
-    Spheres of the mean curvature at each face of a circular mesh, a start close to the optimum.
+    """Spheres of the mean curvature at each face of a circular mesh: close to the optimum.
 
     Parameters
     ----------
@@ -101,8 +98,7 @@ def central_spheres(mesh: Mesh) -> SphereMesh:
 
 @node
 def smoothed_spheres(mesh: Mesh) -> SphereMesh:
-    """
-    Spheres through the circle of each face and an apex above it, placed by smoothing.
+    """Spheres through the circle of each face and an apex above it, placed by smoothing.
 
     Parameters
     ----------
@@ -126,8 +122,7 @@ def smoothed_spheres(mesh: Mesh) -> SphereMesh:
 
 @node
 def principal_spheres(mesh: Mesh) -> PrincipalSpheres:
-    """
-    Spheres that follow the curvature of a circular quad mesh in one direction each.
+    """Spheres that follow the curvature of a circular quad mesh in one direction each.
 
     Parameters
     ----------
@@ -178,8 +173,7 @@ class Bisectors(NamedTuple):
 
 @node
 def sphere_rows(centers: Points, radii: float | FloatArray) -> Spheres:
-    """
-    Rows (A, Bx, By, Bz, C) of spheres: the points x with A x·x - B·x + C = 0.
+    """Rows (A, Bx, By, Bz, C) of spheres: the points x with A x·x - B·x + C = 0.
 
     Parameters
     ----------
@@ -204,8 +198,7 @@ def sphere_rows(centers: Points, radii: float | FloatArray) -> Spheres:
 
 @node
 def plane_rows(normals: Points, distances: float | FloatArray) -> Spheres:
-    """
-    Rows (0, n, d) of the planes n·x = d.
+    """Rows (0, n, d) of the planes n·x = d.
 
     Parameters
     ----------
@@ -229,8 +222,7 @@ def plane_rows(normals: Points, distances: float | FloatArray) -> Spheres:
 
 @node
 def sphere_facts(spheres: Spheres) -> SphereFacts:
-    """
-    Centres, squared radii and kinds of rows.
+    """Centres, squared radii and kinds of rows.
 
     Parameters
     ----------
@@ -257,8 +249,7 @@ def sphere_facts(spheres: Spheres) -> SphereFacts:
 
 @node
 def signed_distance(spheres: Spheres, points: Points) -> FloatArray:
-    """
-    Distances of points from spheres and planes.
+    """Distances of points from spheres and planes.
 
     Parameters
     ----------
@@ -283,8 +274,7 @@ def signed_distance(spheres: Spheres, points: Points) -> FloatArray:
 
 @node
 def sphere_pairs(first: Spheres, second: Spheres) -> SpherePairs:
-    """
-    Angles at which spheres or planes meet, and the pencils that they span.
+    """Angles at which spheres or planes meet, and the pencils that they span.
 
     Parameters
     ----------
@@ -317,8 +307,7 @@ def sphere_pairs(first: Spheres, second: Spheres) -> SpherePairs:
 
 @node
 def bisectors(first: Spheres, second: Spheres) -> Bisectors:
-    """
-    Both spheres that bisect the angles of two spheres or planes.
+    """Both spheres that bisect the angles of two spheres or planes.
 
     Parameters
     ----------
@@ -341,8 +330,7 @@ def bisectors(first: Spheres, second: Spheres) -> Bisectors:
 
 @node
 def intersection_circles(first: Spheres, second: Spheres) -> circles.Circles:
-    """
-    Circles in which spheres meet.
+    """Circles in which spheres meet.
 
     Parameters
     ----------
@@ -366,8 +354,7 @@ def intersection_circles(first: Spheres, second: Spheres) -> circles.Circles:
 
 @node
 def sphere_through_points(points: FloatArray) -> Spheres:
-    """
-    Spheres or planes through four points.
+    """Spheres or planes through four points.
 
     Parameters
     ----------

@@ -25,8 +25,7 @@ from .arrays import VertexAngles, VertexAxes, VertexMarks
 
 @dataclass(frozen=True, eq=False)
 class LandingReport(Report):
-    """
-    Whether nodes landed, and what it takes.
+    """Whether nodes landed, and what it takes.
 
     Attributes
     ----------
@@ -43,8 +42,7 @@ class LandingReport(Report):
 
 @dataclass(frozen=True, eq=False)
 class BeamsReport(Report):
-    """
-    The beams that can be made, and the others.
+    """The beams that can be made, and the others.
 
     Attributes
     ----------
@@ -66,8 +64,7 @@ class BeamsReport(Report):
 
 @dataclass(frozen=True, eq=False)
 class DrillingReport(Report):
-    """
-    The beams that are marked, and the others.
+    """The beams that are marked, and the others.
 
     Attributes
     ----------
@@ -108,8 +105,7 @@ class Nodes(NamedTuple):
 def land_nodes(
     sphere_mesh: SphereMesh, max_move: Annotated[float, Port(min=0)] = 0.05
 ) -> LandedNodes:
-    """
-    Move nodes and spheres by a hair, until the beams of every inner node share an axis exactly.
+    """Move nodes and spheres by a hair, until beams of every inner node share an axis exactly.
 
     An optimum balances torsion against angles and vertices: its nodes are good to a hundredth
     of an edge, and beams end as far from each other. Here all spheres of a node get two points
@@ -152,8 +148,7 @@ def land_nodes(
 
 @node
 def support_structure(sphere_mesh: SphereMesh) -> Nodes:
-    """
-    Find the axis of every node and how far its beams miss it.
+    """Find the axis of every node and how far its beams miss it.
 
     Parameters
     ----------
@@ -209,8 +204,7 @@ def annulus_support(
     kappa: float | None = None,
     max_tilt: Annotated[float, Port(unit="deg", min=0, max=90)] = 60.0,
 ) -> AnnulusSet:
-    """
-    Put a flat annulus under every edge, in the plane in which its two spheres meet.
+    """Put a flat annulus under every edge, in the plane in which its two spheres meet.
 
     Parameters
     ----------
@@ -269,8 +263,7 @@ def beams(
     node_gap: Annotated[float, Port(min=0)] = 0.0,
     node_radius: Annotated[float, Port(min=0)] = 0.0,
 ) -> BeamSet:
-    """
-    Give annuli a thickness and cut their ends where beams meet at the nodes.
+    """Give annuli a thickness and cut their ends where beams meet at the nodes.
 
     Parameters
     ----------
@@ -326,8 +319,7 @@ def drilling_marks(
     diameter: Annotated[float | None, Port(min=0)] = None,
     inset: Annotated[float | None, Port(min=0)] = None,
 ) -> MarkedBeams:
-    """
-    Mark where beams are to be drilled at their ends, along the lines of the node axes.
+    """Mark where beams are to be drilled at their ends, along the lines of the node axes.
 
     Parameters
     ----------

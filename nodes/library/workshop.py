@@ -35,8 +35,7 @@ Degrees = Annotated[float, Port(unit="deg", min=0, max=180)]
 
 @dataclass(frozen=True, eq=False)
 class ShapesReport(Report):
-    """
-    Shapes of panels.
+    """Shapes of panels.
 
     Attributes
     ----------
@@ -56,8 +55,7 @@ class ShapesReport(Report):
 
 @dataclass(frozen=True, eq=False)
 class PanellingReport(Report):
-    """
-    The reports of a panelling in one.
+    """The reports of a panelling in one.
 
     Attributes
     ----------
@@ -110,8 +108,7 @@ class Audit(NamedTuple):
 def identical_panels(
     panels: Panels, tolerance: Annotated[float, Port(min=0)] = SAME_PANEL
 ) -> IdenticalPanels:
-    """
-    Find panels that are the same up to a rigid motion and can share blanks and patterns.
+    """Find panels that are the same up to a rigid motion and can share blanks and patterns.
 
     Parameters
     ----------
@@ -145,8 +142,7 @@ def identical_panels(
 
 @node
 def mould_blanks(panels: Panels, size_step: Length = 0.0) -> BlanksReport:
-    """
-    Count the blanks that every mould must give, and how large they are.
+    """Count the blanks that every mould must give, and how large they are.
 
     Parameters
     ----------
@@ -192,8 +188,7 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     max_twist: Degrees = 1.0,
     max_length: Millimeters | None = None,
 ) -> Audit:
-    """
-    Look for whatever would trouble a workshop, as numbered errors and notes.
+    """Look for whatever would trouble a workshop, as numbered errors and notes.
 
     Parameters
     ----------
@@ -256,8 +251,7 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
 
 @node
 def check_step(path: ReadPath) -> Audit:
-    """
-    Check the text of a STEP file: syntax, references, open loops, edges of solids.
+    """Check the text of a STEP file: syntax, references, open loops, edges of solids.
 
     Parameters
     ----------
@@ -299,8 +293,7 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     landing: LandingReport | None = None,
     units: Units = "m",
 ) -> PanellingReport:
-    """
-    Gather the reports of a panelling into one.
+    """Gather the reports of a panelling into one.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-The terms of energy (6), a file each, and how their sum falls.
+"""The terms of energy (6), a file each, and how their sum falls.
 
 A new term is one file with `blocks` (what a residual depends on), `residuals` and `jacobian`,
 its name in `table.TERMS`, and one weight in `EnergyWeights`. No column is counted by hand:

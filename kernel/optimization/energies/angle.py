@@ -10,12 +10,7 @@ from .setting import Group, Setting, Unknowns
 
 
 def blocks(setting: Setting) -> tuple[Block, ...]:
-    """
-    What each residual depends on: the two faces of an edge.
-
-    Parameters
-    ----------
-    setting : Setting
+    """What each residual depends on: the two faces of an edge.
 
     Returns
     -------
@@ -27,14 +22,12 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
 
 
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """
-    ``√w (g |g| - cos² α)`` over each edge, with ``g = <<S, S'>>`` the cosine of the angle.
+    """``√w (g |g| - cos² α)`` over each edge, with ``g = <<S, S'>>`` the cosine of the angle.
 
     Parameters
     ----------
     setting : Setting
         What stays fixed; edge weights w and target angle α.
-    unknowns : Unknowns
 
     Returns
     -------
@@ -52,13 +45,7 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
-    """
-    Derivatives by the rows of the two faces.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
+    """Derivatives by the rows of the two faces.
 
     Returns
     -------

@@ -1,5 +1,4 @@
-"""
-The line of centres of two spheres, without dividing by a curvature.
+"""The line of centres of two spheres, without dividing by a curvature.
 
 ``D = A B' - A' B`` is the vector between the centres times ``2 A A'``; it does not depend on
 the origin and vanishes for two planes.
@@ -13,13 +12,7 @@ from .setting import Setting, Unknowns
 
 
 def center_lines(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """
-    Vectors ``D = A B' - A' B`` across the interior edges.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
+    """Vectors ``D = A B' - A' B`` across the interior edges.
 
     Returns
     -------
@@ -34,13 +27,10 @@ def center_lines(setting: Setting, unknowns: Unknowns) -> FloatArray:
 def center_line_gradients(
     setting: Setting, unknowns: Unknowns, edges: IntArray, directions: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """
-    Derivatives of ``D·a`` by the rows of the two faces.
+    """Derivatives of ``D·a`` by the rows of the two faces.
 
     Parameters
     ----------
-    setting : Setting
-    unknowns : Unknowns
     edges : (m,) int array
     directions : (m, 3) float array
         Vectors a.

@@ -8,12 +8,7 @@ from .setting import Group, Setting, Unknowns
 
 
 def blocks(setting: Setting) -> tuple[Block, ...]:
-    """
-    What each residual depends on: a vertex.
-
-    Parameters
-    ----------
-    setting : Setting
+    """What each residual depends on: a vertex.
 
     Returns
     -------
@@ -24,13 +19,7 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
 
 
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:  # noqa: ARG001 - as all terms
-    """
-    Displacement of each vertex.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
+    """Displacement of each vertex.
 
     Returns
     -------
@@ -41,13 +30,7 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:  # noqa: ARG0
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  # noqa: ARG001
-    """
-    Derivatives by the point of the vertex.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
+    """Derivatives by the point of the vertex.
 
     Returns
     -------

@@ -8,12 +8,7 @@ from .setting import Group, Setting, Unknowns
 
 
 def blocks(setting: Setting) -> tuple[Block, ...]:
-    """
-    What each residual depends on: the dual normal of a node.
-
-    Parameters
-    ----------
-    setting : Setting
+    """What each residual depends on: the dual normal of a node.
 
     Returns
     -------
@@ -24,13 +19,7 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
 
 
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:  # noqa: ARG001 - as all terms
-    """
-    ``|n|² - 1`` of each node.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
+    """``|n|² - 1`` of each node.
 
     Returns
     -------
@@ -45,13 +34,7 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:  # noqa: ARG0
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  # noqa: ARG001
-    """
-    Derivatives by the dual normal.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
+    """Derivatives by the dual normal.
 
     Returns
     -------

@@ -8,12 +8,7 @@ from .setting import Group, Setting, Unknowns
 
 
 def blocks(setting: Setting) -> tuple[Block, ...]:
-    """
-    What each residual depends on: an interior vertex and its neighbours.
-
-    Parameters
-    ----------
-    setting : Setting
+    """What each residual depends on: an interior vertex and its neighbours.
 
     Returns
     -------
@@ -25,13 +20,7 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
 
 
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """
-    Umbrella vector of each interior vertex: the vertex minus the mean of its neighbours.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
+    """Umbrella vector of each interior vertex: the vertex minus the mean of its neighbours.
 
     Returns
     -------
@@ -52,13 +41,7 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  # noqa: ARG001
-    """
-    Derivatives by the points of the vertex and of its neighbours.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
+    """Derivatives by the points of the vertex and of its neighbours.
 
     Returns
     -------

@@ -1,5 +1,4 @@
-"""
-Which way the unknowns may move.
+"""Which way the unknowns may move.
 
 Vertices may be bound to a ball about their old place, to a plane or to a line; the radius of a
 sphere may be given. Steps are projected onto what is free, and moves end inside the bounds.
@@ -22,8 +21,7 @@ Interior = Literal["free", "glide"]
 
 @dataclass(frozen=True)
 class Freedom:
-    """
-    What the unknowns may do.
+    """What the unknowns may do.
 
     Attributes
     ----------
@@ -41,8 +39,7 @@ class Freedom:
 
 
 def vertex_freedom(mesh: Mesh, interior: Interior, boundary: Boundary) -> FloatArray:
-    """
-    Directions in which vertices may move.
+    """Directions in which vertices may move.
 
     Parameters
     ----------
@@ -79,12 +76,10 @@ def vertex_freedom(mesh: Mesh, interior: Interior, boundary: Boundary) -> FloatA
 
 
 def project_displacements(freedom: Freedom, displacements: FloatArray) -> FloatArray:
-    """
-    Nearest displacements within the bound.
+    """Nearest displacements within the bound.
 
     Parameters
     ----------
-    freedom : Freedom
     displacements : (V, 3) float array
         Displacements in free directions.
 
@@ -102,12 +97,10 @@ def project_displacements(freedom: Freedom, displacements: FloatArray) -> FloatA
 
 
 def pushed_out(freedom: Freedom, displacements: FloatArray, push: FloatArray) -> BoolArray:
-    """
-    Vertices at their bound that a push carries out of it.
+    """Vertices at their bound that a push carries out of it.
 
     Parameters
     ----------
-    freedom : Freedom
     displacements : (V, 3) float array
     push : (V or 0, 3) float array
         A direction for each; empty where vertices take no part.
@@ -122,12 +115,10 @@ def pushed_out(freedom: Freedom, displacements: FloatArray, push: FloatArray) ->
 
 
 def free_directions(freedom: Freedom, displacements: FloatArray, held: BoolArray) -> FloatArray:
-    """
-    Free directions of a step: vertices that are held at their bound only move along it.
+    """Free directions of a step: vertices that are held at their bound only move along it.
 
     Parameters
     ----------
-    freedom : Freedom
     displacements : (V, 3) float array
     held : (V or 0,) bool array
         Which vertices are held; empty where vertices take no part.
@@ -144,14 +135,12 @@ def free_directions(freedom: Freedom, displacements: FloatArray, held: BoolArray
 def tangent_to_spheres(
     freedom: Freedom, unknowns: Unknowns, faces: IntArray, derivatives: FloatArray
 ) -> FloatArray:
-    """
-    Derivatives by what is left of a change of a row when the row is made unit again.
+    """Derivatives by what is left of a change of a row when the row is made unit again.
 
     Parameters
     ----------
     freedom : Freedom
         Which radii are fixed.
-    unknowns : Unknowns
     faces : (m,) int array
         Face of each derivative.
     derivatives : (m, 5) float array
@@ -180,13 +169,10 @@ def tangent_to_spheres(
 def moved(
     freedom: Freedom, unknowns: Unknowns, steps: tuple[FloatArray, FloatArray, FloatArray]
 ) -> Unknowns:
-    """
-    Unknowns after a step: unit rows, unit dual normals, vertices within their bound.
+    """Unknowns after a step: unit rows, unit dual normals, vertices within their bound.
 
     Parameters
     ----------
-    freedom : Freedom
-    unknowns : Unknowns
     steps : tuple of (F, 5), (V or 0, 3) and (N or 0, 3) float arrays
         Changes of each group; empty where a group does not take part.
 

@@ -25,13 +25,10 @@ from .table import TERMS, EnergyWeights, Term
 
 @dataclass(frozen=True)
 class EnergyProblem:
-    """
-    A weighted sum of terms over a setting.
+    """A weighted sum of terms over a setting.
 
     Attributes
     ----------
-    setting : Setting
-        What stays fixed.
     freedom : Freedom
         Which way the unknowns may move.
     terms : tuple of Term
@@ -50,15 +47,12 @@ class EnergyProblem:
 
 
 def energy_problem(setting: Setting, freedom: Freedom, weights: EnergyWeights) -> EnergyProblem:
-    """
-    Collect the terms that have a weight and the unknowns that they need.
+    """Collect the terms that have a weight and the unknowns that they need.
 
     Parameters
     ----------
-    setting : Setting
     freedom : Freedom
         Which way the unknowns may move; vertices are unknown if they may move at all.
-    weights : EnergyWeights
 
     Returns
     -------
@@ -84,13 +78,7 @@ def energy_problem(setting: Setting, freedom: Freedom, weights: EnergyWeights) -
 
 
 def weighted_residuals(problem: EnergyProblem, unknowns: Unknowns) -> list[FloatArray]:
-    """
-    Residuals of each term, times its weight.
-
-    Parameters
-    ----------
-    problem : EnergyProblem
-    unknowns : Unknowns
+    """Residuals of each term, times its weight.
 
     Returns
     -------
@@ -106,13 +94,7 @@ def weighted_residuals(problem: EnergyProblem, unknowns: Unknowns) -> list[Float
 def weighted_entries(
     problem: EnergyProblem, unknowns: Unknowns
 ) -> list[tuple[FloatArray, ...]]:
-    """
-    Derivatives of the weighted residuals, block by block.
-
-    Parameters
-    ----------
-    problem : EnergyProblem
-    unknowns : Unknowns
+    """Derivatives of the weighted residuals, block by block.
 
     Returns
     -------
@@ -136,13 +118,10 @@ def minimize_energy(
     change: float,
     share: float = STEP_MODEL,
 ) -> Descent[Unknowns]:
-    """
-    Minimise the energy by Levenberg-Marquardt.
+    """Minimise the energy by Levenberg-Marquardt.
 
     Parameters
     ----------
-    problem : EnergyProblem
-    start : Unknowns
     max_iterations : int
         Largest number of linear systems.
     change : float
@@ -182,8 +161,7 @@ def minimize_energy(
 def _bounded_steps(
     problem: EnergyProblem, unknowns: Unknowns, residuals: FloatArray, share: float
 ) -> Callable[[float], DampedStep]:
-    """
-    Steps at a state, by damping, that leave vertices within their bound.
+    """Steps at a state, by damping, that leave vertices within their bound.
 
     A vertex that a step would carry out goes to the bound and along it, and the others make up
     for what it cannot do: the step is found again. Shortening the vertex alone would tear it

@@ -9,12 +9,7 @@ from .setting import Group, Setting, Unknowns
 
 
 def blocks(setting: Setting) -> tuple[Block, ...]:
-    """
-    What each residual depends on: the two faces of an edge.
-
-    Parameters
-    ----------
-    setting : Setting
+    """What each residual depends on: the two faces of an edge.
 
     Returns
     -------
@@ -26,14 +21,12 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
 
 
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """
-    ``D·n_e`` and ``D·e`` over each edge, with D along the line of centres.
+    """``D·n_e`` and ``D·e`` over each edge, with D along the line of centres.
 
     Parameters
     ----------
     setting : Setting
         What stays fixed; n_e the sum of the face normals, e the unit vector of the edge.
-    unknowns : Unknowns
 
     Returns
     -------
@@ -52,13 +45,7 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
-    """
-    Derivatives by the rows of the two faces.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
+    """Derivatives by the rows of the two faces.
 
     Returns
     -------

@@ -1,5 +1,4 @@
-"""
-What an energy of sphere meshes is made of: what stays fixed, and the unknowns.
+"""What an energy of sphere meshes is made of: what stays fixed, and the unknowns.
 
 Lengths are in mean edges. The row of a face is seen from the centroid of the face, so neither
 units nor the position of the model change anything.
@@ -29,8 +28,7 @@ WIDTHS = (5, 3, 3)
 
 @dataclass(frozen=True)
 class Unknowns:
-    """
-    The values that an energy depends on.
+    """The values that an energy depends on.
 
     Attributes
     ----------
@@ -49,8 +47,7 @@ class Unknowns:
 
 @dataclass(frozen=True)
 class Setting:
-    """
-    What stays fixed while an energy is minimised.
+    """What stays fixed while an energy is minimised.
 
     Attributes
     ----------
@@ -103,26 +100,17 @@ class Setting:
 
     @property
     def n_faces(self) -> int:
-        """
-        Number of faces.
-
-        Returns
-        -------
-        int
-            F.
-        """
+        """Number of faces."""
         return int(self.corner_faces[-1]) + 1
 
 
 def energy_setting(
     mesh: Mesh, edge_weights: FloatArray, target_angle: float = 0.0, allowance: float = 0.0
 ) -> Setting:
-    """
-    Measure a mesh for its energies.
+    """Measure a mesh for its energies.
 
     Parameters
     ----------
-    mesh : Mesh
     edge_weights : (E,) float array
         Weight of the angle over each interior edge.
     target_angle : float
@@ -193,12 +181,7 @@ def _umbrellas(mesh: Mesh) -> FloatArray:
 
 
 def first_unknowns(sphere_mesh: SphereMesh) -> Unknowns:
-    """
-    Unknowns of a sphere mesh whose vertices have not moved.
-
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
+    """Unknowns of a sphere mesh whose vertices have not moved.
 
     Returns
     -------

@@ -9,12 +9,7 @@ from .setting import Group, Setting, Unknowns
 
 
 def blocks(setting: Setting) -> tuple[Block, ...]:
-    """
-    What each residual depends on: a face and one of its vertices.
-
-    Parameters
-    ----------
-    setting : Setting
+    """What each residual depends on: a face and one of its vertices.
 
     Returns
     -------
@@ -28,15 +23,9 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
 
 
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """
-    What ``A |v|² - B·v + C`` exceeds the allowance by, at each corner.
+    """What ``A |v|² - B·v + C`` exceeds the allowance by, at each corner.
 
     For a unit row it is nearly the signed distance of the vertex from the sphere.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
 
     Returns
     -------
@@ -58,13 +47,7 @@ def _vertex_misses(setting: Setting, unknowns: Unknowns) -> FloatArray:
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
-    """
-    Derivatives by the row of the face and by the point of the vertex.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
+    """Derivatives by the row of the face and by the point of the vertex.
 
     Returns
     -------
@@ -80,8 +63,7 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
 
 
 def _centered_misses(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """
-    Misses shifted such that distances of ± the allowance give ± the allowance.
+    """Misses shifted such that distances of ± the allowance give ± the allowance.
 
     A vertex at distance d from a unit row misses by ``d + A d²``.
     """

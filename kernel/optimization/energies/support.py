@@ -7,12 +7,7 @@ from .setting import Group, Setting, Unknowns
 
 
 def blocks(setting: Setting) -> tuple[Block, ...]:
-    """
-    What each residual depends on: the two faces of an edge and the dual normal of a node.
-
-    Parameters
-    ----------
-    setting : Setting
+    """What each residual depends on: the two faces of an edge and the dual normal of a node.
 
     Returns
     -------
@@ -28,13 +23,7 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
 
 
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """
-    ``D·n`` with D along the line of centres across the edge and n the node's dual normal.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
+    """``D·n`` with D along the line of centres across the edge and n the node's dual normal.
 
     Returns
     -------
@@ -50,13 +39,7 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
-    """
-    Derivatives by the rows of the two faces and by the dual normal.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
+    """Derivatives by the rows of the two faces and by the dual normal.
 
     Returns
     -------

@@ -1,5 +1,4 @@
-"""
-The table of terms of energy (6).
+"""The table of terms of energy (6).
 
 A new term is one module with `blocks`, `residuals` and `jacobian`, one row in `TERMS`, and one
 weight in `EnergyWeights`.
@@ -19,8 +18,7 @@ from .setting import Setting, Unknowns
 
 @dataclass(frozen=True)
 class EnergyWeights:
-    """
-    Weights λ of energy (6); a term counts λ² times. Lengths are in mean edges.
+    """Weights λ of energy (6); a term counts λ² times. Lengths are in mean edges.
 
     Attributes
     ----------
@@ -61,8 +59,7 @@ class EnergyWeights:
 
 @dataclass(frozen=True)
 class Term:
-    """
-    One term of the energy: a sum of squares of residuals.
+    """One term of the energy: a sum of squares of residuals.
 
     Attributes
     ----------

@@ -9,12 +9,7 @@ from .setting import Group, Setting, Unknowns
 
 
 def blocks(setting: Setting) -> tuple[Block, ...]:
-    """
-    What each residual depends on: a face.
-
-    Parameters
-    ----------
-    setting : Setting
+    """What each residual depends on: a face.
 
     Returns
     -------
@@ -25,13 +20,7 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
 
 
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:  # noqa: ARG001 - as all terms
-    """
-    ``|B|² - 4 A C - 1`` of each face.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
+    """``|B|² - 4 A C - 1`` of each face.
 
     Returns
     -------
@@ -46,13 +35,7 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:  # noqa: ARG0
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  # noqa: ARG001
-    """
-    Derivatives by the row of the face.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
+    """Derivatives by the row of the face.
 
     Returns
     -------

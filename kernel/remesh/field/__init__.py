@@ -1,5 +1,4 @@
-"""
-Conjugate directions of a congruence, as a smooth field over its mesh.
+"""Conjugate directions of a congruence, as a smooth field over its mesh.
 
 In the order of the steps:
 

@@ -20,8 +20,7 @@ from .tree_signs import tree_signs
 
 @dataclass(frozen=True)
 class CongruenceMesh:
-    """
-    A triangulated sphere congruence, centred, with mean edge 1.
+    """A triangulated sphere congruence, centred, with mean edge 1.
 
     Attributes
     ----------
@@ -57,8 +56,7 @@ class CongruenceMesh:
 
     @property
     def vertex_areas(self) -> FloatArray:
-        """
-        A third of the areas of the faces around each vertex.
+        """A third of the areas of the faces around each vertex.
 
         Returns
         -------
@@ -70,13 +68,10 @@ class CongruenceMesh:
 
 
 def congruence_mesh(mesh: Mesh, spheres: ArrayLike) -> CongruenceMesh:
-    """
-    Check a triangle mesh with spheres at its vertices, and bring it into local coordinates.
+    """Check a triangle mesh with spheres at its vertices, and bring it into local coordinates.
 
     Parameters
     ----------
-    mesh : Mesh
-        A connected triangle mesh.
     spheres : (V, 5) array_like of float
         Real rows of any scale, not zero, in model coordinates; planes included.
 

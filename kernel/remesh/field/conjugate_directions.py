@@ -18,8 +18,7 @@ from .smoothing import orient_forms
 
 @dataclass(frozen=True)
 class ConjugateDirections:
-    """
-    The conjugate net of a congruence, to first order.
+    """The conjugate net of a congruence, to first order.
 
     Attributes
     ----------
@@ -60,13 +59,10 @@ class ConjugateDirections:
 def conjugate_directions(
     mesh: Mesh, spheres: ArrayLike, degree: int | None = None, rings: int = 4
 ) -> ConjugateDirections:
-    """
-    Directions in which neighbouring spheres of an SQ-mesh with support structure follow.
+    """Directions in which neighbouring spheres of an SQ-mesh with support structure follow.
 
     Parameters
     ----------
-    mesh : Mesh
-        A connected triangle mesh.
     spheres : (V, 5) array_like of float
         A real sphere or plane for every vertex, in model coordinates.
     degree : int, optional
@@ -113,13 +109,10 @@ def conjugate_directions(
 
 
 def complex_share(mesh: Mesh, spheres: ArrayLike) -> float:
-    """
-    Share of the area on which a congruence has no real conjugate net.
+    """Share of the area on which a congruence has no real conjugate net.
 
     Parameters
     ----------
-    mesh : Mesh
-        A connected triangle mesh.
     spheres : (V, 5) array_like of float
         A real sphere or plane for every vertex, in model coordinates.
 
@@ -140,13 +133,7 @@ def complex_share(mesh: Mesh, spheres: ArrayLike) -> float:
 
 
 def umbilic_share(surface: CongruenceMesh, jets: CongruenceJets) -> float:
-    """
-    Share of the area on which a congruence does not tell its conjugate directions.
-
-    Parameters
-    ----------
-    surface : CongruenceMesh
-    jets : CongruenceJets
+    """Share of the area on which a congruence does not tell its conjugate directions.
 
     Returns
     -------
@@ -158,13 +145,7 @@ def umbilic_share(surface: CongruenceMesh, jets: CongruenceJets) -> float:
 
 
 def expected_axis_angles(surface: CongruenceMesh, jets: CongruenceJets) -> FloatArray:
-    """
-    Angles between the normals of a surface and the node axes of a net on it.
-
-    Parameters
-    ----------
-    surface : CongruenceMesh
-    jets : CongruenceJets
+    """Angles between the normals of a surface and the node axes of a net on it.
 
     Returns
     -------

@@ -1,5 +1,4 @@
-"""
-Conjugate directions of a sphere congruence: where two neighbouring spheres of a net meet.
+"""Conjugate directions of a sphere congruence: where two neighbouring spheres of a net meet.
 
 Spheres are points of projective four-space, a congruence is a surface there, and a surface in
 four-space has at most one conjugate net. Its directions are the roots of one quadratic form.
@@ -18,8 +17,7 @@ class UndeterminedError(InputError):
 
 
 def conjugate_form(jets: CongruenceJets) -> FloatArray:
-    """
-    The quadratic form whose roots are the conjugate directions.
+    """The quadratic form whose roots are the conjugate directions.
 
     Parameters
     ----------
@@ -54,8 +52,7 @@ def conjugate_form(jets: CongruenceJets) -> FloatArray:
 
 
 def split_form(form: FloatArray) -> tuple[FloatArray, ComplexArray]:
-    """
-    Trace and deviator of quadratic forms in orthonormal coordinates.
+    """Trace and deviator of quadratic forms in orthonormal coordinates.
 
     Parameters
     ----------
@@ -74,8 +71,7 @@ def split_form(form: FloatArray) -> tuple[FloatArray, ComplexArray]:
 
 
 def conjugate_field(jets: CongruenceJets) -> tuple[FloatArray, ComplexArray]:
-    """
-    The forms whose roots are the conjugate directions, in trace and deviator.
+    """The forms whose roots are the conjugate directions, in trace and deviator.
 
     Parameters
     ----------
@@ -106,8 +102,7 @@ def conjugate_field(jets: CongruenceJets) -> tuple[FloatArray, ComplexArray]:
 
 
 def anisotropy(jets: CongruenceJets) -> FloatArray:
-    """
-    How much the second derivatives of spheres vary with the direction.
+    """How much the second derivatives of spheres vary with the direction.
 
     Parameters
     ----------
@@ -134,8 +129,7 @@ def anisotropy(jets: CongruenceJets) -> FloatArray:
 def form_roots(
     trace: FloatArray, deviator: ComplexArray, least_angle: float = 0.0
 ) -> tuple[FloatArray, FloatArray, BoolArray]:
-    """
-    The two directions in which quadratic forms vanish.
+    """The two directions in which quadratic forms vanish.
 
     Parameters
     ----------

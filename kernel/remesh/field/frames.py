@@ -14,8 +14,7 @@ from .smoothing import transport
 
 @dataclass(frozen=True)
 class CombedFrames:
-    """
-    A pair of directions in every face, with the same signs on both sides of most edges.
+    """A pair of directions in every face, with the same signs on both sides of most edges.
 
     Since the form carries its sign, the first directions form a field of lines and the second
     another: of the four symmetries of a cross field only the half turn is left.
@@ -43,12 +42,10 @@ class CombedFrames:
 
 
 def fan_signs(fans: VertexFans, signs: FloatArray) -> FloatArray:
-    """
-    Products of signs at the corners before each corner in its fan.
+    """Products of signs at the corners before each corner in its fan.
 
     Parameters
     ----------
-    fans : VertexFans
     signs : (H,) float array
         1 or -1 for every corner.
 
@@ -71,13 +68,10 @@ def comb_frames(
     deviator: ComplexArray,
     least: float,
 ) -> CombedFrames:
-    """
-    Directions in the faces from forms at the vertices.
+    """Directions in the faces from forms at the vertices.
 
     Parameters
     ----------
-    surface : CongruenceMesh
-    fans : VertexFans
     trace : (V,) float array
         Means of the forms.
     deviator : (V,) complex array

@@ -25,8 +25,7 @@ DEGREES = (3, 5, 7)
 
 @dataclass(frozen=True)
 class CongruenceJets:
-    """
-    A smooth congruence to second order, at any number of parameters (u, v).
+    """A smooth congruence to second order, at any number of parameters (u, v).
 
     Attributes
     ----------
@@ -47,8 +46,7 @@ class CongruenceJets:
 
 
 class JetFit(NamedTuple):
-    """
-    Jets at the vertices of a mesh.
+    """Jets at the vertices of a mesh.
 
     Attributes
     ----------
@@ -68,12 +66,10 @@ class JetFit(NamedTuple):
 
 
 def fit_jets(surface: CongruenceMesh, degree: int | None = None, rings: int = 4) -> JetFit:
-    """
-    Fit a polynomial to all five coordinates of the spheres around each vertex.
+    """Fit a polynomial to all five coordinates of the spheres around each vertex.
 
     Parameters
     ----------
-    surface : CongruenceMesh
     degree : int, optional
         Degree of the polynomials, from 2 to 7; by default that of `DEGREES` with the least
         expected error.
@@ -235,8 +231,7 @@ def _derivatives(samples: _Samples, estimate: FloatArray) -> FloatArray:
 
 
 def _expected_errors(samples: _Samples, estimates: list[FloatArray]) -> FloatArray:
-    """
-    Mean squared errors (d, n) of the second derivatives of each fit.
+    """Mean squared errors (d, n) of the second derivatives of each fit.
 
     In units of the square that noise of variance one would give those of the last fit: so the
     vertices inside count more than those on boundaries, which know little.
@@ -267,12 +262,7 @@ def _noise(samples: _Samples) -> FloatArray:
 
 
 def expected_node_axes(jets: CongruenceJets) -> FloatArray:
-    """
-    Directions of the node axes that the congruence predicts: normals of the centre surface.
-
-    Parameters
-    ----------
-    jets : CongruenceJets
+    """Directions of the node axes that the congruence predicts: normals of the centre surface.
 
     Returns
     -------

@@ -1,5 +1,4 @@
-"""
-Relaxation of sphere congruences: towards real conjugate nets with upright node axes.
+"""Relaxation of sphere congruences: towards real conjugate nets with upright node axes.
 
 Where spheres touch a surface with curvature κ, neighbours differ along a principal direction by
 ``κ - k`` for every unit of length, k the principal curvature, and the node axis is tilted
@@ -36,8 +35,7 @@ SHARPEST = 95
 
 
 class CongruenceQuality(NamedTuple):
-    """
-    Whether a congruence can be remeshed.
+    """Whether a congruence can be remeshed.
 
     Attributes
     ----------
@@ -53,8 +51,7 @@ class CongruenceQuality(NamedTuple):
 
 @dataclass(frozen=True)
 class Relaxation:
-    """
-    A relaxed congruence.
+    """A relaxed congruence.
 
     Attributes
     ----------
@@ -82,12 +79,10 @@ def relax_congruence(
     target: CongruenceQuality,
     radius: float | None = None,
 ) -> Relaxation:
-    """
-    Blend a congruence with spheres of constant radius as little as makes it fit to remesh.
+    """Blend a congruence with spheres of constant radius as little as makes it fit to remesh.
 
     Parameters
     ----------
-    mesh : Mesh
     spheres : (V, 5) array_like of float
         Real rows of the spheres at the vertices, planes included, near the surface there.
     complex_share : callable
@@ -167,12 +162,10 @@ def _is_fit(quality: CongruenceQuality, target: CongruenceQuality) -> bool:
 
 
 def axis_angle(mesh: Mesh, spheres: FloatArray) -> float:
-    """
-    Angle that the node axes of a congruence make with the normals of its surface.
+    """Angle that the node axes of a congruence make with the normals of its surface.
 
     Parameters
     ----------
-    mesh : Mesh
     spheres : (V, 5) float array
         Rows of the spheres at the vertices.
 

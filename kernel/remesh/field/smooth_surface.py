@@ -11,8 +11,7 @@ from .congruence_mesh import CongruenceMesh
 
 @dataclass(frozen=True)
 class SmoothSurface:
-    """
-    A surface that is smooth between the vertices of a mesh.
+    """A surface that is smooth between the vertices of a mesh.
 
     Attributes
     ----------
@@ -30,12 +29,10 @@ class SmoothSurface:
 def nearest_triangles(
     surface: CongruenceMesh, points: FloatArray
 ) -> tuple[IntArray, FloatArray]:
-    """
-    Where points are nearest to the triangles.
+    """Where points are nearest to the triangles.
 
     Parameters
     ----------
-    surface : CongruenceMesh
     points : (n, 3) float array
         Points.
 
@@ -57,12 +54,10 @@ def nearest_triangles(
 def surface_heights(
     surface: SmoothSurface, points: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """
-    Heights of points over a smooth surface.
+    """Heights of points over a smooth surface.
 
     Parameters
     ----------
-    surface : SmoothSurface
     points : (n, 3) float array
         Points near it.
 

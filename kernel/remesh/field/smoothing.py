@@ -20,8 +20,7 @@ LEAST_PATCH = 0.15
 
 
 def transport(source: FloatArray, target: FloatArray) -> ComplexArray:
-    """
-    Parallel transport between tangent planes, as factors of complex coordinates.
+    """Parallel transport between tangent planes, as factors of complex coordinates.
 
     Parameters
     ----------
@@ -45,12 +44,10 @@ def transport(source: FloatArray, target: FloatArray) -> ComplexArray:
 def orient_forms(
     surface: CongruenceMesh, trace: FloatArray, deviator: ComplexArray
 ) -> tuple[FloatArray, ComplexArray]:
-    """
-    Reverse forms beyond curves on which they vanish.
+    """Reverse forms beyond curves on which they vanish.
 
     Parameters
     ----------
-    surface : CongruenceMesh
     trace : (V,) float array
         Means of the forms.
     deviator : (V,) complex array
@@ -108,12 +105,10 @@ def _patches(
 def smooth_forms(
     surface: CongruenceMesh, trace: FloatArray, deviator: ComplexArray, length: float
 ) -> tuple[FloatArray, ComplexArray]:
-    """
-    Smooth a field of forms where it says little, and keep it where it is sure.
+    """Smooth a field of forms where it says little, and keep it where it is sure.
 
     Parameters
     ----------
-    surface : CongruenceMesh
     trace : (V,) float array
         Means of the forms.
     deviator : (V,) complex array

@@ -7,8 +7,7 @@ from ...solvers.factorization import SparseArray
 
 
 def tree_signs(likeness: SparseArray) -> FloatArray:
-    """
-    Choose signs along a spanning tree of a graph.
+    """Choose signs along a spanning tree of a graph.
 
     Parameters
     ----------

@@ -1,5 +1,4 @@
-"""
-Seamless maps to the plane whose coordinate lines follow the field.
+"""Seamless maps to the plane whose coordinate lines follow the field.
 
 In the order of the steps:
 

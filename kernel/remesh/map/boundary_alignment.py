@@ -22,8 +22,7 @@ LEAST_SIDE = 1.5
 
 @dataclass(frozen=True)
 class Alignment:
-    """
-    Boundary vertices at which a coordinate is a whole number and a half.
+    """Boundary vertices at which a coordinate is a whole number and a half.
 
     Attributes
     ----------
@@ -50,13 +49,7 @@ class Alignment:
 
 
 def next_on_boundary(surface: CongruenceMesh, fans: VertexFans) -> IntArray:
-    """
-    The following half-edge along the boundary.
-
-    Parameters
-    ----------
-    surface : CongruenceMesh
-    fans : Fans
+    """The following half-edge along the boundary.
 
     Returns
     -------
@@ -69,12 +62,10 @@ def next_on_boundary(surface: CongruenceMesh, fans: VertexFans) -> IntArray:
 
 
 def boundary_corners(surface: CongruenceMesh, following: IntArray) -> BoolArray:
-    """
-    Where the boundary turns sharply.
+    """Where the boundary turns sharply.
 
     Parameters
     ----------
-    surface : CongruenceMesh
     following : (H,) int array
         The next half-edge along the boundary, or -1.
 
@@ -100,15 +91,10 @@ def align_boundary(
     seams: Seams,
     edge_length: float,
 ) -> tuple[Alignment, Alignment]:
-    """
-    Find the sides that run along a direction, and what that says about the coordinates.
+    """Find the sides that run along a direction, and what that says about the coordinates.
 
     Parameters
     ----------
-    surface : CongruenceMesh
-    fans : Fans
-    frames : CombedFrames
-    seams : Seams
     edge_length : float
         Length of a unit step, in mean edges.
 
@@ -133,18 +119,12 @@ def align_boundary(
 
 
 def no_alignment(n_integers: int) -> Alignment:
-    """
-    No side is aligned.
+    """No side is aligned.
 
     Parameters
     ----------
     n_integers : int
         Number m of the integers of the seams.
-
-    Returns
-    -------
-    Alignment
-        Empty.
     """
     rows, empty = np.zeros((0, n_integers)), np.zeros(0)
     return Alignment(np.zeros(0, np.int64), rows, empty, rows, empty, 0)

@@ -1,5 +1,4 @@
-"""
-One coordinate of a seamless map: a least-squares problem in real numbers and integers.
+"""One coordinate of a seamless map: a least-squares problem in real numbers and integers.
 
 The real unknowns are eliminated once; what is left is a small quadratic function of integers.
 """
@@ -32,8 +31,7 @@ MOST_STRETCH = 1.5
 
 @dataclass(frozen=True)
 class Coordinate:
-    """
-    A coordinate whose real unknowns follow its integers.
+    """A coordinate whose real unknowns follow its integers.
 
     Attributes
     ----------
@@ -79,13 +77,10 @@ def eliminate(
     along: FloatArray,
     across: FloatArray,
 ) -> Coordinate:
-    """
-    Set up one coordinate and eliminate its real unknowns.
+    """Set up one coordinate and eliminate its real unknowns.
 
     Parameters
     ----------
-    surface : CongruenceMesh
-    seams : Seams
     alignment : Alignment
         Boundary vertices at which the coordinate is given by integers.
     along, across : (F, 3) float array
@@ -131,13 +126,10 @@ def eliminate(
 def solve_coordinate(
     coordinate: Coordinate, solutions: IntegerSolutions, n_first: int
 ) -> tuple[FloatArray, FloatArray]:
-    """
-    Choose the integers of a coordinate, and what follows.
+    """Choose the integers of a coordinate, and what follows.
 
     Parameters
     ----------
-    coordinate : Coordinate
-    solutions : IntegerSolutions
     n_first : int
         The first so many are rounded before the others.
 

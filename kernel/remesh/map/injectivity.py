@@ -26,8 +26,7 @@ UNFOLDING_STEPS = 12
 
 @dataclass(frozen=True)
 class ChartGradients:
-    """
-    Derivatives of two coordinates in every face with respect to its two directions.
+    """Derivatives of two coordinates in every face with respect to its two directions.
 
     Attributes
     ----------
@@ -51,8 +50,7 @@ class ChartGradients:
     shifts: FloatArray
 
     def corner_values(self, values: FloatArray) -> FloatArray:
-        """
-        Coordinates at the corners.
+        """Coordinates at the corners.
 
         Parameters
         ----------
@@ -66,8 +64,7 @@ class ChartGradients:
         return self.signs[:, None] * values[self.triangles.ravel()] + self.shifts
 
     def jacobians(self, values: FloatArray) -> FloatArray:
-        """
-        Derivatives of u and v along the first and second direction.
+        """Derivatives of u and v along the first and second direction.
 
         Parameters
         ----------
@@ -83,8 +80,7 @@ class ChartGradients:
         return np.einsum("fcu,fcd->fud", corners, slopes)
 
     def determinants(self, values: FloatArray) -> FloatArray:
-        """
-        Area of the image of each face, relative to the area asked for.
+        """Area of the image of each face, relative to the area asked for.
 
         Parameters
         ----------
@@ -98,8 +94,7 @@ class ChartGradients:
         return np.linalg.det(self.jacobians(values))
 
     def spread(self) -> FloatArray:
-        """
-        The linear map from the vertices of a face to the entries of its Jacobian.
+        """The linear map from the vertices of a face to the entries of its Jacobian.
 
         Returns
         -------
@@ -113,17 +108,11 @@ class ChartGradients:
         return result
 
     def part(self, faces: IntArray) -> "ChartGradients":
-        """
-        The same for some of the faces.
+        """The same for some of the faces.
 
         Parameters
         ----------
         faces : (n,) int array
-
-        Returns
-        -------
-        ChartGradients
-            Vertices keep their numbers.
         """
         corners = (3 * faces[:, None] + np.arange(3)).ravel()
         return ChartGradients(
@@ -139,13 +128,10 @@ def untangle(
     is_fixed: BoolArray,
     edge_length: float,
 ) -> FloatArray:
-    """
-    Move the vertices around folded faces until nothing is folded.
+    """Move the vertices around folded faces until nothing is folded.
 
     Parameters
     ----------
-    surface : CongruenceMesh
-    charts : ChartGradients
     start : (V, 2) float array
     is_fixed : (V, 2) bool array
         Coordinates that stay.
@@ -243,8 +229,7 @@ def _newton(
 def distortion(
     jacobians: FloatArray, softness: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """
-    Distortion ``(|J|² + det² + 1) / χ(det)`` of maps of the plane.
+    """Distortion ``(|J|² + det² + 1) / χ(det)`` of maps of the plane.
 
     Parameters
     ----------

@@ -13,8 +13,7 @@ class ContradictionError(ArithmeticError):
 
 
 class IntegerSolutions(NamedTuple):
-    """
-    All solutions ``offset + basis @ y`` of linear equations in whole numbers.
+    """All solutions ``offset + basis @ y`` of linear equations in whole numbers.
 
     Attributes
     ----------
@@ -29,8 +28,7 @@ class IntegerSolutions(NamedTuple):
 
 
 def integer_solutions(relations: FloatArray, constants: FloatArray) -> IntegerSolutions:
-    """
-    Solve linear equations in whole numbers.
+    """Solve linear equations in whole numbers.
 
     Parameters
     ----------
@@ -38,11 +36,6 @@ def integer_solutions(relations: FloatArray, constants: FloatArray) -> IntegerSo
         Whole numbers.
     constants : (r,) float array
         Right sides.
-
-    Returns
-    -------
-    IntegerSolutions
-        All solutions.
 
     Raises
     ------
@@ -81,8 +74,7 @@ def integer_solutions(relations: FloatArray, constants: FloatArray) -> IntegerSo
 
 
 class Quadratic(NamedTuple):
-    """
-    The function ``n H n / 2 - g n``.
+    """The function ``n H n / 2 - g n``.
 
     Attributes
     ----------
@@ -100,13 +92,7 @@ class Quadratic(NamedTuple):
 
 
 def relaxed_minimum(function: Quadratic, solutions: IntegerSolutions) -> FloatArray:
-    """
-    The minimum of a quadratic function if numbers need not be whole.
-
-    Parameters
-    ----------
-    function : Quadratic
-    solutions : IntegerSolutions
+    """The minimum of a quadratic function if numbers need not be whole.
 
     Returns
     -------
@@ -120,13 +106,10 @@ def relaxed_minimum(function: Quadratic, solutions: IntegerSolutions) -> FloatAr
 
 
 def round_minimum(function: Quadratic, solutions: IntegerSolutions, n_first: int) -> FloatArray:
-    """
-    Whole numbers near the minimum of a quadratic function.
+    """Whole numbers near the minimum of a quadratic function.
 
     Parameters
     ----------
-    function : Quadratic
-    solutions : IntegerSolutions
     n_first : int
         The first so many entries of n are rounded before the others.
 

@@ -1,5 +1,4 @@
-"""
-Seamless maps to the plane whose coordinate lines follow two given directions.
+"""Seamless maps to the plane whose coordinate lines follow two given directions.
 
 The coordinates u and v are two scalar problems: u grows by 1 per edge length along the first
 direction and not along the second, v the other way round. Only signs and whole-number shifts
@@ -29,8 +28,7 @@ FOLDED = 0.3
 
 @dataclass(frozen=True)
 class Parametrization:
-    """
-    Coordinates at the corners, continuous across all edges up to signs and whole numbers.
+    """Coordinates at the corners, continuous across all edges up to signs and whole numbers.
 
     Attributes
     ----------
@@ -60,15 +58,10 @@ def parametrize(
     seams: Seams,
     edge_length: float,
 ) -> Parametrization:
-    """
-    Map the cut mesh so that unit steps follow the directions with a given length.
+    """Map the cut mesh so that unit steps follow the directions with a given length.
 
     Parameters
     ----------
-    surface : CongruenceMesh
-    fans : Fans
-    frames : CombedFrames
-    seams : Seams
     edge_length : float
         Length of a unit step, in mean edges.
 

@@ -1,5 +1,4 @@
-"""
-How coordinates of the faces are tied across the seams of a cut mesh.
+"""How coordinates of the faces are tied across the seams of a cut mesh.
 
 Along a seam the coordinates of one face are those of the other with a sign and a shift:
 ``w' = s w + T``. Around a vertex the shifts must add up. On the graph of the seams this is a
@@ -22,8 +21,7 @@ from ..field.frames import CombedFrames, fan_signs
 
 @dataclass(frozen=True)
 class Seams:
-    """
-    Coordinates at the corners in terms of those at the vertices and of integers.
+    """Coordinates at the corners in terms of those at the vertices and of integers.
 
     A coordinate w at corner c of vertex v is ``signs[c] w_v + shifts[c] @ z``: w_v its value in
     the face of the vertex's first corner, z the integers, first those of the singular vertices.
@@ -50,13 +48,10 @@ class Seams:
 
 
 def find_seams(surface: CongruenceMesh, fans: VertexFans, frames: CombedFrames) -> Seams:
-    """
-    Solve the conservation of shifts around all vertices.
+    """Solve the conservation of shifts around all vertices.
 
     Parameters
     ----------
-    surface : CongruenceMesh
-    fans : Fans
     frames : CombedFrames
         Signs across edges, seams and singular vertices.
 

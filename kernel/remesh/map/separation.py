@@ -15,13 +15,10 @@ REACH = 4.0
 def singular_differences(
     surface: CongruenceMesh, seams: Seams, edge_length: float
 ) -> FloatArray:
-    """
-    Differences of the coordinates of singular vertices along the shortest paths between them.
+    """Differences of the coordinates of singular vertices along shortest paths between them.
 
     Parameters
     ----------
-    surface : CongruenceMesh
-    seams : Seams
     edge_length : float
         Length of a unit step, in mean edges.
 

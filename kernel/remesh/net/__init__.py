@@ -1,5 +1,4 @@
-"""
-From the lines of a map to a net of nodes, edges and cells.
+"""From the lines of a map to a net of nodes, edges and cells.
 
 crossings   Where the lines of a seamless map cross the edges of the triangles, and each
             other.

@@ -1,5 +1,4 @@
-"""
-Where the lines of a seamless map cross the edges of the triangles, and each other.
+"""Where the lines of a seamless map cross the edges of the triangles, and each other.
 
 Lines are the places where a coordinate is a whole number and a half. Everything that decides
 about connectivity is taken from whole numbers and from one order of the crossings along each
@@ -19,8 +18,7 @@ from ..map.injectivity import ChartGradients
 
 
 class EdgeCrossings(NamedTuple):
-    """
-    Crossings of lines with edges, in order along each edge.
+    """Crossings of lines with edges, in order along each edge.
 
     Attributes
     ----------
@@ -47,8 +45,7 @@ class EdgeCrossings(NamedTuple):
 
 
 class Segments(NamedTuple):
-    """
-    Pieces of lines in faces, from the lower to the higher value of the other coordinate.
+    """Pieces of lines in faces, from the lower to the higher value of the other coordinate.
 
     Attributes
     ----------
@@ -70,8 +67,7 @@ class Segments(NamedTuple):
 
 
 class Meetings(NamedTuple):
-    """
-    Points in which two lines cross within a face.
+    """Points in which two lines cross within a face.
 
     Attributes
     ----------
@@ -89,13 +85,10 @@ class Meetings(NamedTuple):
 def corner_coordinates(
     fans: VertexFans, charts: ChartGradients, values: FloatArray
 ) -> FloatArray:
-    """
-    Coordinates of the corners with no vertex on a line.
+    """Coordinates of the corners with no vertex on a line.
 
     Parameters
     ----------
-    fans : Fans
-    charts : ChartGradients
     values : (V, 2) float array
 
     Returns
@@ -113,12 +106,10 @@ def corner_coordinates(
 
 
 def edge_crossings(surface: CongruenceMesh, corners: FloatArray) -> EdgeCrossings:
-    """
-    Find the crossings of all edges with the lines.
+    """Find the crossings of all edges with the lines.
 
     Parameters
     ----------
-    surface : CongruenceMesh
     corners : (H, 2) float array
         Coordinates of the corners, none on a line.
 
@@ -153,22 +144,14 @@ def edge_crossings(surface: CongruenceMesh, corners: FloatArray) -> EdgeCrossing
 def face_segments(
     surface: CongruenceMesh, corners: FloatArray, signs: FloatArray, crossings: EdgeCrossings
 ) -> Segments:
-    """
-    Join the crossings around each face to pieces of lines.
+    """Join the crossings around each face to pieces of lines.
 
     Parameters
     ----------
-    surface : CongruenceMesh
     corners : (H, 2) float array
         Coordinates of the corners, none on a line.
     signs : (H,) float array
         Sign between the charts on both sides of each half-edge.
-    crossings : EdgeCrossings
-
-    Returns
-    -------
-    Segments
-        Two crossings each.
 
     Raises
     ------
@@ -214,8 +197,7 @@ def face_segments(
 def face_meetings(
     corners: FloatArray, segments: Segments, is_flipped: BoolArray
 ) -> tuple[Meetings, BoolArray]:
-    """
-    Cross the u lines with the v lines in every face.
+    """Cross the u lines with the v lines in every face.
 
     Parameters
     ----------

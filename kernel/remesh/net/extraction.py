@@ -1,5 +1,4 @@
-"""
-The net of a seamless map: lines become edges, their crossings nodes, the cells between faces.
+"""The net of a seamless map: lines become edges, their crossings nodes, cells faces.
 
 Every dart of the net has its cell on the left: the four that leave a node, the one that enters
 from each boundary point, and the one from each boundary point to the next along the boundary.
@@ -28,8 +27,7 @@ from .crossings import (
 
 
 class Net(NamedTuple):
-    """
-    Polygons between the lines of a map.
+    """Polygons between the lines of a map.
 
     Attributes
     ----------
@@ -63,16 +61,12 @@ class _Rim(NamedTuple):
 def extract_net(
     surface: CongruenceMesh, fans: VertexFans, frames: CombedFrames, mapped: Parametrization
 ) -> Net:
-    """
-    Trace the lines at whole numbers and a half, and the cells between them.
+    """Trace the lines at whole numbers and a half, and the cells between them.
 
     Parameters
     ----------
-    surface : CongruenceMesh
-    fans : Fans
     frames : CombedFrames
         Signs between the charts of neighbouring faces.
-    mapped : Parametrization
 
     Returns
     -------
@@ -113,8 +107,7 @@ def _wires(
     meetings: Meetings,
     is_mirrored: BoolArray,
 ) -> IntArray:
-    """
-    The other end of each wire: of the crossings on the boundary and the ports of the nodes.
+    """The other end of each wire: of the crossings on the boundary and the ports of the nodes.
 
     Ids are those of the crossings, then ``4 node + port``; ports 0 to 3 leave along u, v, -u,
     -v, counter-clockwise; -1 for crossings within the surface.

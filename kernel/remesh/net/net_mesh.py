@@ -23,13 +23,10 @@ SPREADS = 30
 
 
 class NetMesh(NamedTuple):
-    """
-    The mesh of a net.
+    """The mesh of a net.
 
     Attributes
     ----------
-    mesh : Mesh
-        Its cells as faces.
     is_node : (V,) bool array
         Vertices where two lines cross inside the surface.
     n_contracted : int
@@ -49,12 +46,10 @@ class NetMesh(NamedTuple):
 
 
 def net_mesh(net: Net, edge_length: float) -> NetMesh:
-    """
-    Build the mesh of a net.
+    """Build the mesh of a net.
 
     Parameters
     ----------
-    net : Net
     edge_length : float
         Length of a step of the net.
 
@@ -155,8 +150,7 @@ def _build(net: Net, merged: IntArray) -> NetMesh:
 
 
 def _spread(built: NetMesh, least: float) -> NetMesh:
-    """
-    Move nodes apart that are too near: lines crowd around singular points.
+    """Move nodes apart that are too near: lines crowd around singular points.
 
     Nodes at the ends of very short edges fall into one when they become planar.
     """
@@ -179,8 +173,7 @@ def _spread(built: NetMesh, least: float) -> NetMesh:
 
 
 def _without_bends(corners: IntArray, degrees: IntArray) -> tuple[IntArray, IntArray]:
-    """
-    Corners and degrees of faces, without vertices at which two faces share both edges.
+    """Corners and degrees of faces, without vertices at which two faces share both edges.
 
     Where slivers beside a node were lost, it only bends the edge of two faces. It stays if one
     of them has no corner to spare.

@@ -1,5 +1,4 @@
-"""
-Planarisation: nodes whose spheres share two points, so that beams have no torsion.
+"""Planarisation: nodes whose spheres share two points, so that beams have no torsion.
 
 Solved is a least-squares problem. A node is planar if the rows ``(a A, N)`` of its spheres,
 seen from it, have a common normal in R⁴. Unknowns are the rows of the spheres and, for each

@@ -1,5 +1,4 @@
-"""
-The conditions of planar nodes: unknowns, residuals and their derivatives, and where nodes lie.
+"""The conditions of planar nodes: unknowns, residuals, derivatives, and where nodes lie.
 
 Seen from its node, a sphere through the node is a row ``(A, N, 0)``: half its curvature and its
 normal there. The spheres around a node span a subspace of dimension 3 where their ``(a A, N)``
@@ -36,8 +35,7 @@ ALWAYS_PLANAR = 3
 
 
 class Misses(NamedTuple):
-    """
-    How far nodes are from where they shall be.
+    """How far nodes are from where they shall be.
 
     Attributes
     ----------
@@ -56,8 +54,7 @@ Site: TypeAlias = Callable[[FloatArray], Misses]
 
 
 def anywhere(shifts: FloatArray) -> Misses:
-    """
-    Let nodes be where they like: a `Site`.
+    """Let nodes be where they like: a `Site`.
 
     Parameters
     ----------
@@ -73,8 +70,7 @@ def anywhere(shifts: FloatArray) -> Misses:
 
 @dataclass(frozen=True)
 class NetState:
-    """
-    Values of the unknowns.
+    """Values of the unknowns.
 
     Attributes
     ----------
@@ -93,8 +89,7 @@ class NetState:
 
 @dataclass(frozen=True)
 class PlanarSystem:
-    """
-    What stays as it is while a sphere mesh is planarised.
+    """What stays as it is while a sphere mesh is planarised.
 
     Attributes
     ----------
@@ -125,8 +120,7 @@ class PlanarSystem:
 
 
 class Residuals(NamedTuple):
-    """
-    How far a net is from planar nodes.
+    """How far a net is from planar nodes.
 
     Attributes
     ----------
@@ -148,8 +142,7 @@ class Residuals(NamedTuple):
 
 
 class CornerJacobian(NamedTuple):
-    """
-    Derivatives of the residuals of the corners.
+    """Derivatives of the residuals of the corners.
 
     Attributes
     ----------
@@ -164,12 +157,7 @@ class CornerJacobian(NamedTuple):
 
 
 def planar_system(sphere_mesh: SphereMesh) -> PlanarSystem:
-    """
-    The problem of planarising a sphere mesh, in mean edges.
-
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
+    """The problem of planarising a sphere mesh, in mean edges.
 
     Returns
     -------
@@ -198,12 +186,7 @@ def planar_system(sphere_mesh: SphereMesh) -> PlanarSystem:
 
 
 def must_be_planar(mesh: Mesh) -> BoolArray:
-    """
-    Nodes whose beams need a common axis.
-
-    Parameters
-    ----------
-    mesh : Mesh
+    """Nodes whose beams need a common axis.
 
     Returns
     -------
@@ -216,13 +199,7 @@ def must_be_planar(mesh: Mesh) -> BoolArray:
 
 
 def planar_residuals(system: PlanarSystem, net: NetState) -> Residuals:
-    """
-    How far a net is from planar nodes.
-
-    Parameters
-    ----------
-    system : PlanarSystem
-    net : NetState
+    """How far a net is from planar nodes.
 
     Returns
     -------
@@ -241,13 +218,7 @@ def planar_residuals(system: PlanarSystem, net: NetState) -> Residuals:
 
 
 def energies(system: PlanarSystem, net: NetState) -> FloatArray:
-    """
-    Sums of the squared residuals.
-
-    Parameters
-    ----------
-    system : PlanarSystem
-    net : NetState
+    """Sums of the squared residuals.
 
     Returns
     -------
@@ -261,38 +232,19 @@ def energies(system: PlanarSystem, net: NetState) -> FloatArray:
 
 
 def move(net: NetState, step: FloatArray) -> NetState:
-    """
-    Move a net along a step.
+    """Move a net along a step.
 
     Parameters
     ----------
-    net : NetState
     step : (5 F + 7 V,) float array
         Changes of the rows, then of the shift and the normal of each node.
-
-    Returns
-    -------
-    NetState
-        Moved.
     """
     rows, shifts, common = split_step(step, len(net.rows))
     return NetState(net.rows + rows, net.shifts + shifts, net.normals + common)
 
 
 def corner_jacobian(system: PlanarSystem, net: NetState) -> CornerJacobian:
-    """
-    Derivatives of incidence and planarity.
-
-    Parameters
-    ----------
-    system : PlanarSystem
-    net : NetState
-
-    Returns
-    -------
-    CornerJacobian
-        Blocks of the corners.
-    """
+    """Derivatives of incidence and planarity: blocks of the corners."""
     rows, points, common = _at_corners(system, net)
     axes, arrows = common[:, 1:], normals(rows, points)
     by_face = np.zeros((len(rows), 2, FACE))
@@ -320,13 +272,11 @@ def _at_corners(
 
 
 def split_step(step: FloatArray, n_faces: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """
-    Parts of a step.
+    """Parts of a step.
 
     Parameters
     ----------
     step : (5 F + 7 V,) float array
-    n_faces : int
 
     Returns
     -------
@@ -338,12 +288,10 @@ def split_step(step: FloatArray, n_faces: int) -> tuple[FloatArray, FloatArray, 
 
 
 def on_surface(surface: SmoothSurface, mesh: Mesh, weights: FloatArray) -> Site:
-    """
-    Keep nodes on a smooth surface, and those of the boundary on its boundary.
+    """Keep nodes on a smooth surface, and those of the boundary on its boundary.
 
     Parameters
     ----------
-    surface : SmoothSurface
     mesh : Mesh
         The net at the start, in model coordinates; its boundary lies on that of the surface.
     weights : (V,) float array
@@ -372,12 +320,10 @@ def on_surface(surface: SmoothSurface, mesh: Mesh, weights: FloatArray) -> Site:
 
 
 def node_distances(surface: SmoothSurface, mesh: Mesh) -> FloatArray:
-    """
-    Distances of the nodes of a net from a smooth surface.
+    """Distances of the nodes of a net from a smooth surface.
 
     Parameters
     ----------
-    surface : SmoothSurface
     mesh : Mesh
         The net, in model coordinates.
 

@@ -1,5 +1,4 @@
-"""
-Landing: nodes that are nearly planar, as those of an optimised support, made so in place.
+"""Landing: nodes that are nearly planar, as those of an optimised support, made so in place.
 
 The plane of the circle of two spheres is as exact as they are, divided by their angle. Nodes
 cannot be made free of torsion through neighbours that meet at a millionth: to turn the plane
@@ -27,8 +26,7 @@ from .planarize import Planarization, is_kept, planarize
 
 
 def planarize_near(sphere_mesh: SphereMesh, farthest: float) -> tuple[Planarization, bool]:
-    """
-    Make nodes planar if that moves them by little.
+    """Make nodes planar if that moves them by little.
 
     Parameters
     ----------
@@ -65,12 +63,7 @@ def planarize_near(sphere_mesh: SphereMesh, farthest: float) -> tuple[Planarizat
 
 
 def turn_apart(sphere_mesh: SphereMesh) -> SphereMesh:
-    """
-    Let neighbours meet at a sensible angle where the axes of their edge's nodes are known.
-
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
+    """Let neighbours meet at a sensible angle where the axes of their edge's nodes are known.
 
     Returns
     -------

@@ -1,5 +1,4 @@
-"""
-What the spheres around a node have in common: planarity in P⁴, node axes, real common points.
+"""What the spheres around a node share: planarity in P⁴, node axes, real common points.
 
 Meshes with Spherical Faces, Prop. 4.2 and 4.3.
 """
@@ -18,8 +17,7 @@ from .conditions import must_be_planar
 
 @dataclass(frozen=True)
 class Nodes:
-    """
-    What the spheres around each node have in common.
+    """What the spheres around each node have in common.
 
     Attributes
     ----------
@@ -44,12 +42,7 @@ class Nodes:
 
 
 def measure_nodes(sphere_mesh: SphereMesh) -> Nodes:
-    """
-    Planarity, axes and reality of the nodes of a sphere mesh.
-
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
+    """Planarity, axes and reality of the nodes of a sphere mesh.
 
     Returns
     -------
@@ -95,13 +88,7 @@ def _form(first: FloatArray, second: FloatArray) -> FloatArray:
 
 
 def node_axis_angles(sphere_mesh: SphereMesh, nodes: Nodes) -> FloatArray:
-    """
-    Angles between the node axes and the normals of the mesh.
-
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
-    nodes : Nodes
+    """Angles between the node axes and the normals of the mesh.
 
     Returns
     -------

@@ -1,5 +1,4 @@
-"""
-Planarisation: sphere meshes whose nodes are free of torsion, where they are or on a surface.
+"""Planarisation: sphere meshes whose nodes are free of torsion, where they are or on a surface.
 
 Nothing but the conditions is minimised. There are about two of them less than unknowns for
 every face, and of all Gauss-Newton steps the damping picks the least one: what keeps a net near
@@ -58,8 +57,7 @@ FARTHEST = 0.75
 
 @dataclass(frozen=True)
 class Planarization:
-    """
-    A planarised sphere mesh and how it was reached.
+    """A planarised sphere mesh and how it was reached.
 
     Attributes
     ----------
@@ -69,8 +67,6 @@ class Planarization:
         How far each node moved, in mean edges.
     status : {"converged", "stalled", "exhausted"}
         How the descent ended; if it converged, nodes are planar as exactly as asked for.
-    iterations : int
-        Linear systems solved.
     """
 
     sphere_mesh: SphereMesh
@@ -86,8 +82,7 @@ def planarize(
     rim_weight: float = 1.0,
     exact: float = NODE_EXACT,
 ) -> Planarization:
-    """
-    Make the nodes of a sphere mesh planar in P⁴, and put them on their spheres.
+    """Make the nodes of a sphere mesh planar in P⁴, and put them on their spheres.
 
     Parameters
     ----------
@@ -183,12 +178,10 @@ def _assembled(system: PlanarSystem, net: NetState) -> SphereMesh:
 def planarize_held(
     sphere_mesh: SphereMesh, surface: SmoothSurface, fairness: float = 1.0
 ) -> tuple[Planarization, bool]:
-    """
-    Make nodes planar and keep them on a surface if the net stays a net.
+    """Make nodes planar and keep them on a surface if the net stays a net.
 
     Parameters
     ----------
-    sphere_mesh : SphereMesh
     surface : SmoothSurface
         The surface that the net was made on.
     fairness : float
@@ -226,18 +219,7 @@ def _is_held(before: Mesh, held: Planarization, surface: SmoothSurface) -> bool:
 
 
 def is_kept(before: Mesh, after: Mesh) -> bool:
-    """
-    Whether a net is still a net.
-
-    Parameters
-    ----------
-    before, after : Mesh
-
-    Returns
-    -------
-    bool
-        False if a face turned over or edges became too short.
-    """
+    """Whether a net is still a net: False if a face turned over or edges became too short."""
     turned = dot(face_vector_areas(before), face_vector_areas(after)) <= 0
     first, last = shortest_edge(before), shortest_edge(after)
     least = max(KEPT_EDGE * first, min(first, SHORT_EDGE * mean_edge_length(after)))

@@ -1,5 +1,4 @@
-"""
-Gauss-Newton steps towards planar nodes: the norm of the damping, the elimination of nodes.
+"""Gauss-Newton steps towards planar nodes: the norm of the damping, the elimination of nodes.
 
 A node is planar as well if two of its spheres are one, and two nodes of a short edge may become
 one point: such solutions draw all nets near them. So the norm of a step counts the change of
@@ -48,12 +47,10 @@ REFINEMENTS = 2
 
 @dataclass(frozen=True)
 class StepNorm:
-    """
-    What a norm of steps needs at every net.
+    """What a norm of steps needs at every net.
 
     Attributes
     ----------
-    system : PlanarSystem
     fairness : float
         Weight of the differences, relative to the spheres themselves.
     differences : (5 E, 5 F) sparse array
@@ -67,12 +64,10 @@ class StepNorm:
 
 
 def step_norm(system: PlanarSystem, fairness: float) -> StepNorm:
-    """
-    Norm of the steps of a planarisation.
+    """Norm of the steps of a planarisation.
 
     Parameters
     ----------
-    system : PlanarSystem
     fairness : float
         Weight of the differences between neighbouring spheres, relative to the spheres
         themselves.
@@ -120,8 +115,7 @@ def _sphere_metric(size: StepNorm, net: NetState) -> SparseArray:
 
 
 def _node_metric(size: StepNorm, net: NetState) -> FloatArray:
-    """
-    Factors (V,) of the squared steps of the nodes in their squared norm.
+    """Factors (V,) of the squared steps of the nodes in their squared norm.
 
     1, or the inverse square of the shortest edge if that is below the mean edge.
     """
@@ -138,13 +132,10 @@ def _node_metric(size: StepNorm, net: NetState) -> FloatArray:
 def linearize(
     system: PlanarSystem, net: NetState, size: StepNorm
 ) -> Callable[[float], DampedStep]:
-    """
-    Gauss-Newton steps from a net.
+    """Gauss-Newton steps from a net.
 
     Parameters
     ----------
-    system : PlanarSystem
-    net : NetState
     size : StepNorm
         The norm that the damping multiplies.
 

@@ -1,5 +1,4 @@
-"""
-Which way faces look, from the text of STEP files alone.
+"""Which way faces look, from the text of STEP files alone.
 
 OpenCASCADE turns loops and faces round when it reads a file, so it proves nothing here.
 """

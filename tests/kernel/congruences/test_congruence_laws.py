@@ -64,8 +64,7 @@ def principal_spheres(
 
 
 def ellipsoid_evolute(a: float, b: float) -> tuple[SphereJet, FloatArray]:
-    """
-    Principal spheres along the meridians of an ellipsoid of revolution, and its points.
+    """Principal spheres along the meridians of an ellipsoid of revolution, and its points.
 
     Their centres are the evolute of the meridian, turned about the axis.
     """

@@ -286,8 +286,7 @@ def test_law_e1_mirror_points_fit_if_and_only_if_the_centers_are_coplanar() -> N
 
 
 def ribaucour_patch(mesh: Mesh, seed: int) -> SphereMesh:
-    """
-    Spheres on a 3x3 circular net so that those around each inner vertex share two points.
+    """Spheres on a 3x3 circular net so that those around each inner vertex share two points.
 
     The first mirror point is free, the next two lie on the circles through it and an edge;
     the fourth is where the spheres around its vertex meet again.

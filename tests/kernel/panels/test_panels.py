@@ -259,8 +259,7 @@ def test_gaps_vanish_on_planes_and_mirror_pairs(nets: dict[str, Mesh], ball: Mes
 
 
 def test_plane_panels_among_curved_ones_are_cut_upright(nets: dict[str, Mesh]) -> None:
-    """
-    The circle in which a sphere meets a plane lies in that plane, which cannot cut itself.
+    """The circle in which a sphere meets a plane lies in that plane, which cannot cut itself.
 
     Enneper's net has plane panels on its diagonals: there the bisector takes over, with its
     small gap, and nothing is lost.

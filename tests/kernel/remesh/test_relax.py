@@ -43,8 +43,7 @@ def bump(n: int = 31) -> Mesh:
 
 
 def share_on_grid(spheres: FloatArray) -> float:
-    """
-    Share of the vertices of a square grid at which the conjugate form has no real roots.
+    """Share of the vertices of a square grid at which the conjugate form has no real roots.
 
     The form by differences along the grid, whose lines are parameter lines.
     """

@@ -201,8 +201,7 @@ def test_law_d3_torus(
     minor: float,
     assert_spheres_close: Callable[..., None],
 ) -> None:
-    """
-    Constant radius in one direction, centres on the axis in the other; planes on top.
+    """Constant radius in one direction, centres on the axis in the other; planes on top.
 
     Across a parallel the centres lie on the polygon around the core circle; along one, all
     faces lie on one sphere, where cos v = 0 a plane.
@@ -378,8 +377,7 @@ def square_with_arms(folds: list[float]) -> Mesh:
 
 @pytest.mark.parametrize("folds", [[2.0, 2.0, -2.5, -2.5], [2.0, -2.5, 2.0, -2.5]])
 def test_law_d3_d4_sharp_folds_to_both_sides(folds: list[float]) -> None:
-    """
-    Spheres more than a right angle apart: the bisector of the smaller angle turns N over.
+    """Spheres more than a right angle apart: the bisector of the smaller angle turns N over.
 
     Between unit squares folded by a the edge sphere has ``sin t = √2 s / √(1 + s²)``, where
     ``s = sin (a / 2)``.

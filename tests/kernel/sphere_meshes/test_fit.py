@@ -102,8 +102,7 @@ def test_law_d6_exact_on_planes(ring: int, assert_spheres_close: Callable[..., N
 def test_law_d6_a_fit_loses_no_more_digits_than_its_corners(
     radius: float, roughness: float
 ) -> None:
-    """
-    Four corners tell their sphere by how far they miss a common circle.
+    """Four corners tell their sphere by how far they miss a common circle.
 
     The error is the rounding over this miss, not over its square.
     """

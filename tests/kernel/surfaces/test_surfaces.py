@@ -127,8 +127,7 @@ def test_boundaries() -> None:
 
 @pytest.mark.parametrize("n", [3, 8, 15])
 def test_law_enneper_net_is_minimal(n: int) -> None:
-    """
-    Christoffel dual of its Gauss image: edges parallel, lengths inverse, signs alternating.
+    """Christoffel dual of its Gauss image: edges parallel, lengths inverse, signs alternating.
 
     Then offsets along the Gauss image change areas only to second order: mean curvature zero.
     """

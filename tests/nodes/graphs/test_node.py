@@ -13,8 +13,7 @@ from spheremesh.nodes.graphs.ports import REQUIRED
 
 
 class Circle(NamedTuple):
-    """
-    A circle.
+    """A circle.
 
     Attributes
     ----------
@@ -35,8 +34,7 @@ def fit_circle(
     out: WritePath = "out.txt",
     units: Units = "m",
 ) -> Circle:
-    """
-    Fit a circle.
+    """Fit a circle.
 
     More about it.
 
@@ -112,8 +110,7 @@ def test_outputs_are_described_by_the_record_too() -> None:
 
 def test_one_output_is_called_result() -> None:
     def half(a: float) -> float:
-        """
-        Half of it.
+        """Half of it.
 
         Returns
         -------
