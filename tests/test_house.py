@@ -22,14 +22,12 @@ SHARED_NAMES: dict[str, str] = {}
 """Other names that two modules may give, with the reason; five at most."""
 
 LONG_FILES = {
-    "kernel/panels/cutting.py",
-    "kernel/panels/panels.py",
     "kernel/remesh/planar/conditions.py",
     "nodes/graphs/graph.py",
 }
 NO_PLATE = {"fabrication", "interfaces", "nodes/graphs", "viewer"}
 LONG_FUNCTIONS: set[str] = set()
-TWICE = {"kernel": {"NODE", "cut_edges"}, "fabrication": {"LAYERS"}}
+TWICE: dict[str, set[str]] = {"kernel": set(), "fabrication": set()}
 """What is still to be mended."""
 
 

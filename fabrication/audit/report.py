@@ -1,12 +1,13 @@
 """The audit before files go out: whatever would trouble a workshop, found and numbered."""
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
 
 import numpy as np
 
 from ...kernel.beams.beams import Beams
 from ...kernel.panels.panels import Panels
-from ...kernel.parts.findings import Finding, refusals, repeated_names
+from ...kernel.parts.findings import Finding
 from ...kernel.parts.records import finite_parts
 from ..model import Model
 from ..units import millimeters_per
@@ -55,7 +56,11 @@ def audit_model(
         If the units are not known.
     """
     millimeters_per(model.units)
-    findings = sorted(refusals(rejected), key=lambda finding: finding.code[1:])
+    findings = [
+        Finding(part["code"], part["id"], f"cannot be made: {part['reason']}")
+        for part in rejected
+    ]
+    findings.sort(key=lambda finding: finding.code[1:])
     if model.panels is not None:
         found = _unusable(model.panels, "P", "panels")
         findings += found
@@ -74,6 +79,10 @@ def _unusable(parts: Panels | Beams, letter: str, kind: str) -> list[Finding]:
     broken = np.flatnonzero(~finite_parts(parts)).tolist()
     message = "has numbers that are not finite"
     return [
-        *repeated_names(parts.ids, f"{letter}001", kind),
+        *(
+            Finding(f"{letter}001", name, f"{count} {kind} have this name", float(count))
+            for name, count in Counter(parts.ids).items()
+            if count > 1
+        ),
         *(Finding(f"{letter}002", parts.ids[i], message) for i in broken),
     ]

@@ -4,10 +4,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final, Generic, TypeVar
 
+import numpy as np
+
 from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.beams.beams import Beams
 from ...kernel.panels.panels import Panels
-from ...kernel.parts.findings import Finding, Severity, findings_where
+from ...kernel.parts.findings import Finding, Severity
 
 
 @dataclass(frozen=True)
@@ -83,12 +85,15 @@ class Subject(Generic[PartsT, FactsT]):
         message: str,
         severity: Severity = "note",
     ) -> list[Finding]:
-        """The findings of one check, see `findings_where`.
+        """The findings of one check.
 
         Parameters
         ----------
         sizes : (n,) float array
+            How much was found on each part.
         is_found : (n,) bool array
+        message : str
+            What is wrong, with a field for the size.
         severity : {"error", "note"}
 
         Returns
@@ -96,7 +101,12 @@ class Subject(Generic[PartsT, FactsT]):
         list of Finding
             In the order of the parts.
         """
-        return findings_where(self.parts.ids, code, sizes, is_found, message, severity)
+        ids = self.parts.ids
+        values: list[float] = sizes.tolist()
+        return [
+            Finding(code, ids[i], message.format(values[i]), values[i], severity)
+            for i in np.flatnonzero(is_found).tolist()
+        ]
 
 
 def warning_texts(findings: Iterable[Finding]) -> dict[str, str]:

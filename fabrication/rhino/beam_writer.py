@@ -21,7 +21,7 @@ from ...kernel.beams.facts import beam_facts
 from ...kernel.beams.node_cylinders import NodeCylinders, node_cylinders
 from ...kernel.beams.triangles import beam_triangles, cylinder_triangles
 from ...kernel.errors import InputError
-from ...kernel.parts.colors import AXIS, BEAM, NODE
+from ...kernel.parts.colors import AXIS_COLOR, BEAM_COLOR, NODE_COLOR
 from ...kernel.spheres.arcs import ArcCircles, Arcs, arc_circles
 from ...kernel.support.node_axes import node_name
 from ..opennurbs.render_meshes import (
@@ -46,7 +46,7 @@ def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: boo
     render_meshes : bool
         Whether the extrusions carry triangles for viewers that cannot mesh them.
     """
-    place = add_layer(model, "Beams", BEAM, has_material=True)
+    place = add_layer(model, "Beams", BEAM_COLOR, has_material=True)
     solids, texts = _beam_extrusions(model.library, beams), _beam_text(beams, units)
     if render_meshes and solids:
         error = MESH_TOLERANCE * float(beam_lengths(beams).min()) / 2
@@ -57,12 +57,12 @@ def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: boo
         for key, value in text.items():
             attributes.SetUserString(key, value)
         model.file.Objects.AddExtrusion(solid, attributes)
-    place = add_layer(model, "Axes", AXIS)
+    place = add_layer(model, "Axes", AXIS_COLOR)
     for name, line in _axis_lines(model.library, beams):
         model.file.Objects.AddCurve(line, object_attributes(model, name, "axis", place))
     cylinders = node_cylinders(beams)
     if cylinders.n_nodes:
-        place = add_layer(model, "Nodes", NODE, has_material=True)
+        place = add_layer(model, "Nodes", NODE_COLOR, has_material=True)
         solids = _cylinder_extrusions(model.library, cylinders)
         if render_meshes:
             error = MESH_TOLERANCE * cylinders.radius
@@ -75,7 +75,7 @@ def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: boo
             attributes = object_attributes(model, name, "node", place)
             model.file.Objects.AddExtrusion(solid, attributes)
     if beams.marks is not None:
-        place = add_layer(model, "Drilling", AXIS)
+        place = add_layer(model, "Drilling", AXIS_COLOR)
         for name, number, circle in _mark_circles(model.library, beams, beams.marks):
             attributes = object_attributes(model, name, f"mark {number}", place)
             model.file.Objects.AddCurve(circle, attributes)

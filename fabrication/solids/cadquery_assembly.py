@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from ...kernel.beams.beams import Beams
 from ...kernel.errors import MissingLibraryError
 from ...kernel.panels.panels import Panels
-from ...kernel.parts.colors import BEAM, Color, mould_color
+from ...kernel.parts.colors import BEAM_COLOR, Color, mould_color
 from ..units import millimeters_per
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def beams_to_cadquery(beams: Beams, units: str = "m") -> "cadquery.Assembly":
         from .opencascade_beams import beam_shapes
     assembly = cadquery.Assembly(name="Beams")
     for shape, name in zip(beam_shapes(beams, scale), beams.annuli.ids, strict=True):
-        _add(assembly, cadquery.Solid(shape), name, BEAM)
+        _add(assembly, cadquery.Solid(shape), name, BEAM_COLOR)
     return assembly
 
 

@@ -14,7 +14,14 @@ from ...kernel.beams.node_cylinders import node_cylinders
 from ...kernel.errors import InputError
 from ...kernel.panels.congruent import congruent_panels
 from ...kernel.panels.panels import Panels
-from ...kernel.parts.colors import AXIS, BEAM, NODE, Color, mould_color, mould_name
+from ...kernel.parts.colors import (
+    AXIS_COLOR,
+    BEAM_COLOR,
+    NODE_COLOR,
+    Color,
+    mould_color,
+    mould_name,
+)
 from ..files import check_suffix, check_target, replacing
 from ..model import Model, Written, check_model
 from ..solids.beam_geometry import beam_geometry
@@ -161,7 +168,7 @@ def _beam_parts(beams: Beams, scale: float, confusion: float) -> list[Part]:
     numbers = beam_geometry(scale_beams(beams, scale), confusion)
     tolerances = _file_tolerances(numbers.tolerances, confusion)
     return [
-        Part(body, name, "Beams", BEAM, tolerance, (Instance(name, tuple(place)),))
+        Part(body, name, "Beams", BEAM_COLOR, tolerance, (Instance(name, tuple(place)),))
         for body, name, tolerance, place in zip(
             beam_bodies(numbers), beams.annuli.ids, tolerances, numbers.places.tolist(),
             strict=True,
@@ -180,7 +187,7 @@ def _support_parts(beams: Beams, scale: float, confusion: float) -> list[Group |
             found.origins - places, found.directions, found.heights, found.radius
         )
         nodes = [
-            Part(body, name, "Nodes", NODE, confusion, (Instance(name, tuple(place)),))
+            Part(body, name, "Nodes", NODE_COLOR, confusion, (Instance(name, tuple(place)),))
             for body, name, place in zip(made, found.ids, places.tolist(), strict=True)
         ]
         groups.append(Group("Nodes", nodes))
@@ -188,7 +195,7 @@ def _support_parts(beams: Beams, scale: float, confusion: float) -> list[Group |
     place = rounded_origins(segments[:1, 0])
     axes = line_body(segments - place)
     here = (Instance("Axes", tuple(place[0].tolist())),)
-    return [*groups, Part(axes, "Axes", "Axes", AXIS, confusion, here)]
+    return [*groups, Part(axes, "Axes", "Axes", AXIS_COLOR, confusion, here)]
 
 
 def _file_tolerances(tolerances: FloatArray, confusion: float) -> list[float]:

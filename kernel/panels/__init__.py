@@ -9,7 +9,6 @@ mould_blanks  Mould blanks: the smallest cap that holds each panel, and how many
               size.
 mould_caps    Moulds as surfaces: the cap of each, and where the panels lie on it.
 panels        Panels: pieces of spheres cut out by planes, exact each in itself.
-reports       Reports of panels and of the blanks of their moulds.
 tessellation  Triangles for pictures and viewers: points and normals exact, only the faces
               between flat.
 thickness     The two faces of a panel with a thickness: spheres concentric with its own.

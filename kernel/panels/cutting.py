@@ -4,8 +4,8 @@ Neighbours share their cutting plane; their two arcs in it may differ by a gap, 
 measured here. What cannot be made is listed with its reason.
 """
 
-from dataclasses import dataclass, replace
-from typing import Literal, get_args
+from dataclasses import replace
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..errors import InputError
 from ..meshes.mesh import face_centroids, face_normals, local_corners, mean_edge_length
 from ..meshes.topology import Topology
-from ..parts.records import RejectedPart, reject_parts
+from ..parts.records import RejectedPart, part_ids, reject_parts
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.arcs import Arcs, sphere_arcs
 from ..spheres.incidence import evaluate, meet_lines
@@ -21,7 +21,7 @@ from ..spheres.minkowski import angle
 from ..spheres.rows import recenter
 from ..tolerances import PLANE_SAGITTA, SAME_PLANE
 from .checks import NO_PANEL, Found, rejection_reasons
-from .panels import Panels, corner_points, panel_ids
+from .panels import Panels, corner_points
 from .thickness import ThicknessRule, ThicknessSide, panel_faces
 
 EdgeMode = Literal["bisector", "intersection"]
@@ -112,24 +112,8 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
     return plane_normals, plane_offsets
 
 
-@dataclass(frozen=True)
-class EdgeCuts:
-    """A sphere mesh and the planes that cut its edges.
-
-    Attributes
-    ----------
-    sphere_mesh : SphereMesh
-        The sphere mesh, its nearly plane faces flattened.
-    plane_normals : (H, 3) float array
-        Unit normals that point into the face of their corner.
-    plane_offsets : (H,) float array
-        Offsets of ``n·x = d`` in the coordinates local to the face.
-    corners : (H, 3) float array
-        Where each sphere meets the planes of two consecutive edges, local; the vertex of the
-        mesh where it does not.
-    exists : (H,) bool array
-        Whether it does.
-    """
+class _EdgeCuts(NamedTuple):
+    """A mesh, nearly plane faces flattened, its cutting planes, and corners, if they exist."""
 
     sphere_mesh: SphereMesh
     plane_normals: FloatArray
@@ -138,16 +122,8 @@ class EdgeCuts:
     exists: BoolArray
 
 
-def cut_edges(sphere_mesh: SphereMesh, edges: EdgeMode, joint_gap: float = 0.0) -> EdgeCuts:
-    """Cut the spheres of a mesh along its edges.
-
-    Parameters
-    ----------
-    edges : {"bisector", "intersection"}
-        In which planes, see `cutting_planes`.
-    joint_gap : float
-        Width of the joints: every plane moves into its face by half of it.
-    """
+def _cut_edges(sphere_mesh: SphereMesh, edges: EdgeMode, joint_gap: float = 0.0) -> _EdgeCuts:
+    """Cut the spheres along the edges; planes move into their faces by half of the gap."""
     sphere_mesh = flatten_nearly_plane(sphere_mesh)
     mesh = sphere_mesh.mesh
     plane_normals, plane_offsets = cutting_planes(sphere_mesh, edges)
@@ -156,7 +132,7 @@ def cut_edges(sphere_mesh: SphereMesh, edges: EdgeMode, joint_gap: float = 0.0) 
     corners, exists = corner_points(
         rows, plane_normals, plane_offsets, mesh.offsets, local_corners(mesh)
     )
-    return EdgeCuts(sphere_mesh, plane_normals, plane_offsets, corners, exists)
+    return _EdgeCuts(sphere_mesh, plane_normals, plane_offsets, corners, exists)
 
 
 def edge_arcs(sphere_mesh: SphereMesh, edges: EdgeMode) -> Arcs:
@@ -177,7 +153,7 @@ def edge_arcs(sphere_mesh: SphereMesh, edges: EdgeMode) -> Arcs:
     ----------
     Meshes with Spherical Faces, Fig. 26 (a), (c) and (d).
     """
-    cuts = cut_edges(sphere_mesh, edges)
+    cuts = _cut_edges(sphere_mesh, edges)
     mesh = cuts.sphere_mesh.mesh
     faces, following = mesh.topology.corner_faces, mesh.topology.next_corners
     rows = cuts.sphere_mesh.local_spheres[faces]
@@ -204,7 +180,7 @@ def edge_gaps(sphere_mesh: SphereMesh, edges: EdgeMode) -> FloatArray:
     ----------
     Meshes with Spherical Faces, Fig. 26 (d).
     """
-    cuts = cut_edges(sphere_mesh, edges)
+    cuts = _cut_edges(sphere_mesh, edges)
     mesh = cuts.sphere_mesh.mesh
     topology, starts = mesh.topology, local_corners(mesh)
     ends = starts[topology.next_corners]
@@ -301,7 +277,7 @@ def cut_panels(
         edges=(edges, EdgeMode), side=(side, ThicknessSide), layer=(layer, ThicknessRule)
     )
     _check_sizes(sphere_mesh.mesh.n_faces, thickness, joint_gap, labels)
-    cuts = cut_edges(sphere_mesh, edges, joint_gap)
+    cuts = _cut_edges(sphere_mesh, edges, joint_gap)
     mesh, topology = cuts.sphere_mesh.mesh, cuts.sphere_mesh.mesh.topology
     rows = cuts.sphere_mesh.local_spheres
     sides = panel_faces(rows, thickness, side, layer)
@@ -312,7 +288,7 @@ def cut_panels(
         sides.inner_spheres[faces], *planes, cuts.corners
     )
     panels = Panels(
-        ids=panel_ids(mesh.n_faces),
+        ids=part_ids("P", mesh.n_faces),
         face_ids=np.arange(mesh.n_faces),
         labels=np.full(mesh.n_faces, -1) if labels is None else np.asarray(labels, np.int64),
         origins=face_centroids(mesh),

@@ -190,18 +190,6 @@ def corner_points(
     return np.where(exists[:, None], points, references), exists
 
 
-def panel_ids(n_faces: int) -> tuple[str, ...]:
-    """Stable names of the panels of a mesh.
-
-    Returns
-    -------
-    tuple of str
-        ``P0000``, ``P0001``, ... with as many digits as the last needs, at least four.
-    """
-    width = max(4, len(str(n_faces - 1)))
-    return tuple(f"P{face:0{width}d}" for face in range(n_faces))
-
-
 def opposite_corners(panels: Panels) -> IntArray:
     """The other panel's side of each edge.
 

@@ -8,13 +8,13 @@ Color: TypeAlias = tuple[int, int, int]
 UNLABELLED: Final[Color] = (178, 182, 187)
 """Light grey of panels that belong to no mould."""
 
-BEAM: Final[Color] = (112, 92, 74)
+BEAM_COLOR: Final[Color] = (112, 92, 74)
 """Brown of beams, which no mould has."""
 
-NODE: Final[Color] = (84, 88, 94)
+NODE_COLOR: Final[Color] = (84, 88, 94)
 """Dark grey of node cylinders."""
 
-AXIS: Final[Color] = (24, 24, 24)
+AXIS_COLOR: Final[Color] = (24, 24, 24)
 """Nearly black, of lines."""
 
 _HUES: Final = (4.45, 1.1)  # radians: from blue over green to sand

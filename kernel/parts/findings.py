@@ -1,14 +1,10 @@
 """Findings: what checks say of parts, numbered, for people and programs to sort."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-import numpy as np
-
-from ..arrays import BoolArray, FloatArray
-from ..reports import Report
 from .records import RejectedPart
 
 Severity = Literal["error", "note"]
@@ -44,101 +40,7 @@ def rejected_report(rejected: Iterable[RejectedPart]) -> list[dict[str, str]]:
     return [{"id": part.id, "code": part.code, "reason": part.reason} for part in rejected]
 
 
-def refusals(rejected: Iterable[Mapping[str, str]]) -> list[Finding]:
-    """Parts that cannot be made as findings.
-
-    Parameters
-    ----------
-    rejected : iterable of mapping
-        Plain values, as `rejected_report` gives them.
-
-    Returns
-    -------
-    list of Finding
-        An error for each.
-    """
-    return [
-        Finding(part["code"], part["id"], f"cannot be made: {part['reason']}")
-        for part in rejected
-    ]
-
-
-def repeated_names(ids: Iterable[str], code: str, kind: str) -> list[Finding]:
-    """Names that several parts have.
-
-    Parameters
-    ----------
-    code : str
-        Code of the findings.
-    kind : str
-        What the parts are, as a plural.
-
-    Returns
-    -------
-    list of Finding
-        An error for each such name.
-    """
-    return [
-        Finding(code, name, f"{count} {kind} have this name", float(count))
-        for name, count in Counter(ids).items()
-        if count > 1
-    ]
-
-
-def findings_where(
-    ids: Sequence[str],
-    code: str,
-    sizes: FloatArray,
-    is_found: BoolArray,
-    message: str,
-    severity: Severity = "note",
-) -> list[Finding]:
-    """The findings of one check.
-
-    Parameters
-    ----------
-    ids : sequence of str
-        Names of n parts.
-    code : str
-        Number of the check.
-    sizes : (n,) float array
-        How much was found on each.
-    is_found : (n,) bool array
-        Which parts have the finding.
-    message : str
-        What is wrong, with a field for the size.
-    severity : {"error", "note"}
-        What the findings are.
-
-    Returns
-    -------
-    list of Finding
-        In the order of the parts.
-    """
-    return [
-        Finding(code, ids[i], message.format(float(sizes[i])), float(sizes[i]), severity)
-        for i in np.flatnonzero(is_found).tolist()
-    ]
-
-
-@dataclass(frozen=True, eq=False)
-class AuditReport(Report):
-    """Findings.
-
-    Attributes
-    ----------
-    counts : dict
-        Number of findings by code.
-    errors, notes : list of dict
-        ``code``, ``id``, ``message`` and ``size`` of each.
-    """
-
-    counts: dict[str, int]
-    errors: list[dict[str, Any]]
-    notes: list[dict[str, Any]]
-
-
-def findings_report(findings: Sequence[Finding]) -> AuditReport:
+def findings_report(findings: Sequence[Finding]) -> dict[str, Any]:
     """Findings as plain values.
 
     Parameters
@@ -147,15 +49,15 @@ def findings_report(findings: Sequence[Finding]) -> AuditReport:
 
     Returns
     -------
-    AuditReport
-        Sorted by code, errors and notes in the order of the findings.
+    dict
+        ``counts`` by code, ``errors`` and ``notes``: lists of code, id, message and size.
     """
     counts = Counter(finding.code for finding in findings)
-    return AuditReport(
-        counts=dict(sorted(counts.items())),
-        errors=_plain(finding for finding in findings if finding.severity == "error"),
-        notes=_plain(finding for finding in findings if finding.severity == "note"),
-    )
+    return {
+        "counts": dict(sorted(counts.items())),
+        "errors": _plain(finding for finding in findings if finding.severity == "error"),
+        "notes": _plain(finding for finding in findings if finding.severity == "note"),
+    }
 
 
 def _plain(findings: Iterable[Finding]) -> list[dict[str, Any]]:

@@ -61,6 +61,28 @@ class RejectedPart:
     code: str
 
 
+def part_ids(letter: str, count: int) -> tuple[str, ...]:
+    """Stable names of the parts of a mesh, one per face or edge.
+
+    Parameters
+    ----------
+    letter : str
+        ``P`` for panels, ``B`` for beams.
+
+    Returns
+    -------
+    tuple of str
+        The letter and a number, with as many digits as the last needs, at least four.
+
+    Examples
+    --------
+    >>> part_ids("B", 2)
+    ('B0000', 'B0001')
+    """
+    width = max(4, len(str(count - 1)))
+    return tuple(f"{letter}{number:0{width}d}" for number in range(count))
+
+
 def select_parts(parts: PartsT, keep: BoolArray) -> PartsT:
     """Some of the parts, in the same order.
 

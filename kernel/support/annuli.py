@@ -86,28 +86,6 @@ class Annuli:
         return len(self.edge_ids)
 
 
-def beam_ids(n_edges: int) -> tuple[str, ...]:
-    """Stable names of the beams of a mesh.
-
-    Parameters
-    ----------
-    n_edges : int
-        Number of edges, those of the boundary included.
-
-    Returns
-    -------
-    tuple of str
-        ``B0000``, ``B0001``, ... with as many digits as the last needs, at least four.
-
-    Examples
-    --------
-    >>> beam_ids(2)
-    ('B0000', 'B0001')
-    """
-    width = max(4, len(str(n_edges - 1)))
-    return tuple(f"B{edge:0{width}d}" for edge in range(n_edges))
-
-
 def corner_mismatch(annuli: Annuli) -> FloatArray:
     """How far the ends of the annuli that meet at a node are apart.
 

@@ -13,9 +13,8 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..errors import InputError
 from ..meshes.mesh import Mesh, face_centroids, face_normals, local_corners, mean_edge_length
 from ..panels.cutting import flatten_nearly_plane
-from ..panels.panels import panel_ids
 from ..parts.findings import rejected_report
-from ..parts.records import RejectedPart, reject_parts
+from ..parts.records import RejectedPart, part_ids, reject_parts
 from ..reports import Report
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.incidence import evaluate, meet_lines, normals
@@ -24,7 +23,6 @@ from ..spheres.rows import recenter
 from ..tolerances import BEAM_TILT, DEGENERATE
 from .annuli import (
     Annuli,
-    beam_ids,
     corner_mismatch,
     end_depths,
     twist_angles,
@@ -187,7 +185,7 @@ def _outer_annuli(
     across = np.where(is_interior[:, None], across, left[:, 1:4])
     edge_faces = np.where(is_interior[:, None], faces, faces * [1, 0] - [0, 1])
     annuli = Annuli(
-        beam_ids(len(first)), np.arange(len(first)), vertices, edge_faces,
+        part_ids("B", len(first)), np.arange(len(first)), vertices, edge_faces,
         _panel_ids_beside(edge_faces, mesh.n_faces), origins,
         np.stack([x, np.cross(z, x), z], 1), outer, outer,
         np.stack([tops, tops], 2), directions, axes,
@@ -200,7 +198,7 @@ def _panel_ids_beside(
     edge_faces: IntArray, n_faces: int
 ) -> tuple[tuple[str | None, str | None], ...]:
     """Names of the panels beside edges."""
-    names = (*panel_ids(n_faces), None)  # -1, beyond the boundary, is the last
+    names = (*part_ids("P", n_faces), None)  # -1, beyond the boundary, is the last
     sides: list[list[int]] = edge_faces.tolist()
     return tuple((names[left], names[right]) for left, right in sides)
 

@@ -2,8 +2,8 @@
 
 analyse     Numbers that tell how good a sphere mesh is.
 arrays      Types of the arrays that go by wire.
-cluster     Few moulds for many panels.
-congruence  Spheres at vertices and edges of a surface, and the surfaces that they envelop.
+cluster     Few moulds for many panels, and their blanks.
+congruence  Spheres at the vertices of a surface, and the surfaces that they envelop.
 fabricate   Panels, and the files that fabricators open.
 input       Meshes to start from: read from files, or exactly circular nets.
 meshing     Other meshes of the same shape: triangulated, subdivided, remeshed.
@@ -14,5 +14,5 @@ remesh      Nets of spheres with a support structure, along conjugate directions
 shex        Hexagonal sphere meshes: spheres that touch a triangulation.
 spheres     A sphere for every face to start from, and spheres and planes one by one.
 support     Nodes and beams that carry the panels.
-workshop    Blanks, identical panels, findings, the report.
+workshop    Identical panels, findings, the report, solids.
 """

@@ -6,6 +6,7 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 
 from ...kernel import analysis
+from ...kernel.arrays import FloatArray
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.panels import cutting
 from ...kernel.reports import Report
@@ -13,11 +14,20 @@ from ...kernel.sphere_meshes import planarity_circularity as flatness
 from ...kernel.sphere_meshes import sphere_mesh as measures
 from ...kernel.sphere_meshes.fit import face_planes
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
+from ...kernel.spheres import incidence
 from ...kernel.spheres.arcs import Arcs
 from ...kernel.support import beam_tilt as tilt
 from ..graphs.node import node
 from ..graphs.ports import Port
-from .arrays import EdgeAngles, EdgeDistances, FaceDistances, FaceMarks, VertexDistances
+from .arrays import (
+    EdgeAngles,
+    EdgeDistances,
+    FaceDistances,
+    FaceMarks,
+    Points,
+    Spheres,
+    VertexDistances,
+)
 
 
 @node
@@ -278,3 +288,29 @@ def edge_arcs(
 
 def _mesh(source: SphereMesh | Mesh) -> Mesh:
     return source.mesh if isinstance(source, SphereMesh) else source
+
+
+@node
+def signed_distance(spheres: Spheres, points: Points) -> FloatArray:
+    """Distances of points from spheres and planes.
+
+    Parameters
+    ----------
+    spheres : (N, 5) float array
+        Unit rows.
+    points : (N, 3) float array
+        One for each sphere.
+
+    Returns
+    -------
+    (N,) float array
+        Positive on the side to which the normal of the sphere points.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import sphere_rows
+    >>> ball = sphere_rows(np.zeros((1, 3)), 2.0)
+    >>> signed_distance(ball, np.array([[0.0, 0.0, 5.0]])).tolist()
+    [-3.0]
+    """
+    return incidence.signed_distance(spheres, points)

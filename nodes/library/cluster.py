@@ -1,17 +1,20 @@
-"""Few moulds for many panels."""
+"""Few moulds for many panels, and their blanks."""
 
 from dataclasses import dataclass
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
 from ...kernel.analysis import angle_summary
 from ...kernel.optimization import clustering
+from ...kernel.panels import congruent
+from ...kernel.panels import mould_blanks as blanks
+from ...kernel.panels.panels import Panels
 from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.tolerances import COMMON_VERTEX
 from ..graphs.node import node, warn
-from ..graphs.ports import Port
+from ..graphs.ports import Length, Port
 from .arrays import FaceLabels, MouldRadii
 
 
@@ -128,3 +131,65 @@ def cluster_radii(
         vertex_move=move,
     )
     return Clusters(result, clusters.labels, clusters.radii, report)
+
+
+@dataclass(frozen=True, eq=False)
+class BlanksReport(Report):
+    """Blanks that the moulds must give, lengths in model units.
+
+    Attributes
+    ----------
+    blanks : list of dict
+        ``mould`` (from 1), ``radius`` (None for a flat mould), ``diameter`` (of the rim, as a
+        chord), ``sagitta``, ``opening_deg``, ``count`` and ``shapes`` (different panels among
+        them).
+    without_mould : int
+        Panels that belong to none.
+    """
+
+    blanks: list[dict[str, Any]]
+    without_mould: int
+
+
+@node
+def mould_blanks(panels: Panels, size_step: Length = 0.0) -> BlanksReport:
+    """Count the blanks that every mould must give, and how large they are.
+
+    Parameters
+    ----------
+    panels : Panels
+        The panels, with moulds.
+    size_step : float
+        Blanks come in diameters that are multiples of this length, in model units; 0 for one
+        size per mould, that of its largest panel.
+
+    Returns
+    -------
+    BlanksReport
+        Size and number of the blanks of each mould.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import cluster_radii, fit_spheres, mould_blanks, panels, vase_mesh
+    >>> moulds = cluster_radii(fit_spheres(vase_mesh(12, 6)), k=2, relax=False)
+    >>> made = panels(moulds.sphere_mesh, thickness=0.02, labels=moulds.labels)
+    >>> [(row["count"], row["shapes"]) for row in mould_blanks(made.panels)["blanks"]]
+    [(48, 4), (24, 2)]
+    """
+    found = blanks.mould_blanks(panels, congruent.congruent_panels(panels), size_step)
+    without = int((panels.labels < 0).sum())
+    if without:
+        warn(f"{without} of {panels.n_panels} panels belong to no mould and need no blank")
+    rows = [
+        {
+            "mould": int(found.labels[i]) + 1,
+            "radius": float(found.radii[i]) if np.isfinite(found.radii[i]) else None,
+            "diameter": float(found.diameters[i]),
+            "sagitta": float(found.sagittas[i]),
+            "opening_deg": float(np.degrees(found.openings[i])),
+            "count": int(found.counts[i]),
+            "shapes": int(found.shapes[i]),
+        }
+        for i in range(len(found.labels))
+    ]
+    return BlanksReport(rows, without)

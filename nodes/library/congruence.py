@@ -1,4 +1,4 @@
-"""Spheres at vertices and edges of a surface, and the surfaces that such spheres envelop."""
+"""Spheres at the vertices of a surface, and the surfaces that such spheres envelop."""
 
 from typing import Literal, NamedTuple
 
@@ -13,14 +13,11 @@ from ...kernel.congruences.smooth_envelopes import (
     envelope_points,
     has_real_envelopes,
 )
-from ...kernel.meshes.mesh import Mesh, edge_middles, mean_edge_length
-from ...kernel.sphere_meshes import central_spheres as central
+from ...kernel.meshes.mesh import Mesh, mean_edge_length
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
-from ...kernel.spheres.rows import recenter
 from ...kernel.tolerances import VERTEX_MISS
 from ..graphs.node import node, warn
 from .arrays import (
-    EdgeSpheres,
     FaceDistances,
     FaceMarks,
     FacePoints,
@@ -111,31 +108,6 @@ def sphere_congruence(
             "curvature, and get their tangent plane: refine the mesh there"
         )
     return spheres
-
-
-@node
-def edge_spheres(mesh: Mesh) -> EdgeSpheres:
-    """Spheres of the edges of a circular mesh: through the circles of both faces.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        Every face needs a circumcircle.
-
-    Returns
-    -------
-    (E, 5) float array
-        Rows over the interior edges, whose normals agree with the first face of each. Opposite
-        ones of a quad are bisected by its principal spheres.
-
-    Examples
-    --------
-    >>> from spheremesh.nodes import sphere_facts, torus_mesh
-    >>> spheres = edge_spheres(torus_mesh(12, 6, major_radius=3.0))
-    >>> len(spheres), set(sphere_facts(spheres).kinds.tolist())
-    (144, {'sphere'})
-    """
-    return recenter(central.edge_spheres(mesh), -edge_middles(mesh))
 
 
 @node

@@ -1,5 +1,6 @@
 """Panels, and the files that fabricators open."""
 
+from dataclasses import dataclass
 from typing import Annotated, Literal, NamedTuple
 
 from ...fabrication.drawings import beams as dxf
@@ -8,20 +9,42 @@ from ...fabrication.files import check_suffix, replacing
 from ...fabrication.model import Model, Written
 from ...fabrication.rhino import writer as rhino
 from ...fabrication.schedules import writer as schedule
-from ...fabrication.solids.cadquery_assembly import beams_to_cadquery, to_cadquery
 from ...fabrication.step import writer as step
 from ...kernel.beams.beams import Beams
-from ...kernel.errors import InputError, name_ids
+from ...kernel.errors import name_ids
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.panels import cutting
 from ...kernel.panels.panels import Panels
-from ...kernel.panels.reports import CutReport
 from ...kernel.parts.findings import rejected_report
+from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...viewer.render import render_image
 from ..graphs.node import node, running_graph, warn
 from ..graphs.ports import Length, Port, Units, WritePath
 from .arrays import FaceLabels
+
+
+@dataclass(frozen=True, eq=False)
+class CutReport(Report):
+    """The panels that can be made, and the others.
+
+    Attributes
+    ----------
+    edge_gap : dict
+        Between the arcs of neighbouring panels, at the ends and in the middle, before the
+        joint: ``max`` and ``mean`` in model units, ``relative_to_edge``, over so many
+        ``edges``.
+    thickness : dict
+        ``min``, ``mean`` and ``max``.
+    written : int
+    rejected : list of dict
+        ``id``, ``code`` and ``reason`` of each panel that cannot be made.
+    """
+
+    edge_gap: dict[str, float]
+    thickness: dict[str, float]
+    written: int
+    rejected: list[dict[str, str]]
 
 
 class PanelSet(NamedTuple):
@@ -47,14 +70,18 @@ def panels(
     ----------
     sphere_mesh : SphereMesh
     edges : {"bisector", "intersection"}
-        Cut by the plane that bisects two faces (walls stand upright, the arcs of an edge differ
-        by a small gap), or in which two spheres meet (watertight, as tilted as they left it).
-    thickness, joint_gap : float
-        In model units; without thickness panels are surfaces.
+        Cut along each edge by the plane that bisects the two faces (walls stand upright, the
+        two arcs of an edge differ by a small gap), or by the plane in which the two spheres
+        meet (watertight, as tilted as the spheres left it).
+    thickness : float
+        Thickness in model units; 0 for surfaces.
+    joint_gap : float
+        Width of the joints, in model units.
     labels : (F,) int array, optional
         Mould of each face.
     side : {"inward", "outward", "centred"}
-        Where the thickness goes: against the face normals, along them, or half each way.
+        Where the thickness goes from the spheres: against the face normals, along them, or
+        half each way.
     layer : {"offset", "power"}
         The same thickness everywhere; or the same difference of squared radii, so that
         neighbours which bulge to one side meet in one plane on both of their faces: the
@@ -116,7 +143,8 @@ def write_step(
     schema : {"AP214IS", "AP242DIS"}
         Application protocol.
     copies : {"shapes", "instances"}
-        A shape for every panel, or one for all identical panels: smaller files.
+        A shape of its own for every panel, or one shape for identical panels: smaller files
+        where panels repeat.
     beams : Beams, optional
         The beams, with their node cylinders if they have any, and the node axes.
 
@@ -136,41 +164,6 @@ def write_step(
     """
     options = step.StepOptions(step_units, schema, copies=copies)
     return _tell(step.write_step(Model(panels, beams, units), path, options))
-
-
-@node
-def cadquery_solids(
-    panels: Panels | None = None, beams: Beams | None = None, units: Units = "m"
-) -> object:
-    """Panels and beams as a CadQuery assembly, for further modelling.
-
-    Parameters
-    ----------
-    panels : Panels, optional
-        These or beams are needed.
-    beams : Beams, optional
-        With panels too, they are an assembly within theirs.
-    units : str
-        Model units; the assembly is in millimetres.
-
-    Returns
-    -------
-    cadquery.Assembly
-        A solid (without thickness a face) for every part, named by its id.
-
-    Examples
-    --------
-    >>> from spheremesh.nodes import fit_spheres, torus_mesh
-    >>> torus = panels(fit_spheres(torus_mesh(8, 6)), thickness=0.02).panels
-    >>> len(cadquery_solids(torus).children)
-    48
-    """
-    if panels is None:
-        if beams is None:
-            raise InputError("cadquery_solids needs panels or beams")
-        return beams_to_cadquery(beams, units)
-    assembly = to_cadquery(panels, units)
-    return assembly if beams is None else assembly.add(beams_to_cadquery(beams, units))
 
 
 @node
@@ -197,14 +190,16 @@ def write_3dm(
     version : int
         Rhino version of the file.
     beams : Beams, optional
-        As extrusions of their contours, with drilling marks, node cylinders and node axes.
+        The beams, as extrusions of their flat contours, with their drilling marks, node
+        cylinders and node axes.
     reference : Mesh or SphereMesh, optional
         The design mesh, for a layer of its own.
     shape : {"panels", "blocks", "shell"}
         A surface per panel; instances of a block wherever panels are identical; or all panels
         joined into one polysurface, which needs panels cut along intersections without joint.
     layers : tuple of {"Edges", "Centres", "Moulds"}
-        Further layers: edges of panels, centres of spheres, blanks of moulds as blocks.
+        Further layers: the edges of the panels, the centres of their spheres, and the blanks
+        of the moulds as blocks under their panels.
 
     Returns
     -------
@@ -257,6 +252,7 @@ def write_dxf(
     --------
     >>> from tempfile import TemporaryDirectory
     >>> from spheremesh.nodes import annulus_support, beams, ellipsoid_mesh, model_change
+    >>> from spheremesh.nodes import write_dxf
     >>> sphere_mesh = model_change(ellipsoid_mesh(12, 6), radius=4.0)
     >>> made = beams(annulus_support(sphere_mesh, depth=0.1).annuli, thickness=0.02)
     >>> with TemporaryDirectory() as folder:
@@ -281,7 +277,8 @@ def write_schedule(
     panels : Panels, optional
         The panels; these or beams are needed.
     path : path
-        Ends in .csv (panels or beams), .json or .xlsx (both; .xlsx needs the extra ``excel``).
+        Ends in .csv (panels or beams), or in .json or .xlsx (both; .xlsx with the extra
+        ``excel``).
     units : str
     beams : Beams, optional
 
@@ -292,12 +289,14 @@ def write_schedule(
 
     Examples
     --------
+    >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
     >>> from spheremesh.nodes import fit_spheres, panels, vase_mesh, write_schedule
     >>> made = panels(fit_spheres(vase_mesh(12, 6)))
     >>> with TemporaryDirectory() as folder:
-    ...     write_schedule(made.panels, f"{folder}/panels.csv").endswith("panels.csv")
-    True
+    ...     path = write_schedule(made.panels, f"{folder}/panels.csv")
+    ...     len(Path(path).read_text("utf-8").splitlines())
+    73
     """
     return _tell(schedule.write_schedule(Model(panels, beams, units), path))
 

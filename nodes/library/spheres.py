@@ -6,15 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...kernel.arrays import BoolArray, FloatArray
-from ...kernel.meshes.mesh import Mesh
+from ...kernel.meshes.mesh import Mesh, edge_middles
 from ...kernel.sphere_meshes import central_spheres as central
 from ...kernel.sphere_meshes import fit
 from ...kernel.sphere_meshes import smoothed_spheres as smoothing
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
-from ...kernel.spheres import circles, incidence, minkowski, rows
+from ...kernel.spheres import circles, minkowski, rows
 from ..graphs.node import node
 from ..graphs.ports import Port
-from .arrays import Points, Spheres
+from .arrays import EdgeSpheres, Points, Spheres
 
 
 class PrincipalSpheres(NamedTuple):
@@ -147,6 +147,31 @@ def principal_spheres(mesh: Mesh) -> PrincipalSpheres:
     return PrincipalSpheres(*central.principal_spheres(mesh))
 
 
+@node
+def edge_spheres(mesh: Mesh) -> EdgeSpheres:
+    """Spheres of the edges of a circular mesh: through the circles of both faces.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Every face needs a circumcircle.
+
+    Returns
+    -------
+    (E, 5) float array
+        Rows over the interior edges, whose normals agree with the first face of each. Opposite
+        ones of a quad are bisected by its principal spheres.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import sphere_facts, torus_mesh
+    >>> spheres = edge_spheres(torus_mesh(12, 6, major_radius=3.0))
+    >>> len(spheres), set(sphere_facts(spheres).kinds.tolist())
+    (144, {'sphere'})
+    """
+    return rows.recenter(central.edge_spheres(mesh), -edge_middles(mesh))
+
+
 class SphereFacts(NamedTuple):
     """What rows stand for."""
 
@@ -245,31 +270,6 @@ def sphere_facts(spheres: Spheres) -> SphereFacts:
     """
     names = np.array([kind.name.lower() for kind in rows.Kind])
     return SphereFacts(*rows.center_radius(spheres), names[rows.kind(spheres)])
-
-
-@node
-def signed_distance(spheres: Spheres, points: Points) -> FloatArray:
-    """Distances of points from spheres and planes.
-
-    Parameters
-    ----------
-    spheres : (N, 5) float array
-        Unit rows.
-    points : (N, 3) float array
-        One for each sphere.
-
-    Returns
-    -------
-    (N,) float array
-        Positive on the side to which the normal of the sphere points.
-
-    Examples
-    --------
-    >>> ball = sphere_rows(np.zeros((1, 3)), 2.0)
-    >>> signed_distance(ball, np.array([[0.0, 0.0, 5.0]])).tolist()
-    [-3.0]
-    """
-    return incidence.signed_distance(spheres, points)
 
 
 @node

@@ -1,4 +1,4 @@
-"""What a workshop asks before it starts: blanks, identical panels, findings, the report."""
+"""What a workshop asks before it starts: identical panels, findings, the report, solids."""
 
 from dataclasses import dataclass
 from typing import Annotated, Any, NamedTuple
@@ -8,24 +8,25 @@ import numpy as np
 from ...fabrication.audit.report import audit_model
 from ...fabrication.audit.subjects import AuditLimits
 from ...fabrication.model import Model
+from ...fabrication.solids.cadquery_assembly import beams_to_cadquery, to_cadquery
 from ...fabrication.step.check import check_part21
 from ...kernel.analysis import angle_summary
 from ...kernel.beams.beams import Beams
+from ...kernel.errors import InputError
 from ...kernel.meshes.mesh import mean_edge_length
 from ...kernel.panels import congruent
-from ...kernel.panels import mould_blanks as blanks
 from ...kernel.panels.panels import Panels
-from ...kernel.panels.reports import BlanksReport, CutReport, blanks_report
-from ...kernel.parts.findings import AuditReport, Finding, findings_report
+from ...kernel.parts.findings import Finding, findings_report
 from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ...kernel.support.annulus_support import AnnuliReport
 from ...kernel.support.node_axes import NodesReport
 from ...kernel.tolerances import SAME_PANEL
-from ..graphs.node import node, warn
-from ..graphs.ports import Length, Port, ReadPath, Units
+from ..graphs.node import node
+from ..graphs.ports import Port, ReadPath, Units
 from .arrays import PanelLabels
-from .cluster import MouldsReport
+from .cluster import BlanksReport, MouldsReport
+from .fabricate import CutReport
 from .optimise import OptimumReport
 from .support import BeamsReport, LandingReport
 
@@ -51,6 +52,23 @@ class ShapesReport(Report):
     panels_per_shape: list[int]
     first: list[str]
     largest_miss: float
+
+
+@dataclass(frozen=True, eq=False)
+class AuditReport(Report):
+    """Findings.
+
+    Attributes
+    ----------
+    counts : dict
+        Number of findings by code.
+    errors, notes : list of dict
+        ``code``, ``id``, ``message`` and ``size`` of each.
+    """
+
+    counts: dict[str, int]
+    errors: list[dict[str, Any]]
+    notes: list[dict[str, Any]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,38 +159,6 @@ def identical_panels(
 
 
 @node
-def mould_blanks(panels: Panels, size_step: Length = 0.0) -> BlanksReport:
-    """Count the blanks that every mould must give, and how large they are.
-
-    Parameters
-    ----------
-    panels : Panels
-        The panels, with moulds.
-    size_step : float
-        Blanks come in diameters that are multiples of this length, in model units; 0 for one
-        size per mould, that of its largest panel.
-
-    Returns
-    -------
-    BlanksReport
-        Size and number of the blanks of each mould.
-
-    Examples
-    --------
-    >>> from spheremesh.nodes import cluster_radii, fit_spheres, mould_blanks, panels, vase_mesh
-    >>> moulds = cluster_radii(fit_spheres(vase_mesh(12, 6)), k=2, relax=False)
-    >>> made = panels(moulds.sphere_mesh, thickness=0.02, labels=moulds.labels)
-    >>> [(row["count"], row["shapes"]) for row in mould_blanks(made.panels)["blanks"]]
-    [(48, 4), (24, 2)]
-    """
-    found = blanks.mould_blanks(panels, congruent.congruent_panels(panels), size_step)
-    without = int((panels.labels < 0).sum())
-    if without:
-        warn(f"{without} of {panels.n_panels} panels belong to no mould and need no blank")
-    return blanks_report(found, without)
-
-
-@node
 def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     panels: Panels | None = None,
     cut: CutReport | None = None,
@@ -246,7 +232,7 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
         for part in report.get("rejected", ())
     ]
     findings = audit_model(Model(panels, beams, units), limits, rejected)
-    return Audit(tuple(findings), findings_report(findings))
+    return Audit(findings, AuditReport(**findings_report(findings)))
 
 
 @node
@@ -276,7 +262,7 @@ def check_step(path: ReadPath) -> Audit:
     ()
     """
     findings = check_part21(path)
-    return Audit(findings, findings_report(findings))
+    return Audit(findings, AuditReport(**findings_report(findings)))
 
 
 @node
@@ -367,3 +353,38 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         },
         audit=dict(audit) if audit is not None else None,
     )
+
+
+@node
+def cadquery_solids(
+    panels: Panels | None = None, beams: Beams | None = None, units: Units = "m"
+) -> object:
+    """Panels and beams as a CadQuery assembly, for further modelling.
+
+    Parameters
+    ----------
+    panels : Panels, optional
+        The panels; these or beams are needed.
+    beams : Beams, optional
+        The beams; of beams and panels the former are an assembly within the latter.
+    units : str
+        Model units; the assembly is in millimetres.
+
+    Returns
+    -------
+    cadquery.Assembly
+        A solid (without thickness a face) for every part, named by its id.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import fit_spheres, panels, torus_mesh
+    >>> torus = panels(fit_spheres(torus_mesh(8, 6)), thickness=0.02).panels
+    >>> len(cadquery_solids(torus).children)
+    48
+    """
+    if panels is None:
+        if beams is None:
+            raise InputError("cadquery_solids needs panels or beams")
+        return beams_to_cadquery(beams, units)
+    assembly = to_cadquery(panels, units)
+    return assembly if beams is None else assembly.add(beams_to_cadquery(beams, units))

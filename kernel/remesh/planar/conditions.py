@@ -39,10 +39,8 @@ class Misses(NamedTuple):
 
     Attributes
     ----------
-    lengths : (V, k) float array
-        Distances, in mean edges.
-    slopes : (V, k, 3) float array
-        Their gradients.
+    lengths, slopes : (V, k) and (V, k, 3) float arrays
+        Distances, in mean edges, and their gradients.
     """
 
     lengths: FloatArray
@@ -95,8 +93,6 @@ class PlanarSystem:
     ----------
     mesh : Mesh
         The mesh at the start; its corners and their faces are the incidences.
-    start : NetState
-        The net at the start.
     corners : (H, 3) float array
         Corners at the start, local to their face.
     is_planar : (V,) bool array
@@ -127,10 +123,8 @@ class Residuals(NamedTuple):
     corners : (H, 2) float array
         Incidence of node and sphere, and ``m · (a A, N)``: with unit rows and normals the
         distance of the node, and the sine of the angle from the subspace.
-    rows : (F,) float array
-        ``<<S, S>> - 1``.
-    normals : (V,) float array
-        ``|m|² - 1``.
+    rows, normals : (F,) and (V,) float arrays
+        ``<<S, S>> - 1`` and ``|m|² - 1``.
     sites : (V, k) float array
         Distances of the nodes from where they shall be.
     """
@@ -146,10 +140,8 @@ class CornerJacobian(NamedTuple):
 
     Attributes
     ----------
-    by_face : (H, 2, 5) float array
-        With respect to the row.
-    by_node : (H, 2, 7) float array
-        With respect to the point and the normal of the node.
+    by_face, by_node : (H, 2, 5) and (H, 2, 7) float arrays
+        By the row; by the point and the normal of the node.
     """
 
     by_face: FloatArray
@@ -321,11 +313,6 @@ def on_surface(surface: SmoothSurface, mesh: Mesh, weights: FloatArray) -> Site:
 
 def node_distances(surface: SmoothSurface, mesh: Mesh) -> FloatArray:
     """Distances of the nodes of a net from a smooth surface.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        The net, in model coordinates.
 
     Returns
     -------

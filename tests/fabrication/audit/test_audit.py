@@ -157,7 +157,7 @@ def test_reports_are_plain_and_sorted(squares: Callable[..., SphereMesh]) -> Non
     panels, rejected = cut_panels(squares(0.1, 0.35, 1.5), thickness=0.6)
     findings = audit_model(Model(panels), rejected=rejected_report(rejected))
     report = findings_report(findings)
-    assert json.loads(json.dumps(dict(report), allow_nan=False)) == report
+    assert json.loads(json.dumps(report, allow_nan=False)) == report
     assert sum(report["counts"].values()) == len(report["errors"]) + len(report["notes"])
     assert [error["code"] for error in report["errors"]] == ["P100"]
     texts = warning_texts(findings)

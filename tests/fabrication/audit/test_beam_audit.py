@@ -162,7 +162,7 @@ def test_no_beams_are_audited_too() -> None:
     findings = audit_model(Model(beams=none), rejected=rejected_report(support.rejected))
     assert [(f.code, f.id) for f in findings] == [("B100", f"B000{i}") for i in range(4)]
     report = findings_report(findings)
-    assert json.loads(json.dumps(dict(report), allow_nan=False)) == report
+    assert json.loads(json.dumps(report, allow_nan=False)) == report
     assert audit_model(Model(beams=select_parts(sound(), np.zeros(192, bool)))) == ()
 
 

@@ -17,8 +17,8 @@ from spheremesh.kernel.beams.drilling import drill_beams
 from spheremesh.kernel.beams.facts import beam_facts
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.panels.cutting import cut_panels
-from spheremesh.kernel.panels.panels import Panels, panel_ids
-from spheremesh.kernel.parts.records import select_parts
+from spheremesh.kernel.panels.panels import Panels
+from spheremesh.kernel.parts.records import part_ids, select_parts
 from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.support.annulus_support import annulus_support
@@ -141,7 +141,7 @@ def test_json_holds_panels_as_before_and_beams(panels: Panels, tmp_path: Path) -
     assert content["beams"] == json.loads(json.dumps(beam_tables(BEAMS, "m")["Beams"]))
     assert content["nodes"] == json.loads(json.dumps(beam_tables(BEAMS, "m")["Nodes"]))
     beside = {name for row in content["beams"] for name in row["panels"]} - {None}
-    assert beside <= set(panel_ids(VASE.mesh.n_faces))
+    assert beside <= set(part_ids("P", VASE.mesh.n_faces))
 
 
 def test_xlsx_has_sheets_of_beams_and_nodes(panels: Panels, tmp_path: Path) -> None:

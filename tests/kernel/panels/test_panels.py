@@ -30,9 +30,9 @@ from spheremesh.kernel.panels.panels import (
     move_origins,
     panel_arcs,
     panel_areas,
-    panel_ids,
     scale_panels,
 )
+from spheremesh.kernel.parts.records import part_ids
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.spheres.arcs import arc_points
 from spheremesh.kernel.spheres.circles import (
@@ -632,7 +632,7 @@ def test_no_panel_is_dropped_silently(
         named = [r.element_id for r in rejected]
         assert sorted([*panels.face_ids.tolist(), *named]) == list(range(count))
         assert named == sorted(named)
-        ids = panel_ids(count)
+        ids = part_ids("P", count)
         assert panels.ids == tuple(ids[i] for i in panels.face_ids)
         assert all(r.id == ids[r.element_id] and r.reason for r in rejected)
         assert (panel_areas(panels) > 0).all()
@@ -703,9 +703,9 @@ def test_lengths_are_finite_and_not_negative(ball: Mesh, bad: float) -> None:
 
 
 def test_names_have_digits_enough() -> None:
-    assert panel_ids(3) == ("P0000", "P0001", "P0002")
-    assert panel_ids(10_000)[-1] == "P9999"
-    names = panel_ids(10_001)
+    assert part_ids("P", 3) == ("P0000", "P0001", "P0002")
+    assert part_ids("P", 10_000)[-1] == "P9999"
+    names = part_ids("P", 10_001)
     assert (names[0], names[-1]) == ("P00000", "P10000")
 
 
