@@ -1,4 +1,4 @@
-"""Other meshes of the same shape: triangulated, finer, or of even triangles."""
+"""Other meshes of the same shape: triangulated, subdivided, remeshed."""
 
 from typing import Annotated, Literal
 
