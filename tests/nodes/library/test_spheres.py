@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from spheremesh.kernel.sphere_meshes import central_spheres
+from spheremesh.kernel.sphere_meshes import central_spheres, smoothed_spheres
 from spheremesh.kernel.surfaces.circular_nets import vase_net
 from spheremesh.nodes.library import spheres
 
@@ -19,6 +19,6 @@ def test_central_and_smoothed_spheres_are_those_of_the_kernel() -> None:
     mesh = vase_net(12, 8, 1.0, 3.0, 0.3)
     for node, rule in (
         (spheres.central_spheres, central_spheres.central_spheres),
-        (spheres.smoothed_spheres, central_spheres.smoothed_spheres),
+        (spheres.smoothed_spheres, smoothed_spheres.smoothed_spheres),
     ):
         np.testing.assert_array_equal(node(mesh).spheres, rule(mesh).spheres)
