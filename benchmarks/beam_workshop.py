@@ -28,10 +28,10 @@ from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
 
 from spheremesh import SphereMesh
-from spheremesh.fabrication.audit.beams import audit_beams
+from spheremesh.fabrication.audit.report import audit_model
 from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.rhino.writer import write_3dm
-from spheremesh.fabrication.schedules.schedule import write_schedule
+from spheremesh.fabrication.schedules.writer import write_schedule
 from spheremesh.fabrication.step.writer import write_step
 from spheremesh.kernel.beams.beams import Beams
 from spheremesh.kernel.beams.drilling import drill_beams
@@ -109,7 +109,7 @@ def report(name: str, sphere_mesh: SphereMesh) -> None:
     print(f"{name}: {count} beams, {refusals[0]} without annulus, {refusals[1]} without cut")
     (made, refused), marking = timed(lambda: drill_beams(made, 2, 0.03 * size, 0.05 * size))
     _, measuring = timed(lambda: beam_facts(made))
-    findings, auditing = timed(lambda: audit_beams(made))
+    findings, auditing = timed(lambda: audit_model(Model(beams=made)))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder)
         _, table = timed(lambda: write_schedule(Model(beams=made), path / "b.csv").path)

@@ -33,7 +33,8 @@ from spheremesh.fabrication.solids.opencascade_panels import panel_shapes
 from spheremesh.fabrication.step.writer import write_step
 from spheremesh.fabrication.units import millimeters_per
 from spheremesh.kernel.arrays import FloatArray
-from spheremesh.kernel.panels.panels import Panels, inner_panel_arcs, panel_areas, panel_volumes
+from spheremesh.kernel.panels.facts import panel_volumes
+from spheremesh.kernel.panels.panels import Panels, panel_arcs, panel_areas
 from spheremesh.kernel.spheres.arcs import patch_areas
 from spheremesh.nodes import cluster_radii, fit_spheres, minimize_angles, panels, read_mesh
 
@@ -71,7 +72,7 @@ def measure(shapes: list[TopoDS_Shape]) -> FloatArray:
 def judge_step(made: Panels, path: Path, units: str) -> None:
     """Check STEP solids in memory and as read back."""
     scale = millimeters_per(units)
-    inner = patch_areas(made.inner_spheres, inner_panel_arcs(made), made.corner_panels)
+    inner = patch_areas(made.inner_spheres, panel_arcs(made, "inner"), made.corner_panels)
     areas = (panel_areas(made) + inner) * scale**2
     closed = np.stack([areas, panel_volumes(made) * scale**3], 1)
     print("STEP, before writing")

@@ -39,12 +39,11 @@ from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
 from spheremesh.kernel.beams.beams import Beams, beam_volumes, cut_corners, insets_at
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.meshes.mesh import mean_edge_length
+from spheremesh.kernel.panels.facts import panel_volumes
 from spheremesh.kernel.panels.panels import (
     Panels,
-    inner_panel_arcs,
     panel_arcs,
     panel_areas,
-    panel_volumes,
 )
 from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.spheres.arcs import (
@@ -82,7 +81,7 @@ def job(name: str, folder: Path) -> tuple[SphereMesh, Panels, Beams]:
 
 def panel_measures(panels: Panels) -> FloatArray:
     """Areas of all faces, and volumes (P, 2), in model units; walls are segments and quads."""
-    owners, outer, inner = panels.corner_panels, panel_arcs(panels), inner_panel_arcs(panels)
+    owners, outer, inner = panels.corner_panels, panel_arcs(panels), panel_arcs(panels, "inner")
     areas = panel_areas(panels) + patch_areas(panels.inner_spheres, inner, owners)
     walls = np.abs(_quads(outer, inner, panels.plane_normals))
     up = unit(outer.starts - inner.starts)

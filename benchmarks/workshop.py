@@ -17,7 +17,7 @@ from pathlib import Path
 
 from exactness import judge_step
 
-from spheremesh.fabrication.audit.panels import audit_panels
+from spheremesh.fabrication.audit.report import audit_model
 from spheremesh.fabrication.drawings.moulds import write_mould_drawings
 from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.opennurbs.render_meshes import (
@@ -26,7 +26,7 @@ from spheremesh.fabrication.opennurbs.render_meshes import (
     panel_meshes,
 )
 from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
-from spheremesh.fabrication.schedules.schedule import write_schedule
+from spheremesh.fabrication.schedules.writer import write_schedule
 from spheremesh.fabrication.step.check import check_part21
 from spheremesh.fabrication.step.writer import StepOptions, write_step
 from spheremesh.kernel.panels.congruent import congruent_panels
@@ -102,7 +102,7 @@ def main() -> None:
     clock("identical panels", lambda: congruent_panels(made))
     clock("identical panels, torus", lambda: congruent_panels(ring))
     clock("mould blanks", lambda: mould_blanks(made, same))
-    clock("audit", lambda: audit_panels(made))
+    clock("audit", lambda: audit_model(Model(made)))
     clock("schedule.csv", lambda: write_schedule(Model(made), folder / "s.csv").path)
     clock("schedule.json", lambda: write_schedule(Model(made), folder / "s.json").path)
     clock("moulds.dxf", lambda: write_mould_drawings(Model(made), folder / "m.dxf").path)

@@ -1,7 +1,8 @@
 """
 The audit before files go out: numbered findings, errors apart from notes.
 
-beams   The audit of beams: numbered findings, errors apart from notes, as for panels.
-panels  The audit before files go out: numbered findings about panels, errors apart from
-        notes.
+beams     Checks of beams; each is a function of a `BeamSubject` that returns findings.
+panels    Checks of panels, likewise.
+report    `audit_model`: all findings on a model, and what each code means.
+subjects  What checks look at: parts in millimetres, measured, and what a workshop can do.
 """

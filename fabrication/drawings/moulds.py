@@ -15,8 +15,9 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray, dot, unit
+from ...kernel.panels.facts import panel_bulges
 from ...kernel.panels.mould_blanks import PanelCaps, panel_caps
-from ...kernel.panels.panels import Panels, inner_panel_arcs, panel_arcs, scale_panels
+from ...kernel.panels.panels import Panels, boundaries, scale_panels
 from ...kernel.parts.colors import mould_name
 from ...kernel.spheres.arcs import Arcs, arc_points
 from ..files import check_suffix, replacing
@@ -125,9 +126,7 @@ def layout_moulds(panels: Panels, units: str = "m") -> Drawing:
     Parameters
     ----------
     panels : Panels
-        P panels.
     units : str
-        Model units: mm, cm, m, in or ft.
 
     Returns
     -------
@@ -139,9 +138,10 @@ def layout_moulds(panels: Panels, units: str = "m") -> Drawing:
     """
     made = scale_panels(panels, millimeters_per(units))
     caps = panel_caps(made)
-    views = [("OUTER", _outlines(made, panel_arcs(made), caps))]
-    if made.thickness > 0:
-        views.append(("INNER", _outlines(made, inner_panel_arcs(made), caps)))
+    views = [
+        (layer, _outlines(made, arcs, caps))
+        for layer, (_, arcs) in zip(("OUTER", "INNER"), boundaries(made), strict=False)
+    ]
     labels = np.unique(made.labels)
     drawing = Drawing([], [], [], 0.0, 0.0)
     count = int(labels.max(initial=-1)) + 1
@@ -174,23 +174,17 @@ def _cells(
     members: IntArray,
 ) -> list[_Cell]:
     largest = float(caps.radii[members].max())
+    bulges = panel_bulges(made)
     is_mould = made.labels[members[0]] >= 0
     return [
         (
             made.ids[i],
-            _remark(made, caps, i),
+            f"{2 * caps.radii[i]:.1f} x {abs(caps.sagittas[i]):.1f} {bulges[i]}",
             largest if is_mould else float(caps.radii[i]),
             [(layer, outlines[i]) for layer, outlines in views],
         )
         for i in members.tolist()
     ]
-
-
-def _remark(made: Panels, caps: PanelCaps, panel: int) -> str:
-    """Size of the panel's own cap, and to which side it bulges."""
-    curvature = made.design_spheres[panel, 0]
-    bulge = "flat" if curvature == 0 else "out" if curvature < 0 else "in"
-    return f"{2 * caps.radii[panel]:.1f} x {abs(caps.sagittas[panel]):.1f} {bulge}"
 
 
 def _outlines(made: Panels, arcs: Arcs, caps: PanelCaps) -> list[FloatArray]:

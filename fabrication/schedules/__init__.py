@@ -1,7 +1,8 @@
 """
 Lists of parts with all that a workshop asks for, in millimetres.
 
-beams       Rows of the schedule for beams and their nodes, with all that a workshop asks for.
+beams       Rows of the schedule for beams and their nodes.
 panel_text  What a workshop must know of each panel, as user text of a Rhino object.
-schedule    The schedule: a row per panel with all that a workshop asks for, in millimetres.
+panels      Rows of the schedule for panels and their moulds.
+writer      The schedule of panels and beams as a table, a workbook or JSON.
 """

@@ -8,33 +8,30 @@ from typing import Any
 
 import numpy as np
 
-from ...kernel.beams.beams import Beams, scale_beams
-from ...kernel.beams.facts import beam_facts
+from ...kernel.beams.beams import Beams
 from ...kernel.beams.node_cylinders import node_cylinders
 from ...kernel.support.node_axes import node_name
-from ..audit.beams import BeamSubject, check_beams
-from ..audit.panels import AuditLimits, findings_by_id, warning_text
+from ..audit.beams import BeamSubject, beam_subject, check_beams
+from ..audit.subjects import warning_texts
 from ..tables import finite_or_none
-from ..units import CUBIC_METER, millimeters_per
+from ..units import CUBIC_METER
 
 
-def beam_rows(beams: Beams, units: str) -> list[dict[str, Any]]:
+def beam_tables(beams: Beams, units: str) -> dict[str, list[dict[str, Any]]]:
     """
-    What the schedule says of each beam, as plain values.
+    What the schedule says of beams and node cylinders, as plain values.
 
     Parameters
     ----------
     beams : Beams
-        B beams.
     units : str
-        Model units: mm, cm, m, in or ft.
 
     Returns
     -------
-    list of dict
-        B rows of the columns ``id``, ``edge``, ``panels`` (ids left and right; None beyond the
-        boundary), ``nodes`` (ids at both ends), ``thickness_mm``, ``depths_mm`` (on the node
-        axes of both ends), ``width_mm`` (in the middle), ``outer_length_mm`` and
+    dict of str to list of dict
+        ``Beams``: B rows of the columns ``id``, ``edge``, ``panels`` (ids left and right; None
+        beyond the boundary), ``nodes`` (ids at both ends), ``thickness_mm``, ``depths_mm`` (on
+        the node axes of both ends), ``width_mm`` (in the middle), ``outer_length_mm`` and
         ``inner_length_mm`` (along the arcs of the contour), ``outer_radius_mm`` and
         ``inner_radius_mm`` (None for straight arcs), ``chord_mm`` and ``sagitta_mm`` (of the
         outer arc, positive to the outer side), ``length_mm`` (longest chord of the piece),
@@ -45,10 +42,18 @@ def beam_rows(beams: Beams, units: str) -> list[dict[str, Any]]:
         neighbours that are cut alike; None where there is none), ``ends_mm`` (outer corners on
         the node axes), ``holes`` (number of drilling marks) and ``warnings`` (findings of the
         audit).
+
+        ``Nodes``: rows of ``id``, ``vertex``, ``radius_mm``, ``height_mm``, ``outer_mm``
+        (centre of the outer disc), ``direction`` (unit vector to the inner side) and ``beams``
+        (ids); empty where beams are mitred.
     """
-    made = scale_beams(beams, millimeters_per(units))
-    annuli, facts = made.annuli, beam_facts(made)
-    warnings = findings_by_id(check_beams(BeamSubject(made, facts, AuditLimits())))
+    subject = beam_subject(beams, units)
+    return {"Beams": _beam_rows(subject), "Nodes": _node_rows(subject.parts)}
+
+
+def _beam_rows(subject: BeamSubject) -> list[dict[str, Any]]:
+    made, annuli, facts = subject.parts, subject.parts.annuli, subject.facts
+    warnings = warning_texts(check_beams(subject))
     bevels, twists = np.degrees(facts.bevels), np.degrees(facts.twists)
     holes = _holes(made)
     return [
@@ -76,7 +81,7 @@ def beam_rows(beams: Beams, units: str) -> list[dict[str, Any]]:
             "clearances_mm": [finite_or_none(gap) for gap in facts.clearances[i]],
             "ends_mm": facts.ends[i].tolist(),
             "holes": holes[i],
-            "warnings": warning_text(warnings.get(name, ())),
+            "warnings": warnings.get(name, ""),
         }
         for i, name in enumerate(annuli.ids)
     ]
@@ -90,25 +95,7 @@ def _holes(beams: Beams) -> list[int]:
     return [count if fits else 0 for fits in beams.marks.fits.tolist()]
 
 
-def node_rows(beams: Beams, units: str) -> list[dict[str, Any]]:
-    """
-    What the schedule says of each node cylinder.
-
-    Parameters
-    ----------
-    beams : Beams
-        B beams.
-    units : str
-        Model units: mm, cm, m, in or ft.
-
-    Returns
-    -------
-    list of dict
-        Rows of ``id``, ``vertex``, ``radius_mm``, ``height_mm``, ``outer_mm`` (centre of the
-        outer disc), ``direction`` (unit vector to the inner side) and ``beams`` (ids); empty
-        where beams are mitred.
-    """
-    made = scale_beams(beams, millimeters_per(units))
+def _node_rows(made: Beams) -> list[dict[str, Any]]:
     found = node_cylinders(made)
     return [
         {

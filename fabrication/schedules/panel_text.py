@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from ...kernel.panels.facts import panel_radii
+from ...kernel.panels.facts import panel_bulges, panel_radii
 from ...kernel.panels.panels import Panels, neighbor_ids, panel_areas
 from ...kernel.parts.colors import mould_number
 
@@ -23,7 +23,6 @@ def panel_text(panels: Panels, units: str) -> list[dict[str, str]]:
     Parameters
     ----------
     panels : Panels
-        P panels.
     units : str
         Model units.
 
@@ -39,14 +38,13 @@ def panel_text(panels: Panels, units: str) -> list[dict[str, str]]:
     found = panel_radii(panels)
     radii, centers = found.radii.tolist(), found.centers.tolist()
     neighbors = [name or "-" for name in neighbor_ids(panels)]
-    signs: list[float] = np.sign(panels.design_spheres[:, 0]).tolist()
     count = int(panels.labels.max(initial=-1)) + 1
     starts: list[int] = panels.offsets.tolist()
     lines = zip(
         panels.ids,
         map(str, panels.face_ids.tolist()),
         [mould_number(label, count) for label in panels.labels.tolist()],
-        [{-1.0: "out", 0.0: "flat", 1.0: "in"}[sign] for sign in signs],
+        panel_bulges(panels),
         [f"{r:.12g}" if np.isfinite(r) else "plane" for r in radii],
         [" ".join(f"{x:.12g}" for x in c) if c[0] < np.inf else "-" for c in centers],
         [f"{area:.12g}" for area in panel_areas(panels).tolist()],

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...kernel.arrays import BoolArray, FloatArray, norm
 from ...kernel.beams.beams import Beams, side_arcs
-from ...kernel.beams.end_edges import CutEdges, cut_edges
+from ...kernel.beams.end_edges import EndEdges, end_edges
 from ...kernel.spheres.arcs import ArcCircles, Arcs, arc_circles
 from ...kernel.tolerances import EPSILON
 from .panel_geometry import CONFUSION, check_finite, rounded_origins
@@ -40,7 +40,7 @@ class BeamGeometry:
     arcs : dict of int to (Arcs, Arcs)
         Outer and inner edges of the lower (0) and the upper (2) side.
     circles : dict of int to (ArcCircles, ArcCircles)
-    cuts : dict of (int, int) to CutEdges
+    cuts : dict of (int, int) to EndEdges
         Edges across the thickness, by their levels.
     tolerances : (B,) float array
         How far edges miss faces, or large numbers are rounded.
@@ -55,7 +55,7 @@ class BeamGeometry:
     is_dome: BoolArray
     arcs: dict[int, tuple[Arcs, Arcs]]
     circles: dict[int, tuple[ArcCircles, ArcCircles]]
-    cuts: dict[tuple[int, int], CutEdges]
+    cuts: dict[tuple[int, int], EndEdges]
     tolerances: FloatArray
 
 
@@ -91,7 +91,7 @@ def beam_geometry(beams: Beams, confusion: float = CONFUSION) -> BeamGeometry:
     # On a plane the frame stands on it: along z, with the normal to the outer side.
     x = np.where(rows[..., :1] > 0, up, np.where(rows[..., :1] < 0, -up, -rows[..., 1:4]))
     frames = np.stack([x, np.cross(axis, x), np.broadcast_to(axis, x.shape)], 2)
-    cuts = {levels: cut_edges(beams, corners, centers, radii, levels) for levels in LEVELS}
+    cuts = {levels: end_edges(beams, corners, centers, radii, levels) for levels in LEVELS}
     arcs = {level: _moved(side_arcs(beams, level), shifts) for level in (0, 2)}
     circles = {level: (arc_circles(a), arc_circles(b)) for level, (a, b) in arcs.items()}
     tolerances = _tolerances(beams, radii, cuts, confusion)
@@ -109,7 +109,7 @@ def _moved(arcs: tuple[Arcs, Arcs], shifts: FloatArray) -> tuple[Arcs, Arcs]:
 
 
 def _tolerances(
-    beams: Beams, radii: FloatArray, cuts: dict[tuple[int, int], CutEdges], confusion: float
+    beams: Beams, radii: FloatArray, cuts: dict[tuple[int, int], EndEdges], confusion: float
 ) -> FloatArray:
     misses = 8 * EPSILON * np.where(np.isfinite(radii), radii, 0.0).max(axis=1)
     misses = np.maximum(misses, 8 * EPSILON * norm(beams.annuli.origins))

@@ -32,7 +32,7 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape, TopoDS_Vertex
 
 from ...kernel.arrays import FloatArray, dot, norm
 from ...kernel.beams.beams import Beams, scale_beams
-from ...kernel.beams.end_edges import CutEdges
+from ...kernel.beams.end_edges import EndEdges
 from ...kernel.spheres.arcs import circle_axes
 from . import opencascade_parts as occ
 from .beam_geometry import LEVELS, BeamGeometry, beam_geometry
@@ -139,7 +139,7 @@ def _sides(numbers: BeamGeometry, level: int) -> _Sides:
 
 
 def _cut_parameters(
-    cuts: CutEdges, centers: FloatArray, radii: FloatArray, frames: FloatArray
+    cuts: EndEdges, centers: FloatArray, radii: FloatArray, frames: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Knots (B, 2, 2, n + 1) and poles of the ellipses in the parameters of the cylinders."""
     lengths = np.where(cuts.is_line, 0.0, cuts.lengths)

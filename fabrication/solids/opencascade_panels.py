@@ -32,7 +32,7 @@ from OCP.TopoDS import (
 )
 
 from ...kernel.arrays import FloatArray, IntArray, norm
-from ...kernel.panels.panels import Panels, inner_panel_arcs, panel_arcs
+from ...kernel.panels.panels import Panels, panel_arcs
 from ...kernel.spheres.arcs import ArcCircles, Arcs, arc_circles, circle_axes
 from ...kernel.spheres.rows import center_radius
 from . import opencascade_parts as occ
@@ -80,7 +80,7 @@ def panel_shapes(panels: Panels, scale: float = 1.0) -> list[TopoDS_Shape]:
     outer = _layer(panels, panels.spheres, panel_arcs(panels), tolerances)
     shapes: Iterable[TopoDS_Shape] = outer.faces
     if panels.thickness > 0:
-        arcs = inner_panel_arcs(panels)
+        arcs = panel_arcs(panels, "inner")
         inner = _layer(panels, panels.inner_spheres, arcs, tolerances)
         walls = _walls(panels, outer, inner, tolerances)
         bounds = panels.offsets.tolist()

@@ -12,7 +12,7 @@ from itertools import product
 import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray, unit
-from ...kernel.beams.end_edges import CutEdges
+from ...kernel.beams.end_edges import EndEdges
 from ..solids.beam_geometry import LEVELS, BeamGeometry
 from .bodies import (
     Body,
@@ -61,7 +61,7 @@ class _Curves:
 
 
 def _cut_numbers(geometry: BeamGeometry, k: int, levels: _Levels) -> FloatArray:
-    cuts: CutEdges = geometry.cuts[levels]
+    cuts: EndEdges = geometry.cuts[levels]
     minor = np.broadcast_to(geometry.radii[:, None, k], cuts.radii[:, :, k].shape)
     major = np.maximum(cuts.radii[:, :, k], minor)
     axes = [values[:, :, k] for values in (cuts.centers, cuts.normals, cuts.majors)]

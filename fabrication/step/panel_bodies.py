@@ -9,7 +9,7 @@ turned so that the panel lies away from the seam and the poles.
 import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray, unit
-from ...kernel.panels.panels import Panels, inner_panel_arcs, panel_arcs
+from ...kernel.panels.panels import Panels, panel_arcs
 from ...kernel.spheres.arcs import Arcs, arc_circles
 from ...kernel.spheres.rows import center_radius
 from ..solids.panel_geometry import surface_frames
@@ -45,7 +45,7 @@ def panel_bodies(panels: Panels) -> list[Body]:
     outer = _Layer(panels, panels.spheres, panel_arcs(panels))
     if not panels.thickness > 0:
         return bodies_by_kind(_kinds(panels, [outer]), lambda ids: _surfaces(outer, ids))
-    inner = _Layer(panels, panels.inner_spheres, inner_panel_arcs(panels))
+    inner = _Layer(panels, panels.inner_spheres, panel_arcs(panels, "inner"))
     return bodies_by_kind(
         _kinds(panels, [outer, inner]), lambda ids: _solids(panels, outer, inner, ids)
     )

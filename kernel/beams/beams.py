@@ -136,7 +136,6 @@ def inward_directions(annuli: Annuli) -> FloatArray:
     Parameters
     ----------
     annuli : Annuli
-        B annuli.
 
     Returns
     -------
@@ -180,7 +179,6 @@ def cut_corners(annuli: Annuli, insets: FloatArray) -> tuple[FloatArray, BoolArr
     Parameters
     ----------
     annuli : Annuli
-        B annuli.
     insets : (B, 2, n) float array
         Distances of the lines from those of the ends, into the annuli.
 
@@ -209,7 +207,6 @@ def scale_beams(beams: Beams, factor: float) -> Beams:
     Parameters
     ----------
     beams : Beams
-        B beams.
     factor : float
         Positive number of new units in an old one.
 
@@ -249,7 +246,6 @@ def section_arcs(beams: Beams) -> tuple[Arcs, Arcs]:
     Parameters
     ----------
     beams : Beams
-        B beams.
 
     Returns
     -------
@@ -266,7 +262,6 @@ def side_arcs(beams: Beams, level: int) -> tuple[Arcs, Arcs]:
     Parameters
     ----------
     beams : Beams
-        B beams.
     level : int
         0 for the lower, 2 for the upper side.
 
@@ -285,7 +280,6 @@ def level_arcs(beams: Beams, corners: FloatArray, heights: FloatArray) -> tuple[
     Parameters
     ----------
     beams : Beams
-        B beams.
     corners : (B, 2, 2, 3) float array
         Corners at both ends, outer and inner, at the height; local.
     heights : (B,) float array
@@ -315,7 +309,6 @@ def beam_volumes(beams: Beams) -> FloatArray:
     Parameters
     ----------
     beams : Beams
-        B beams.
 
     Returns
     -------
@@ -350,7 +343,6 @@ def node_axis_segments(beams: Beams) -> tuple[tuple[int, ...], FloatArray]:
     Parameters
     ----------
     beams : Beams
-        B beams.
 
     Returns
     -------
@@ -372,7 +364,6 @@ def beam_lengths(beams: Beams) -> FloatArray:
     Parameters
     ----------
     beams : Beams
-        B beams.
 
     Returns
     -------

@@ -52,7 +52,6 @@ def beam_contours(beams: Beams) -> Contours:
     Parameters
     ----------
     beams : Beams
-        B beams.
 
     Returns
     -------

@@ -27,7 +27,6 @@ def cut_beams(
     Parameters
     ----------
     annuli : Annuli
-        The annuli.
     thickness : float
         Thickness of the beams, half of it to either side, in model units.
     node_gap : float
@@ -107,7 +106,6 @@ def mitre_angles(annuli: Annuli) -> FloatArray:
     Parameters
     ----------
     annuli : Annuli
-        B annuli.
 
     Returns
     -------
@@ -127,7 +125,6 @@ def neighbor_angles(annuli: Annuli) -> FloatArray:
     Parameters
     ----------
     annuli : Annuli
-        B annuli.
 
     Returns
     -------

@@ -121,9 +121,7 @@ def mark_centers(beams: Beams, marks: DrillMarks) -> FloatArray:
     Parameters
     ----------
     beams : Beams
-        B beams.
     marks : DrillMarks
-        Their marks.
 
     Returns
     -------

@@ -10,7 +10,7 @@ from .beams import Beams, inward_directions
 
 
 @dataclass(frozen=True)
-class CutEdges:
+class EndEdges:
     """
     Edges (B, 2, 2) at both ends, of outer and inner faces: ellipses, or straight lines.
 
@@ -39,20 +39,19 @@ class CutEdges:
     lengths: FloatArray
 
 
-def cut_edges(
+def end_edges(
     beams: Beams,
     corners: FloatArray,
     centers: FloatArray,
     radii: FloatArray,
     levels: tuple[int, int],
-) -> CutEdges:
+) -> EndEdges:
     """
     Edges in which the planes of the ends cut the outer and inner faces.
 
     Parameters
     ----------
     beams : Beams
-        B beams.
     corners : (B, 2, 2, 3, 3) float array
         Their corners, in the coordinates of the centres.
     centers : (B, 2, 3) float array
@@ -64,7 +63,7 @@ def cut_edges(
 
     Returns
     -------
-    CutEdges
+    EndEdges
         The edges, from the lower to the upper level.
 
     Notes
@@ -102,7 +101,7 @@ def cut_edges(
         span = (angles[1] - angles[0] + np.pi) % (2 * np.pi) - np.pi
     side = np.where(span < 0, -1.0, 1.0)
     lengths = np.where(is_line, norm(last - first), np.abs(span))
-    return CutEdges(
+    return EndEdges(
         is_line, np.where(is_line, bulge, rounding), middles,
         side[..., None] * normal[:, :, None],
         np.broadcast_to(major[:, :, None], middles.shape), reach,

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray, norm
 from ..spheres.arcs import Arcs, arc_circles, arc_lengths, arc_reaches
-from ..support.annuli import axis_angles, corner_mismatch, end_depths
+from ..support.annuli import corner_mismatch, end_depths, twist_angles
 from ..tolerances import MITRE_LIMIT
 from .beams import Beams, beam_lengths, beam_volumes, level_arcs, section_arcs
 from .contours import beam_contours
@@ -82,7 +82,6 @@ def beam_facts(beams: Beams) -> BeamFacts:
     Parameters
     ----------
     beams : Beams
-        B beams.
 
     Returns
     -------
@@ -105,7 +104,7 @@ def beam_facts(beams: Beams) -> BeamFacts:
         sizes=_rectangle_sizes(beams),
         bevels=contours.bevels,
         tilts=annuli.tilt,
-        twists=axis_angles(annuli),
+        twists=twist_angles(annuli),
         mismatches=corner_mismatch(annuli),
         clearances=_clearances(beams),
         ends=annuli.corners[:, :, 0] + annuli.origins[:, None],

@@ -60,7 +60,6 @@ def node_cylinders(beams: Beams) -> NodeCylinders:
     Parameters
     ----------
     beams : Beams
-        B beams.
 
     Returns
     -------

@@ -168,7 +168,6 @@ def signed_density(products: FloatArray) -> tuple[FloatArray, FloatArray, FloatA
     Parameters
     ----------
     products : (E,) float array
-        Values of g.
 
     Returns
     -------

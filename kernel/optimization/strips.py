@@ -65,7 +65,6 @@ def strip_weights_along(mesh: Mesh, direction: FloatArray) -> FloatArray:
     Parameters
     ----------
     mesh : Mesh
-        Mesh of any faces.
     direction : (3,) or (F, 3) float array
         Direction in which strips run, for all faces or for each.
 

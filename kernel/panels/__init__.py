@@ -6,11 +6,11 @@ checks        What keeps a panel from being made: crossing boundaries, lost corn
 congruent     Identical panels: those that a rigid motion carries onto each other.
 cutting       Cutting panels out of the spheres of a mesh, by one plane per edge.
 facts         What is to be known of every panel: for schedules, drawings, files and audits.
-layers        The two faces of a panel with a thickness: spheres concentric with its own.
 mould_blanks  Mould blanks: the smallest cap that holds each panel, and how many of which
               size.
 mould_caps    Moulds as surfaces: the cap of each, and where the panels lie on it.
 panels        Panels: pieces of spheres cut out by planes, exact each in itself.
 tessellation  Triangles for pictures and viewers: points and normals exact, only the faces
               between flat.
+thickness     The two faces of a panel with a thickness: spheres concentric with its own.
 """

@@ -11,7 +11,7 @@ from ..spheres.arc_crossings import crossing_boundaries
 from ..spheres.arcs import Arcs, arc_points
 from ..spheres.incidence import normals
 from ..tolerances import CAP_ANGLE, THIN
-from .panels import Panels, inner_panel_arcs, panel_arcs, panel_areas
+from .panels import Panels, boundaries, panel_areas
 
 NO_PANEL: Final = "P100"
 """Code of a panel that cannot be made."""
@@ -26,14 +26,14 @@ class Found:
     ----------
     references : (H, 3) float array
         Vertices of the mesh faces, local to the panels.
-    layers : (P,) bool array
+    faces : (P,) bool array
         Whether both faces stay clear of the centre of their sphere.
     corners, outer_corners, inner_corners : (H,) bool array
         Whether the corners of the given spheres, and of the outer and inner faces, were found.
     """
 
     references: FloatArray
-    layers: BoolArray
+    faces: BoolArray
     corners: BoolArray
     outer_corners: BoolArray
     inner_corners: BoolArray
@@ -90,7 +90,7 @@ def _faults(panels: Panels, found: Found) -> list[Fault]:
         (
             "the thickness reaches the centre of the sphere: make it thinner, or its mould "
             "larger",
-            ~found.layers,
+            ~found.faces,
         ),
         (
             "thinner than a millionth of its size: with constant power planes have no "
@@ -107,11 +107,8 @@ def _faults(panels: Panels, found: Found) -> list[Fault]:
         ),
     ]
     sides = found.references[panels.next_corners] - found.references
-    layers = [("outer", panels.spheres, panel_arcs(panels))]
-    if panels.thickness > 0:
-        layers.append(("inner", panels.inner_spheres, inner_panel_arcs(panels)))
     has_sides = panels.thickness > 0 or panels.joint_gap > 0
-    for name, rows, arcs in layers:
+    for name, (rows, arcs) in zip(("outer", "inner"), boundaries(panels), strict=False):
         corner_rows = rows[panels.corner_panels]
         backwards = _any_corner(dot(arcs.ends - arcs.starts, sides) <= 0)
         leaning = _any_corner(has_sides & _leaning(corner_rows, arcs))

@@ -45,7 +45,6 @@ def congruent_panels(panels: Panels, tolerance: float = SAME_PANEL) -> Congruent
     Parameters
     ----------
     panels : Panels
-        P panels.
     tolerance : float
         How far corners and middles of edges of the same shape may lie apart, in mean edges of
         all panels.

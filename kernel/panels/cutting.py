@@ -22,8 +22,8 @@ from ..spheres.minkowski import angle
 from ..spheres.rows import recenter
 from ..tolerances import PLANE_SAGITTA, SAME_PLANE
 from .checks import NO_PANEL, Found, rejection_reasons
-from .layers import Layer, Side, panel_layers
 from .panels import Panels, corner_points, panel_ids
+from .thickness import ThicknessRule, ThicknessSide, panel_faces
 
 EdgeMode = Literal["bisector", "intersection"]
 
@@ -35,7 +35,6 @@ def flatten_nearly_plane(sphere_mesh: SphereMesh) -> SphereMesh:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
 
     Returns
     -------
@@ -154,7 +153,6 @@ def cut_edges(sphere_mesh: SphereMesh, edges: EdgeMode, joint_gap: float = 0.0) 
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     edges : {"bisector", "intersection"}
         In which planes, see `cutting_planes`.
     joint_gap : float
@@ -183,7 +181,6 @@ def edge_arcs(sphere_mesh: SphereMesh, edges: EdgeMode) -> Arcs:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     edges : {"bisector", "intersection"}
         In which planes the arcs lie, see `cutting_planes`.
 
@@ -213,7 +210,6 @@ def edge_gaps(sphere_mesh: SphereMesh, edges: EdgeMode) -> FloatArray:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     edges : {"bisector", "intersection"}
         How panels are cut, see `cutting_planes`.
 
@@ -257,7 +253,6 @@ def gap_report(
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     edges : {"bisector", "intersection"}
         How panels are cut.
     face_ids : (P,) int array
@@ -290,8 +285,8 @@ def cut_panels(
     thickness: float = 0.0,
     joint_gap: float = 0.0,
     labels: IntArray | None = None,
-    side: Side = "inward",
-    layer: Layer = "offset",
+    side: ThicknessSide = "inward",
+    layer: ThicknessRule = "offset",
 ) -> tuple[Panels, tuple[RejectedPart, ...]]:
     """
     Cut a panel out of the sphere of every face.
@@ -299,7 +294,6 @@ def cut_panels(
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     edges : {"bisector", "intersection"}
         How panels are cut, see `cutting_planes`.
     thickness : float
@@ -310,7 +304,7 @@ def cut_panels(
     labels : (F,) int array, optional
         Mould of each face.
     side : {"inward", "outward", "centred"}
-        Where the thickness goes from the sphere, see `panel_layers`.
+        Where the thickness goes from the sphere, see `panel_faces`.
     layer : {"offset", "power"}
         Whether the thickness or the difference of squared radii is constant.
 
@@ -326,25 +320,27 @@ def cut_panels(
     InputError
         If an option is unknown, or thickness or gap is negative or not finite.
     """
-    _check_choices(edges=(edges, EdgeMode), side=(side, Side), layer=(layer, Layer))
+    _check_choices(
+        edges=(edges, EdgeMode), side=(side, ThicknessSide), layer=(layer, ThicknessRule)
+    )
     _check_sizes(sphere_mesh.mesh.n_faces, thickness, joint_gap, labels)
     cuts = cut_edges(sphere_mesh, edges, joint_gap)
     mesh, topology = cuts.sphere_mesh.mesh, cuts.sphere_mesh.mesh.topology
     rows = cuts.sphere_mesh.local_spheres
-    layers = panel_layers(rows, thickness, side, layer)
+    sides = panel_faces(rows, thickness, side, layer)
     faces = topology.corner_faces
     planes = cuts.plane_normals, cuts.plane_offsets, mesh.offsets
-    corners, exists = corner_points(layers.outer_spheres[faces], *planes, cuts.corners)
+    corners, exists = corner_points(sides.outer_spheres[faces], *planes, cuts.corners)
     inner_corners, inner_exists = corner_points(
-        layers.inner_spheres[faces], *planes, cuts.corners
+        sides.inner_spheres[faces], *planes, cuts.corners
     )
     panels = Panels(
         ids=panel_ids(mesh.n_faces),
         face_ids=np.arange(mesh.n_faces),
         labels=np.full(mesh.n_faces, -1) if labels is None else np.asarray(labels, np.int64),
         origins=face_centroids(mesh),
-        spheres=layers.outer_spheres,
-        inner_spheres=layers.inner_spheres,
+        spheres=sides.outer_spheres,
+        inner_spheres=sides.inner_spheres,
         design_spheres=rows,
         offsets=mesh.offsets,
         plane_normals=cuts.plane_normals,
@@ -353,11 +349,11 @@ def cut_panels(
         inner_corners=inner_corners,
         neighbors=np.append(faces, -1)[topology.twins],
         edge_ids=_edge_ids(topology),
-        thicknesses=layers.thicknesses,
+        thicknesses=sides.thicknesses,
         thickness=float(thickness),
         joint_gap=float(joint_gap),
     )
-    found = Found(local_corners(mesh), layers.exists, cuts.exists, exists, inner_exists)
+    found = Found(local_corners(mesh), sides.exists, cuts.exists, exists, inner_exists)
     return reject_parts(panels, rejection_reasons(panels, found), NO_PANEL)
 
 
@@ -368,7 +364,6 @@ def thickness_report(panels: Panels) -> dict[str, float]:
     Parameters
     ----------
     panels : Panels
-        P panels.
 
     Returns
     -------

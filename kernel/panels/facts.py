@@ -5,16 +5,24 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, dot, norm, unit
-from ..spheres.arcs import arc_circles, arc_lengths, arc_points, arc_reaches, arc_tangents
+from ..spheres.arcs import (
+    arc_circles,
+    arc_lengths,
+    arc_points,
+    arc_reaches,
+    arc_tangents,
+    patch_areas,
+    sphere_arcs,
+)
 from ..spheres.incidence import normals
-from ..spheres.rows import center_radius
+from ..spheres.rows import center_radius, offset
 from .mould_blanks import PanelCaps, panel_caps
 from .panels import (
     Panels,
+    corner_points,
     opposite_corners,
     panel_arcs,
     panel_areas,
-    panel_volumes,
 )
 
 
@@ -95,7 +103,6 @@ def panel_radii(panels: Panels) -> PanelRadii:
     Parameters
     ----------
     panels : Panels
-        P panels.
 
     Returns
     -------
@@ -111,6 +118,24 @@ def panel_radii(panels: Panels) -> PanelRadii:
     )
 
 
+def panel_bulges(panels: Panels) -> list[str]:
+    """
+    To which side panels bulge, seen along the face normals.
+
+    Parameters
+    ----------
+    panels : Panels
+
+    Returns
+    -------
+    list of str
+        ``out`` for domes, ``in`` for dishes, ``flat`` for planes.
+    """
+    words = {-1.0: "out", 0.0: "flat", 1.0: "in"}
+    signs: list[float] = np.sign(panels.design_spheres[:, 0]).tolist()
+    return [words[sign] for sign in signs]
+
+
 def panel_facts(panels: Panels) -> PanelFacts:
     """
     Measure panels.
@@ -118,7 +143,6 @@ def panel_facts(panels: Panels) -> PanelFacts:
     Parameters
     ----------
     panels : Panels
-        P panels.
 
     Returns
     -------
@@ -141,6 +165,40 @@ def panel_facts(panels: Panels) -> PanelFacts:
         steps=steps,
         caps=panel_caps(panels),
     )
+
+
+_LAYERS, _LAYER_WEIGHTS = np.polynomial.legendre.leggauss(16)
+
+
+def panel_volumes(panels: Panels) -> FloatArray:
+    """
+    Volumes between the outer and inner faces.
+
+    Parameters
+    ----------
+    panels : Panels
+
+    Returns
+    -------
+    (P,) float array
+        Volumes, in cubed model units: the areas of the parallel layers between the two faces,
+        integrated over the thickness with 16 Gauss points.
+    """
+    total = np.zeros(panels.n_panels)
+    for node, weight in zip(_LAYERS, _LAYER_WEIGHTS, strict=True):
+        rows = offset(panels.spheres, -panels.thicknesses * (1 + node) / 2)
+        corners, _ = corner_points(
+            rows[panels.corner_panels], panels.plane_normals, panels.plane_offsets,
+            panels.offsets, panels.corners,
+        )  # fmt: skip
+        arcs = sphere_arcs(
+            rows[panels.corner_panels],
+            panels.plane_normals,
+            corners,
+            corners[panels.next_corners],
+        )
+        total += weight * patch_areas(rows, arcs, panels.corner_panels)
+    return total * panels.thicknesses / 2
 
 
 def _corner_angles(panels: Panels) -> FloatArray:

@@ -10,7 +10,7 @@ from ..spheres.arcs import ArcCircles, Arcs, arc_circles
 from ..spheres.incidence import normals, project
 from ..tolerances import ENCLOSING
 from .congruent import CongruentPanels
-from .panels import Panels, inner_panel_arcs, panel_arcs
+from .panels import Panels, boundaries
 
 _MAX_STEPS = 100
 
@@ -81,7 +81,6 @@ def panel_caps(panels: Panels) -> PanelCaps:
     Parameters
     ----------
     panels : Panels
-        P panels.
 
     Returns
     -------
@@ -126,7 +125,12 @@ def panel_caps(panels: Panels) -> PanelCaps:
     return PanelCaps(centers, axes, radii, sagittas, 2 * np.arcsin(sine))
 
 
-def mould_blanks(panels: Panels, same: CongruentPanels, size_step: float = 0.0) -> MouldBlanks:
+def mould_blanks(
+    panels: Panels,
+    same: CongruentPanels,
+    size_step: float = 0.0,
+    caps: PanelCaps | None = None,
+) -> MouldBlanks:
     """
     How many blanks of which size every mould must give.
 
@@ -139,6 +143,8 @@ def mould_blanks(panels: Panels, same: CongruentPanels, size_step: float = 0.0) 
     size_step : float
         Blanks come in diameters that are multiples of this length, in model units; 0 for one
         size per mould, that of its largest panel.
+    caps : PanelCaps, optional
+        `panel_caps` of the panels, where they are known.
 
     Returns
     -------
@@ -153,7 +159,7 @@ def mould_blanks(panels: Panels, same: CongruentPanels, size_step: float = 0.0) 
     if not (np.isfinite(size_step) and size_step >= 0):
         raise InputError(f"the step of blank sizes must be at least 0, not {size_step}")
     members = np.flatnonzero(panels.labels >= 0)
-    labels, diameters = panels.labels[members], 2 * panel_caps(panels).radii[members]
+    labels, diameters = panels.labels[members], 2 * (caps or panel_caps(panels)).radii[members]
     moulds, which = np.unique(labels, return_inverse=True)
     curvatures = 2 * np.abs(panels.design_spheres[members, 0])
     # Small panels of a very large mould are built as planes; the mould is no flatter for it.
@@ -187,12 +193,10 @@ def mould_blanks(panels: Panels, same: CongruentPanels, size_step: float = 0.0) 
 
 def _arcs_on_moulds(panels: Panels) -> tuple[Arcs, IntArray]:
     """Edges of both faces carried along the radii onto the moulds, and their panels."""
-    layers = [(panels.spheres, panel_arcs(panels))]
-    if panels.thickness > 0:
-        layers.append((panels.inner_spheres, inner_panel_arcs(panels)))
+    faces = boundaries(panels)
     owners, mould = panels.corner_panels, panels.design_spheres
     carried: list[Arcs] = []
-    for rows, arcs in layers:
+    for rows, arcs in faces:
         # Concentric spheres are scaled by the ratio of their radii, planes by 1.
         scale = np.ones(panels.n_panels)
         np.divide(rows[:, 0], mould[:, 0], out=scale, where=mould[:, 0] != 0)
@@ -206,7 +210,7 @@ def _arcs_on_moulds(panels: Panels) -> tuple[Arcs, IntArray]:
             for name in ("starts", "ends", "rises", "sagittas")
         )
     )
-    return joined, np.concatenate([owners] * len(layers))
+    return joined, np.concatenate([owners] * len(faces))
 
 
 def _first_of_each(owners: IntArray, count: int) -> IntArray:

@@ -7,6 +7,7 @@ face), so the site's coordinates cost no digits. `kernel.cutting` makes panels.
 """
 
 from dataclasses import dataclass, field, replace
+from typing import Literal
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, unit
 from ..parts.records import PER_CORNER
 from ..spheres.arcs import Arcs, patch_areas, sphere_arcs
 from ..spheres.incidence import meet_lines
-from ..spheres.rows import offset, recenter, rescale
+from ..spheres.rows import recenter, rescale
 from ..tolerances import PARALLEL_PLANES
 
 
@@ -210,7 +211,6 @@ def panel_ids(n_faces: int) -> tuple[str, ...]:
     Parameters
     ----------
     n_faces : int
-        Number of faces.
 
     Returns
     -------
@@ -228,7 +228,6 @@ def opposite_corners(panels: Panels) -> IntArray:
     Parameters
     ----------
     panels : Panels
-        P panels with H corners.
 
     Returns
     -------
@@ -252,7 +251,6 @@ def neighbor_ids(panels: Panels) -> list[str | None]:
     Parameters
     ----------
     panels : Panels
-        P panels with H corners.
 
     Returns
     -------
@@ -270,7 +268,6 @@ def scale_panels(panels: Panels, factor: float) -> Panels:
     Parameters
     ----------
     panels : Panels
-        P panels.
     factor : float
         Positive number of new units in an old one.
 
@@ -301,7 +298,6 @@ def move_origins(panels: Panels, origins: FloatArray) -> Panels:
     Parameters
     ----------
     panels : Panels
-        P panels.
     origins : (P, 3) float array
         New origins, in model coordinates, near the old ones.
 
@@ -324,41 +320,45 @@ def move_origins(panels: Panels, origins: FloatArray) -> Panels:
     )
 
 
-def panel_arcs(panels: Panels) -> Arcs:
+def panel_arcs(panels: Panels, face: Literal["outer", "inner"] = "outer") -> Arcs:
     """
-    Edges of the outer faces, in local coordinates.
+    Edges of the outer or inner faces, in local coordinates.
 
     Parameters
     ----------
     panels : Panels
-        P panels with H corners.
+    face : {"outer", "inner"}
 
     Returns
     -------
     Arcs
         H arcs, arc h from corner h to the next.
     """
-    return _layer_arcs(panels, panels.spheres, panels.corners)
+    if face == "outer":
+        return _face_arcs(panels, panels.spheres, panels.corners)
+    return _face_arcs(panels, panels.inner_spheres, panels.inner_corners)
 
 
-def inner_panel_arcs(panels: Panels) -> Arcs:
+def boundaries(panels: Panels) -> list[tuple[FloatArray, Arcs]]:
     """
-    Edges of the inner faces, in local coordinates.
+    Faces of panels and their edges: the outer ones, and the inner ones if there is a thickness.
 
     Parameters
     ----------
     panels : Panels
-        P panels with H corners.
 
     Returns
     -------
-    Arcs
-        H arcs, arc h from inner corner h to the next.
+    list of ((P, 5) float array, Arcs)
+        Spheres, and H arcs on them.
     """
-    return _layer_arcs(panels, panels.inner_spheres, panels.inner_corners)
+    outer = panels.spheres, panel_arcs(panels)
+    if panels.thickness == 0:
+        return [outer]
+    return [outer, (panels.inner_spheres, panel_arcs(panels, "inner"))]
 
 
-def _layer_arcs(panels: Panels, rows: FloatArray, corners: FloatArray) -> Arcs:
+def _face_arcs(panels: Panels, rows: FloatArray, corners: FloatArray) -> Arcs:
     ends = corners[panels.next_corners]
     return sphere_arcs(rows[panels.corner_panels], panels.plane_normals, corners, ends)
 
@@ -370,7 +370,6 @@ def panel_areas(panels: Panels) -> FloatArray:
     Parameters
     ----------
     panels : Panels
-        P panels.
 
     Returns
     -------
@@ -378,33 +377,3 @@ def panel_areas(panels: Panels) -> FloatArray:
         Areas, in squared model units.
     """
     return patch_areas(panels.spheres, panel_arcs(panels), panels.corner_panels)
-
-
-_LAYERS, _LAYER_WEIGHTS = np.polynomial.legendre.leggauss(16)
-
-
-def panel_volumes(panels: Panels) -> FloatArray:
-    """
-    Volumes between the outer and inner faces.
-
-    Parameters
-    ----------
-    panels : Panels
-        P panels.
-
-    Returns
-    -------
-    (P,) float array
-        Volumes, in cubed model units: the areas of the parallel layers between the two faces,
-        integrated over the thickness with 16 Gauss points.
-    """
-    total = np.zeros(panels.n_panels)
-    for node, weight in zip(_LAYERS, _LAYER_WEIGHTS, strict=True):
-        rows = offset(panels.spheres, -panels.thicknesses * (1 + node) / 2)
-        corners, _ = corner_points(
-            rows[panels.corner_panels], panels.plane_normals, panels.plane_offsets,
-            panels.offsets, panels.corners,
-        )  # fmt: skip
-        arcs = _layer_arcs(panels, rows, corners)
-        total += weight * patch_areas(rows, arcs, panels.corner_panels)
-    return total * panels.thicknesses / 2

@@ -14,7 +14,7 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..errors import InputError
 from ..spheres.arcs import Arcs, arc_points
 from ..spheres.incidence import normals, project
-from .panels import Panels, inner_panel_arcs, panel_arcs
+from .panels import Panels, boundaries, panel_arcs
 
 MAX_STEPS = 32
 
@@ -56,7 +56,6 @@ def surface_rows(panels: Panels) -> FloatArray:
     Parameters
     ----------
     panels : Panels
-        P panels with H corners.
 
     Returns
     -------
@@ -78,7 +77,6 @@ def tessellate(
     Parameters
     ----------
     panels : Panels
-        The panels.
     tolerance : float
         Largest distance of a triangle from its surface, relative to the radius of the panel
         (its farthest corner); reached by at most `MAX_STEPS` steps per edge.
@@ -104,20 +102,18 @@ def tessellate(
     """
     if not tolerance > 0:
         raise InputError(f"the tolerance must be positive, not {tolerance}")
-    layers = [(panels.spheres, panel_arcs(panels))]
-    if solid and panels.thickness > 0:
-        layers.append((panels.inner_spheres, inner_panel_arcs(panels)))
-    steps = _steps(panels, layers[0][1], tolerance)
+    sides = boundaries(panels) if solid else [(panels.spheres, panel_arcs(panels))]
+    steps = _steps(panels, sides[0][1], tolerance)
     pieces: list[_Piece] = []
     kinds = np.unique(np.stack([panels.degrees, steps], 1), axis=0)
     for degree, count in kinds.tolist():
         members = np.flatnonzero((panels.degrees == degree) & (steps == count))
         edges = panels.offsets[members][:, None] + np.arange(int(degree))
-        rims = [_rim_points(arcs, edges, count) for _, arcs in layers]
-        for side, (rows, arcs) in enumerate(layers):
+        rims = [_rim_points(arcs, edges, count) for _, arcs in sides]
+        for side, (rows, arcs) in enumerate(sides):
             faces = _face_pieces(rows[members], arcs, edges, rims[side], members)
             pieces += faces if side == 0 else [_inside_out(piece, panels) for piece in faces]
-        if len(layers) == 2:
+        if len(sides) == 2:
             pieces.append(_wall_piece(panels, edges, rims, members))
     return _join(panels, pieces)
 

@@ -83,7 +83,6 @@ def repeated_names(ids: Iterable[str], code: str, kind: str) -> list[Finding]:
     Parameters
     ----------
     ids : iterable of str
-        Names of the parts.
     code : str
         Code of the findings.
     kind : str
@@ -145,7 +144,6 @@ def findings_report(findings: Sequence[Finding]) -> dict[str, Any]:
     Parameters
     ----------
     findings : sequence of Finding
-        The findings.
 
     Returns
     -------

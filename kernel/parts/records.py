@@ -70,7 +70,6 @@ def select_parts(parts: PartsT, keep: BoolArray) -> PartsT:
     Parameters
     ----------
     parts : PartsT
-        n parts.
     keep : (n,) bool array
         Which ones.
 
@@ -111,7 +110,6 @@ def reject_parts(
     Parameters
     ----------
     parts : PartsT
-        n parts.
     reasons : mapping of int to str
         Why, by row.
     code : str
@@ -140,7 +138,6 @@ def finite_parts(parts: Parts) -> BoolArray:
     Parameters
     ----------
     parts : Parts
-        n parts.
 
     Returns
     -------

@@ -90,7 +90,6 @@ class Layout:
         Parameters
         ----------
         block : Block
-            Elements per row.
 
         Returns
         -------
@@ -133,7 +132,6 @@ def jacobian_pattern(layout: Layout, terms: Sequence[Sequence[Block]]) -> Jacobi
     ----------
     layout : Layout
     terms : sequence of sequences of Block
-        What each term depends on.
 
     Returns
     -------

@@ -126,7 +126,6 @@ def corner_mismatch(annuli: Annuli) -> FloatArray:
     Parameters
     ----------
     annuli : Annuli
-        B annuli.
 
     Returns
     -------
@@ -145,14 +144,13 @@ def corner_mismatch(annuli: Annuli) -> FloatArray:
     return norm(points - means[groups].reshape(-1, 2, 3)).max(axis=1).reshape(-1, 2)
 
 
-def axis_angles(annuli: Annuli) -> FloatArray:
+def twist_angles(annuli: Annuli) -> FloatArray:
     """
     Angles by which the planes of the annuli miss the node axes: 0 where a node has no torsion.
 
     Parameters
     ----------
     annuli : Annuli
-        B annuli.
 
     Returns
     -------
@@ -170,7 +168,6 @@ def end_depths(annuli: Annuli) -> FloatArray:
     Parameters
     ----------
     annuli : Annuli
-        B annuli.
 
     Returns
     -------
@@ -187,7 +184,6 @@ def mean_end_depth(annuli: Annuli) -> float:
     Parameters
     ----------
     annuli : Annuli
-        B annuli.
 
     Returns
     -------

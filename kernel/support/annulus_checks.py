@@ -62,7 +62,6 @@ def inner_reasons(annuli: Annuli, size: float) -> dict[int, str]:
     Parameters
     ----------
     annuli : Annuli
-        B annuli.
     size : float
         Mean edge of the mesh.
 

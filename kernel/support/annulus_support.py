@@ -25,10 +25,10 @@ from ..spheres.rows import recenter
 from ..tolerances import BEAM_TILT, DEGENERATE
 from .annuli import (
     Annuli,
-    axis_angles,
     beam_ids,
     corner_mismatch,
     end_depths,
+    twist_angles,
 )
 from .annulus_checks import NO_ANNULUS, inner_reasons, standing_reasons
 from .node_axes import SupportStructure, arc_planes, support_structure
@@ -67,7 +67,6 @@ def annulus_support(
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
     depth : float, optional
         Length of the ends, along the node axes to the inner side, in model units.
     kappa : float, optional
@@ -329,7 +328,6 @@ def annulus_report(support: AnnulusSupport, size: float) -> AnnuliReport:
     ----------
     support : AnnulusSupport
     size : float
-        Mean edge of the mesh, in model units.
 
     Returns
     -------
@@ -348,7 +346,7 @@ def annulus_report(support: AnnulusSupport, size: float) -> AnnuliReport:
             "max": float(tilt.max(initial=0.0)),
         },
         corner_mismatch={"max": mismatch, "relative_to_edge": mismatch / size},
-        axis_angle_deg=float(np.degrees(axis_angles(annuli).max(initial=0.0))),
+        axis_angle_deg=float(np.degrees(twist_angles(annuli).max(initial=0.0))),
         end_depth={
             "min": float(lengths.min()) if lengths.size else 0.0,
             "max": float(lengths.max(initial=0.0)),

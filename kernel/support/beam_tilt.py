@@ -14,7 +14,6 @@ def beam_tilt(sphere_mesh: SphereMesh) -> FloatArray:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
 
     Returns
     -------

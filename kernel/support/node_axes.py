@@ -142,7 +142,6 @@ def support_structure(sphere_mesh: SphereMesh) -> SupportStructure:
     Parameters
     ----------
     sphere_mesh : SphereMesh
-        The sphere mesh.
 
     Returns
     -------

@@ -31,7 +31,6 @@ def rim_axes(mesh: Mesh, directions: FloatArray, planes: FloatArray) -> FloatArr
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
     directions : (V, 3) float array
         Unit axes; where one plane is given, the direction of it nearest to the normal.
     planes : (V, 3) float array

@@ -8,7 +8,7 @@ from ...fabrication.drawings import moulds as mould_drawings
 from ...fabrication.files import check_suffix, replacing
 from ...fabrication.model import Model, Written
 from ...fabrication.rhino import writer as rhino
-from ...fabrication.schedules import schedule
+from ...fabrication.schedules import writer as schedule
 from ...fabrication.solids.cadquery_assembly import beams_to_cadquery, to_cadquery
 from ...fabrication.step import writer as step
 from ...kernel.beams.beams import Beams

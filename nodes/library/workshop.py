@@ -5,8 +5,9 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from ...fabrication.audit import beams as beam_audit
-from ...fabrication.audit import panels as panel_audit
+from ...fabrication.audit.report import audit_model
+from ...fabrication.audit.subjects import AuditLimits
+from ...fabrication.model import Model
 from ...fabrication.step.check import check_part21
 from ...kernel.analysis import angle_summary
 from ...kernel.beams.beams import Beams
@@ -14,7 +15,7 @@ from ...kernel.meshes.mesh import mean_edge_length
 from ...kernel.panels import congruent
 from ...kernel.panels import mould_blanks as blanks
 from ...kernel.panels.panels import Panels
-from ...kernel.parts.findings import Finding, findings_report, refusals
+from ...kernel.parts.findings import Finding, findings_report
 from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ...kernel.support.annulus_support import AnnuliReport
@@ -283,7 +284,7 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     >>> audit(made.panels, made.report).report["counts"]
     {'P201': 60}
     """
-    limits = panel_audit.AuditLimits(
+    limits = AuditLimits(
         corner_deg=min_corner,
         edge_mm=min_edge,
         wall_tilt_deg=max_wall_tilt,
@@ -292,16 +293,13 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
         twist_deg=max_twist,
         beam_mm=float("inf") if max_length is None else max_length,
     )
-    findings = refusals(
+    rejected = [
         part
         for report in (cut, annuli_report, beams_report)
         if report is not None
         for part in report.get("rejected", ())
-    )
-    if panels is not None:
-        findings += panel_audit.audit_panels(panels, units, limits=limits)
-    if beams is not None:
-        findings += beam_audit.audit_beams(beams, units, limits=limits)
+    ]
+    findings = audit_model(Model(panels, beams, units), limits, rejected)
     return Audit(tuple(findings), AuditReport(**findings_report(findings)))
 
 
@@ -319,8 +317,8 @@ def check_step(path: ReadPath) -> Audit:
     -------
     findings : tuple of Finding
         What is wrong; empty if nothing is.
-    report : mapping
-        The findings, by severity.
+    report : AuditReport
+        The findings as plain values.
 
     Examples
     --------
@@ -333,7 +331,7 @@ def check_step(path: ReadPath) -> Audit:
     ()
     """
     findings = check_part21(path)
-    return Audit(findings, findings_report(findings))
+    return Audit(findings, AuditReport(**findings_report(findings)))
 
 
 @node

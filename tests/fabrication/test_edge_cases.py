@@ -12,12 +12,13 @@ import rhino3dm
 from OCP.BRepCheck import BRepCheck_Analyzer
 
 from spheremesh import Mesh, SphereMesh
-from spheremesh.fabrication.audit.panels import audit_panels
+from spheremesh.fabrication.audit.report import audit_model
 from spheremesh.fabrication.drawings.beams import write_dxf
 from spheremesh.fabrication.drawings.moulds import write_mould_drawings
 from spheremesh.fabrication.model import Model, Written
 from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
-from spheremesh.fabrication.schedules.schedule import schedule_rows, write_schedule
+from spheremesh.fabrication.schedules.panels import panel_tables
+from spheremesh.fabrication.schedules.writer import write_schedule
 from spheremesh.fabrication.solids.opencascade_panels import panel_shapes
 from spheremesh.fabrication.step.check import check_part21
 from spheremesh.fabrication.step.writer import StepOptions, write_step
@@ -62,7 +63,7 @@ def write_all(panels: Panels, folder: Path) -> None:
     shapes = panel_shapes(panels, 1000.0)
     assert len(shapes) == panels.n_panels
     assert all(BRepCheck_Analyzer(shape).IsValid() for shape in shapes)
-    assert not [f for f in audit_panels(panels) if f.severity == "error"]
+    assert not [f for f in audit_model(Model(panels)) if f.severity == "error"]
 
 
 def step_names(path: Path) -> set[str]:
@@ -128,7 +129,7 @@ def test_corners_of_a_hundredth_of_a_degree(
     assert panels.n_panels + len(rejected) == 1
     assert not rejected, rejected[0].reason
     write_all(panels, tmp_path)
-    found = {finding.code: finding.size for finding in audit_panels(panels)}
+    found = {finding.code: finding.size for finding in audit_model(Model(panels))}
     assert found["P102"] == pytest.approx(degrees, rel=0.3)
     # A joint swallows what is thinner than itself.
     _, (refused,) = cut_panels(curved(mesh, [angle]), thickness=thickness, joint_gap=0.02)
@@ -146,7 +147,7 @@ def test_names_of_any_script(squares: Callable[..., SphereMesh], tmp_path: Path)
     )  # fmt: skip
     named = replace(panels, ids=names)
     write_all(named, tmp_path)
-    assert [row["id"] for row in schedule_rows(named, "m")] == list(names)
+    assert [row["id"] for row in panel_tables(named, "m")["Panels"]] == list(names)
     for name in ("p.csv", "p.json", "p.dxf", "p.svg"):
         assert "面板-2" in (tmp_path / name).read_text("utf-8").replace(
             "\\u9762\\u677f", "面板"
@@ -244,7 +245,7 @@ def test_law_millimetres_are_the_same_in_every_unit(
         roof = roof_net(6, 7, 30.0)
         spheres = fit_spheres(Mesh(scale * roof.vertices, roof.faces))
         panels = moulded(spheres, 0.05 * scale, 0.01 * scale)
-        rows.append(schedule_rows(panels, units))
+        rows.append(panel_tables(panels, units)["Panels"])
         text = write_step(Model(panels, units=units), tmp_path / "p.step").path.read_text(
             "ascii"
         )

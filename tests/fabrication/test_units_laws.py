@@ -15,7 +15,7 @@ from spheremesh.fabrication.drawings.beams import write_dxf
 from spheremesh.fabrication.drawings.moulds import write_mould_drawings
 from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
-from spheremesh.fabrication.schedules.schedule import mould_rows, schedule_rows
+from spheremesh.fabrication.schedules.panels import panel_tables
 from spheremesh.fabrication.step.writer import write_step
 from spheremesh.fabrication.units import millimeters_per
 from spheremesh.kernel.arrays import FloatArray
@@ -98,11 +98,11 @@ def numbers(values: Any) -> list[float]:  # noqa: ANN401
 
 
 def schedule(job: Job, _: Path) -> FloatArray:
-    return np.array(numbers([schedule_rows(job.panels, job.units)]))
+    return np.array(numbers([panel_tables(job.panels, job.units)["Panels"]]))
 
 
 def moulds(job: Job, _: Path) -> FloatArray:
-    return np.array(numbers([mould_rows(job.panels, job.units)]))
+    return np.array(numbers([panel_tables(job.panels, job.units)["Moulds"]]))
 
 
 def step(job: Job, folder: Path) -> FloatArray:

@@ -68,27 +68,13 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
     first, second = _rows_at_middles(setting, unknowns)
     slope = 2 * np.sqrt(setting.edge_weights) * np.abs(minkowski(first, second))
     return tuple(
-        slope[:, None] * product_gradient(other, middle)
+        slope[:, None] * _product_gradient(other, middle)
         for other, middle in zip((second, first), setting.edge_middles, strict=True)
     )
 
 
-def product_gradient(other: FloatArray, middle: FloatArray) -> FloatArray:
-    """
-    Derivative of ``<<S, S'>>`` by the coefficients of S.
-
-    Parameters
-    ----------
-    other : (E, 5) float array
-        Rows S', seen from the middles of the edges.
-    middle : (E, 3) float array
-        The middles, in the coordinates of S.
-
-    Returns
-    -------
-    (E, 5) float array
-        ``(-2 C, B, -2 A)`` of S' seen from the origin of S.
-    """
+def _product_gradient(other: FloatArray, middle: FloatArray) -> FloatArray:
+    """Derivative (E, 5) of ``<<S, S'>>`` by S, with S' seen from the middle, local to S."""
     return minkowski_gradient(recenter(other, -middle))
 
 

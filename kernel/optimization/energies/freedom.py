@@ -109,7 +109,6 @@ def pushed_out(freedom: Freedom, displacements: FloatArray, push: FloatArray) ->
     ----------
     freedom : Freedom
     displacements : (V, 3) float array
-        Where the vertices are.
     push : (V or 0, 3) float array
         A direction for each; empty where vertices take no part.
 
@@ -130,7 +129,6 @@ def free_directions(freedom: Freedom, displacements: FloatArray, held: BoolArray
     ----------
     freedom : Freedom
     displacements : (V, 3) float array
-        Where the vertices are.
     held : (V or 0,) bool array
         Which vertices are held; empty where vertices take no part.
 

@@ -52,20 +52,8 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
     return misses - np.clip(misses, -setting.allowance, setting.allowance)
 
 
-def vertex_misses(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """
-    ``A |v|² - B·v + C`` at each corner.
-
-    Parameters
-    ----------
-    setting : Setting
-    unknowns : Unknowns
-
-    Returns
-    -------
-    (H,) float array
-        Nearly the signed distance of the vertex from the sphere, in mean edges.
-    """
+def _vertex_misses(setting: Setting, unknowns: Unknowns) -> FloatArray:
+    """``A |v|² - B·v + C`` at each corner: nearly the distance of vertex and sphere."""
     return evaluate(unknowns.spheres[setting.corner_faces], _points(setting, unknowns))
 
 
@@ -98,7 +86,7 @@ def _centered_misses(setting: Setting, unknowns: Unknowns) -> FloatArray:
     A vertex at distance d from a unit row misses by ``d + A d²``.
     """
     curvatures = unknowns.spheres[setting.corner_faces, 0]
-    return vertex_misses(setting, unknowns) - curvatures * setting.allowance**2
+    return _vertex_misses(setting, unknowns) - curvatures * setting.allowance**2
 
 
 def _points(setting: Setting, unknowns: Unknowns) -> FloatArray:

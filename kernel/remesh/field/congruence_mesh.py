@@ -104,7 +104,7 @@ def congruence_mesh(mesh: Mesh, spheres: ArrayLike) -> CongruenceMesh:
     origin = face_centroids(mesh).mean(axis=0)
     points = (mesh.vertices - origin) / size
     rows = _vertex_rows(mesh, np.asarray(spheres, float), size)
-    vertex_frames = tangent_frames(vertex_normals(mesh))
+    vertex_frames = _tangent_frames(vertex_normals(mesh))
     triangles = mesh.corners.reshape(-1, 3)
     sides = unit(points[triangles[:, 1]] - points[triangles[:, 0]])
     face_normals = unit(areas)
@@ -116,20 +116,8 @@ def congruence_mesh(mesh: Mesh, spheres: ArrayLike) -> CongruenceMesh:
     )  # fmt: skip
 
 
-def tangent_frames(vectors: FloatArray) -> FloatArray:
-    """
-    Right-handed orthonormal frames that end with given normals.
-
-    Parameters
-    ----------
-    vectors : (n, 3) float array
-        Unit normals.
-
-    Returns
-    -------
-    (n, 3, 3) float array
-        Two tangents and the normal as rows.
-    """
+def _tangent_frames(vectors: FloatArray) -> FloatArray:
+    """Two tangents and the normal (n, 3, 3) of unit normals."""
     axes = np.eye(3)[np.abs(vectors).argmin(axis=1)]
     first = unit(np.cross(vectors, axes))
     return np.stack([first, np.cross(vectors, first), vectors], 1)

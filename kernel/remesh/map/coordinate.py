@@ -138,7 +138,6 @@ def solve_coordinate(
     ----------
     coordinate : Coordinate
     solutions : IntegerSolutions
-        The integers that are allowed.
     n_first : int
         The first so many are rounded before the others.
 

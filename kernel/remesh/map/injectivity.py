@@ -57,7 +57,6 @@ class ChartGradients:
         Parameters
         ----------
         values : (V, 2) float array
-            Coordinates at the vertices.
 
         Returns
         -------
@@ -73,7 +72,6 @@ class ChartGradients:
         Parameters
         ----------
         values : (V, 2) float array
-            Coordinates at the vertices.
 
         Returns
         -------
@@ -91,7 +89,6 @@ class ChartGradients:
         Parameters
         ----------
         values : (V, 2) float array
-            Coordinates at the vertices.
 
         Returns
         -------
@@ -122,7 +119,6 @@ class ChartGradients:
         Parameters
         ----------
         faces : (n,) int array
-            Faces to keep.
 
         Returns
         -------
@@ -151,7 +147,6 @@ def untangle(
     surface : CongruenceMesh
     charts : ChartGradients
     start : (V, 2) float array
-        Coordinates of the vertices.
     is_fixed : (V, 2) bool array
         Coordinates that stay.
     edge_length : float

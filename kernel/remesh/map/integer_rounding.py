@@ -107,7 +107,6 @@ def relaxed_minimum(function: Quadratic, solutions: IntegerSolutions) -> FloatAr
     ----------
     function : Quadratic
     solutions : IntegerSolutions
-        The equations that n satisfies.
 
     Returns
     -------
@@ -128,7 +127,6 @@ def round_minimum(function: Quadratic, solutions: IntegerSolutions, n_first: int
     ----------
     function : Quadratic
     solutions : IntegerSolutions
-        Which n are allowed.
     n_first : int
         The first so many entries of n are rounded before the others.
 

@@ -91,7 +91,7 @@ def parametrize(
     ----------
     Bommes, Zimmer, Kobbelt, Mixed-integer quadrangulation, 2009, for the greedy rounding.
     """
-    gradients = chart_gradients(surface, frames, edge_length)
+    gradients = _chart_gradients(surface, frames, edge_length)
     alignments = [
         _consistent(seams, alignment)
         for alignment in align_boundary(surface, fans, frames, seams, edge_length)
@@ -126,24 +126,10 @@ def parametrize(
     )  # fmt: skip
 
 
-def chart_gradients(
+def _chart_gradients(
     surface: CongruenceMesh, frames: CombedFrames, edge_length: float
 ) -> ChartGradients:
-    """
-    Derivatives along the two directions, per edge length.
-
-    Parameters
-    ----------
-    surface : CongruenceMesh
-    frames : CombedFrames
-    edge_length : float
-        Length of a unit step, in mean edges.
-
-    Returns
-    -------
-    ChartGradients
-        With trivial signs and shifts.
-    """
+    """Derivatives along the two directions, per edge length; signs and shifts are trivial."""
     points = surface.points[surface.triangles]
     opposite = np.roll(points, -2, axis=1) - np.roll(points, -1, axis=1)
     normals = surface.face_frames[:, None, 2]

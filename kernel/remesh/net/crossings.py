@@ -97,7 +97,6 @@ def corner_coordinates(
     fans : Fans
     charts : ChartGradients
     values : (V, 2) float array
-        Coordinates of the vertices.
 
     Returns
     -------
@@ -221,7 +220,6 @@ def face_meetings(
     Parameters
     ----------
     corners : (H, 2) float array
-        Coordinates of the corners.
     segments : Segments
         Pieces of lines.
     is_flipped : (F,) bool array

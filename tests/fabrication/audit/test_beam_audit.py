@@ -7,15 +7,16 @@ import numpy as np
 import pytest
 
 from spheremesh import Mesh
-from spheremesh.fabrication.audit.beams import audit_beams
-from spheremesh.fabrication.audit.panels import AuditLimits
-from spheremesh.fabrication.schedules.beams import beam_rows
+from spheremesh.fabrication.audit.report import audit_model
+from spheremesh.fabrication.audit.subjects import AuditLimits
+from spheremesh.fabrication.model import Model
+from spheremesh.fabrication.schedules.beams import beam_tables
 from spheremesh.kernel.beams.beams import Beams, scale_beams
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.beams.drilling import drill_beams
 from spheremesh.kernel.beams.facts import beam_facts
 from spheremesh.kernel.optimization.angle_minimization import minimize_angles
-from spheremesh.kernel.parts.findings import Finding, findings_report
+from spheremesh.kernel.parts.findings import Finding, findings_report, rejected_report
 from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
@@ -40,26 +41,30 @@ def of(code: str, findings: tuple[Finding, ...]) -> dict[str, float | None]:
 
 
 def test_sound_beams_have_no_findings() -> None:
-    assert audit_beams(sound()) == ()
+    assert audit_model(Model(beams=sound())) == ()
 
 
 def test_names_numbers_and_refusals_are_errors() -> None:
     beams = sound()
     twice = replace(beams, annuli=replace(ANNULI, ids=("B9", "B9", *ANNULI.ids[2:])))
-    (found,) = audit_beams(twice)
+    (found,) = audit_model(Model(beams=twice))
     assert (found.code, found.id, found.severity) == ("B001", "B9", "error")
     outer = ANNULI.outer.copy()
     outer[7] = np.inf
-    (found,) = audit_beams(replace(beams, annuli=replace(ANNULI, outer=outer)))
+    (found,) = audit_model(Model(beams=replace(beams, annuli=replace(ANNULI, outer=outer))))
     assert (found.code, found.id, found.severity) == ("B002", "B0007", "error")
     insets = beams.insets.copy()
     insets[4] = np.nan
-    assert of("B002", audit_beams(replace(beams, insets=insets))) == {"B0004": None}
+    assert of("B002", audit_model(Model(beams=replace(beams, insets=insets)))) == {
+        "B0004": None
+    }
     support = annulus_support(central_spheres(NET), depth=0.5)
     made, rejected = cut_beams(support.annuli, 0.4, node_radius=1.3)
     assert support.rejected
     assert rejected
-    findings = audit_beams(made, "m", (*rejected, *support.rejected))
+    findings = audit_model(
+        Model(beams=made), rejected=rejected_report((*rejected, *support.rejected))
+    )
     refused = [f for f in findings if f.severity == "error"]
     assert {f.id for f in refused if f.code == "B100"} == {b.id for b in support.rejected}
     assert {f.id for f in refused if f.code == "B101"} == {b.id for b in rejected}
@@ -81,7 +86,7 @@ def test_tilts_twists_and_mismatches_are_notes() -> None:
     }
     tilt, twist, step = (float(np.median(sizes)) for sizes in measured.values())
     limits = AuditLimits(wall_tilt_deg=tilt, twist_deg=twist, step_mm=step, depth_share=0)
-    findings = [f for f in audit_beams(beams, limits=limits) if f.code in measured]
+    findings = [f for f in audit_model(Model(beams=beams), limits) if f.code in measured]
     assert {f.severity for f in findings} == {"note"}
     for (code, sizes), limit in zip(measured.items(), (tilt, twist, step), strict=True):
         found = of(code, findings)
@@ -98,14 +103,14 @@ def test_the_sharpest_bevel_counts() -> None:
     bevels = np.degrees(beam_facts(beams).bevels)
     sharpest = bevels.min(axis=(1, 2))
     assert (bevels.max(axis=(1, 2)) > 80).sum() > 10
-    found = of("B206", audit_beams(beams, limits=AuditLimits(corner_deg=50)))
+    found = of("B206", audit_model(Model(beams=beams), AuditLimits(corner_deg=50)))
     assert list(found) == [beams.annuli.ids[i] for i in np.flatnonzero(sharpest < 50)]
     np.testing.assert_allclose(list(found.values()), sharpest[sharpest < 50], rtol=1e-9)  # pyright: ignore
 
 
 def test_shallow_short_sharp_and_long_beams_are_notes() -> None:
     beams = cut_beams(ANNULI, 0.3, 0.01)[0]
-    findings = audit_beams(beams)
+    findings = audit_model(Model(beams=beams))
     assert codes(findings) == {"B204"}
     assert set(of("B204", findings)) == set(beams.annuli.ids)
     assert findings[0].message.endswith(" mm deep, less than 600")
@@ -114,24 +119,24 @@ def test_shallow_short_sharp_and_long_beams_are_notes() -> None:
     np.testing.assert_allclose([finding.size for finding in findings], depths, rtol=1e-9)  # pyright: ignore
     chords = 1000 * beam_facts(sound()).chords
     limit = float(np.median(chords)) + 1
-    findings = audit_beams(sound(), limits=AuditLimits(edge_mm=limit))
+    findings = audit_model(Model(beams=sound()), AuditLimits(edge_mm=limit))
     assert set(of("B205", findings)) == {
         name for name, chord in zip(ANNULI.ids, chords, strict=True) if chord < limit
     }
-    findings = audit_beams(sound(), limits=AuditLimits(corner_deg=46))
+    findings = audit_model(Model(beams=sound()), AuditLimits(corner_deg=46))
     assert codes(findings) == {"B206"}
     sizes = 1000 * beam_facts(sound()).sizes.max(axis=1)
     limit = float(sizes.mean())
-    findings = audit_beams(sound(), limits=AuditLimits(beam_mm=limit))
+    findings = audit_model(Model(beams=sound()), AuditLimits(beam_mm=limit))
     assert list(of("B207", findings)) == [ANNULI.ids[i] for i in np.flatnonzero(sizes > limit)]
 
 
 def test_marks_that_do_not_fit_are_notes() -> None:
     drilled, refused = drill_beams(sound(), 1, 0.1, 1.5)
-    findings = audit_beams(drilled)
+    findings = audit_model(Model(beams=drilled))
     assert set(of("B208", findings)) == {finding.id for finding in refused}
     assert 0 < len(refused) < drilled.n_beams
-    assert codes(audit_beams(drill_beams(sound(), 2, 0.05, 0.1)[0])) == set()
+    assert codes(audit_model(Model(beams=drill_beams(sound(), 2, 0.05, 0.1)[0]))) == set()
 
 
 @pytest.mark.parametrize(("units", "scale"), [("mm", 1000), ("ft", 1 / 0.3048)])
@@ -139,8 +144,10 @@ def test_law_findings_do_not_depend_on_units(units: str, scale: float) -> None:
     annuli = annulus_support(central_spheres(NET), depth=0.5).annuli
     beams, rejected = cut_beams(annuli, 0.4, node_radius=1.3)
     assert rejected
-    expected = audit_beams(beams, "m", rejected)
-    found = audit_beams(scale_beams(beams, scale), units, rejected)
+    expected = audit_model(Model(beams=beams), rejected=rejected_report(rejected))
+    found = audit_model(
+        Model(beams=scale_beams(beams, scale), units=units), rejected=rejected_report(rejected)
+    )
     assert [(f.code, f.id) for f in found] == [(f.code, f.id) for f in expected]
     assert len(expected) > 3
     for a, b in zip(found, expected, strict=True):
@@ -152,23 +159,23 @@ def test_no_beams_are_audited_too() -> None:
     support = annulus_support(face_planes(mesh), kappa=0.1)
     assert support.annuli.n_annuli == 0
     none = cut_beams(support.annuli, 0.1)[0]
-    findings = audit_beams(none, "m", support.rejected)
+    findings = audit_model(Model(beams=none), rejected=rejected_report(support.rejected))
     assert [(f.code, f.id) for f in findings] == [("B100", f"B000{i}") for i in range(4)]
     report = findings_report(findings)
     assert json.loads(json.dumps(report, allow_nan=False)) == report
-    assert audit_beams(select_parts(sound(), np.zeros(192, bool))) == ()
+    assert audit_model(Model(beams=select_parts(sound(), np.zeros(192, bool)))) == ()
 
 
 def test_the_worse_end_counts() -> None:
     beams, turn = sound(), np.radians(2)
     axes, normal = ANNULI.node_axes.copy(), ANNULI.frames[3, 2]
     axes[3, 1] = np.cos(turn) * axes[3, 1] + np.sin(turn) * normal
-    (found,) = audit_beams(replace(beams, annuli=replace(ANNULI, node_axes=axes)))
+    (found,) = audit_model(Model(beams=replace(beams, annuli=replace(ANNULI, node_axes=axes))))
     assert (found.code, found.id) == ("B202", "B0003")
     assert found.size == pytest.approx(2, rel=1e-9)
     corners = ANNULI.corners.copy()
     corners[5, 0] += 0.02 * ANNULI.frames[5, 2]
-    apart = audit_beams(replace(beams, annuli=replace(ANNULI, corners=corners)))
+    apart = audit_model(Model(beams=replace(beams, annuli=replace(ANNULI, corners=corners))))
     sizes = of("B203", apart)
     # Of four ends at a node, one is 20 mm off: 15 mm from their mean, the others 5.
     assert sizes["B0005"] == pytest.approx(15, rel=1e-9)
@@ -177,16 +184,16 @@ def test_the_worse_end_counts() -> None:
 
 def test_beams_that_run_into_each_other_are_errors() -> None:
     """Four beams of 50 mm thickness a node, some at less than right angles."""
-    assert audit_beams(cut_beams(ANNULI, 0.05, node_radius=0.05)[0]) == ()
-    some = audit_beams(cut_beams(ANNULI, 0.05, node_radius=0.026)[0])
+    assert audit_model(Model(beams=cut_beams(ANNULI, 0.05, node_radius=0.05)[0])) == ()
+    some = audit_model(Model(beams=cut_beams(ANNULI, 0.05, node_radius=0.026)[0]))
     assert 0 < len(some) < len(ANNULI.ids)
     beams = cut_beams(ANNULI, 0.05, node_radius=0.015)[0]
-    findings = audit_beams(beams)
+    findings = audit_model(Model(beams=beams))
     assert {(f.code, f.severity) for f in findings} == {("B102", "error")}
     assert {f.id for f in findings} == set(ANNULI.ids)
     expected = -1000 * beam_facts(beams).clearances.min(axis=1)
     np.testing.assert_allclose([f.size for f in findings], expected, rtol=1e-9)  # pyright: ignore
-    assert audit_beams(cut_beams(ANNULI, 0.05)[0]) == ()
+    assert audit_model(Model(beams=cut_beams(ANNULI, 0.05)[0])) == ()
 
 
 def test_a_beam_that_is_left_alone_runs_into_nobody() -> None:
@@ -197,10 +204,10 @@ def test_a_beam_that_is_left_alone_runs_into_nobody() -> None:
     beams = cut_beams(annulus_support(face_planes(fan), depth=0.2).annuli, 0.05)[0]
     # On the rim the next beam is 240 degrees away on one side: mitres reach beyond the node.
     assert beams.insets.min() < -0.01
-    assert codes(audit_beams(beams)) == set()
+    assert codes(audit_model(Model(beams=beams))) == set()
     np.testing.assert_allclose(beam_facts(beams).clearances, 0, atol=1e-12)
     for row in range(beams.n_beams):
         alone = select_parts(beams, np.arange(beams.n_beams) == row)
-        assert codes(audit_beams(alone)) == set()
+        assert codes(audit_model(Model(beams=alone))) == set()
         assert np.isinf(beam_facts(alone).clearances).all()
-        assert beam_rows(alone, "m")[0]["clearances_mm"] == [None, None]
+        assert beam_tables(alone, "m")["Beams"][0]["clearances_mm"] == [None, None]

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from spheremesh.fabrication.model import Model
-from spheremesh.fabrication.schedules.beams import beam_rows, node_rows
-from spheremesh.fabrication.schedules.schedule import write_schedule
+from spheremesh.fabrication.schedules.beams import beam_tables
+from spheremesh.fabrication.schedules.writer import write_schedule
 from spheremesh.kernel.beams.beams import Beams, beam_volumes, scale_beams
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.beams.drilling import drill_beams
@@ -41,7 +41,7 @@ def panels() -> Panels:
 
 
 def test_rows_say_what_the_beams_are() -> None:
-    rows, facts = beam_rows(BEAMS, "m"), beam_facts(BEAMS)
+    rows, facts = beam_tables(BEAMS, "m")["Beams"], beam_facts(BEAMS)
     assert [row["id"] for row in rows] == list(BEAMS.annuli.ids)
     np.testing.assert_allclose([row["volume_m3"] for row in rows], beam_volumes(BEAMS))
     for name, values in (
@@ -71,22 +71,22 @@ def test_rows_say_what_the_beams_are() -> None:
 
 def test_rows_of_straight_beams_have_no_radius() -> None:
     annuli = annulus_support(face_planes(VASE.mesh), depth=0.2).annuli
-    rows = beam_rows(cut_beams(annuli, 0.04)[0], "m")
+    rows = beam_tables(cut_beams(annuli, 0.04)[0], "m")["Beams"]
     assert all(row["outer_radius_mm"] is row["inner_radius_mm"] is None for row in rows)
     assert {row["sagitta_mm"] for row in rows} == {0.0}
     assert {row["holes"] for row in rows} == {0}
 
 
 def test_warnings_stand_in_the_row_of_their_beam() -> None:
-    rows = beam_rows(scale_beams(BEAMS, 0.01), "m")
+    rows = beam_tables(scale_beams(BEAMS, 0.01), "m")["Beams"]
     assert all("B205 is only" in row["warnings"] for row in rows)
 
 
 def test_rows_of_nodes() -> None:
-    rows = node_rows(BEAMS, "m")
+    rows = beam_tables(BEAMS, "m")["Nodes"]
     assert [row["id"] for row in rows] == [f"N{row['vertex']:04d}" for row in rows]
     ends = {row["id"]: set[str]() for row in rows}
-    for beam in beam_rows(BEAMS, "m"):
+    for beam in beam_tables(BEAMS, "m")["Beams"]:
         for name in beam["nodes"]:
             ends[name].add(beam["id"])
     for row in rows:
@@ -94,14 +94,15 @@ def test_rows_of_nodes() -> None:
         assert row["radius_mm"] == 60.0
         assert np.linalg.norm(row["direction"]) == pytest.approx(1)
         assert row["height_mm"] > 150
-    assert node_rows(made(0.0), "m") == []
+    assert beam_tables(made(0.0), "m")["Nodes"] == []
 
 
 @pytest.mark.parametrize(("units", "scale"), [("mm", 1000.0), ("ft", 1 / 0.3048)])
 def test_law_millimetres_do_not_depend_on_units(units: str, scale: float) -> None:
     scaled = scale_beams(BEAMS, scale)
-    for rows in (beam_rows, node_rows):
-        for a, b in zip(rows(scaled, units), rows(BEAMS, "m"), strict=True):
+    found_tables, expected_tables = beam_tables(scaled, units), beam_tables(BEAMS, "m")
+    for table, rows in expected_tables.items():
+        for a, b in zip(found_tables[table], rows, strict=True):
             assert a.keys() == b.keys()
             for name, value in a.items():
                 if name in {"panels", "nodes", "beams", "id", "warnings"}:
@@ -116,7 +117,7 @@ def test_csv_opens_in_spreadsheets_and_programs(tmp_path: Path) -> None:
     assert path.read_bytes().startswith(b"\xef\xbb\xbfid,edge,panels,nodes,")
     with path.open(encoding="utf-8-sig", newline="") as file:
         rows = list(csv.DictReader(file))
-    expected = beam_rows(BEAMS, "m")
+    expected = beam_tables(BEAMS, "m")["Beams"]
     assert len(rows) == len(expected)
     for row, other in zip(rows, expected, strict=True):
         assert row["id"] == other["id"]
@@ -137,8 +138,8 @@ def test_json_holds_panels_as_before_and_beams(panels: Panels, tmp_path: Path) -
     both = write_schedule(Model(panels, BEAMS), tmp_path / "b.json").path
     content = json.loads(both.read_text("utf-8"))
     assert {name: content[name] for name in alone} == alone
-    assert content["beams"] == json.loads(json.dumps(beam_rows(BEAMS, "m")))
-    assert content["nodes"] == json.loads(json.dumps(node_rows(BEAMS, "m")))
+    assert content["beams"] == json.loads(json.dumps(beam_tables(BEAMS, "m")["Beams"]))
+    assert content["nodes"] == json.loads(json.dumps(beam_tables(BEAMS, "m")["Nodes"]))
     beside = {name for row in content["beams"] for name in row["panels"]} - {None}
     assert beside <= set(panel_ids(VASE.mesh.n_faces))
 
@@ -150,7 +151,7 @@ def test_xlsx_has_sheets_of_beams_and_nodes(panels: Panels, tmp_path: Path) -> N
     assert book.sheetnames == ["Panels", "Moulds", "Beams", "Nodes"]
     header, *rows = book["Beams"].iter_rows(values_only=True)
     column = header.index("chord_mm")
-    expected = [row["chord_mm"] for row in beam_rows(BEAMS, "m")]
+    expected = [row["chord_mm"] for row in beam_tables(BEAMS, "m")["Beams"]]
     np.testing.assert_allclose([row[column] for row in rows], expected)
 
 

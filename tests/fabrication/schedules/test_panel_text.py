@@ -12,12 +12,12 @@ import rhino3dm
 from spheremesh.fabrication.drawings.moulds import write_mould_drawings
 from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.rhino.writer import write_3dm
-from spheremesh.fabrication.schedules.schedule import schedule_rows
+from spheremesh.fabrication.schedules.panels import panel_tables
 from spheremesh.fabrication.step.writer import write_step
 from spheremesh.kernel.optimization.clustering import cluster_radii
 from spheremesh.kernel.panels.cutting import cut_panels
-from spheremesh.kernel.panels.layers import Layer, Side
 from spheremesh.kernel.panels.panels import Panels
+from spheremesh.kernel.panels.thickness import ThicknessRule, ThicknessSide
 from spheremesh.kernel.sphere_meshes.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.kernel.surfaces.circular_nets import roof_net
@@ -25,7 +25,9 @@ from spheremesh.kernel.surfaces.circular_nets import roof_net
 FOOT = 304.8
 
 
-def roof(side: Side = "inward", layer: Layer = "offset", plane_share: int = 5) -> Panels:
+def roof(
+    side: ThicknessSide = "inward", layer: ThicknessRule = "offset", plane_share: int = 5
+) -> Panels:
     """Domes and dishes in moulds, some of them planes; one panel is without mould."""
     mesh = roof_net(5, 4, 20.0)
     planes, great_spheres = circle_pencils(face_circles(mesh)[0])
@@ -52,10 +54,12 @@ def texts(path: Path) -> dict[str, dict[str, str]]:
     ("side", "layer"),
     [("inward", "offset"), ("outward", "offset"), ("centred", "offset"), ("inward", "power")],
 )
-def test_user_text_is_the_row_of_the_schedule(tmp_path: Path, side: Side, layer: Layer) -> None:
+def test_user_text_is_the_row_of_the_schedule(
+    tmp_path: Path, side: ThicknessSide, layer: ThicknessRule
+) -> None:
     panels = roof(side, layer, plane_share=5 if layer == "offset" else 10**9)
     found = texts(write_3dm(Model(panels, units="ft"), tmp_path / "p.3dm").path)
-    rows = schedule_rows(panels, "ft")
+    rows = panel_tables(panels, "ft")["Panels"]
     assert set(found) == {row["id"] for row in rows}
     assert layer == "power" or {row["shape"] for row in rows} == {"sphere", "plane"}
     outer = [row["outer_radius_mm"] == row["radius_mm"] for row in rows if row["radius_mm"]]

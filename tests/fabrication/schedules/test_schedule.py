@@ -11,14 +11,15 @@ import numpy as np
 import pytest
 
 from spheremesh.fabrication.model import Model
-from spheremesh.fabrication.schedules.schedule import mould_rows, schedule_rows, write_schedule
+from spheremesh.fabrication.schedules.panels import panel_tables
+from spheremesh.fabrication.schedules.writer import write_schedule
 from spheremesh.kernel.errors import InputError, MissingLibraryError
 from spheremesh.kernel.panels.cutting import cut_panels
+from spheremesh.kernel.panels.facts import panel_volumes
 from spheremesh.kernel.panels.mould_blanks import panel_caps
 from spheremesh.kernel.panels.panels import (
     Panels,
     panel_areas,
-    panel_volumes,
     scale_panels,
 )
 from spheremesh.kernel.parts.records import select_parts
@@ -32,7 +33,7 @@ def panels(moulded: Callable[..., Panels]) -> Panels:
 
 
 def test_rows_say_what_the_panels_are(panels: Panels) -> None:
-    rows = schedule_rows(panels, "m")
+    rows = panel_tables(panels, "m")["Panels"]
     assert [row["id"] for row in rows] == list(panels.ids)
     np.testing.assert_allclose([row["area_m2"] for row in rows], panel_areas(panels))
     np.testing.assert_allclose([row["volume_m3"] for row in rows], panel_volumes(panels))
@@ -53,10 +54,10 @@ def test_rows_say_what_the_panels_are(panels: Panels) -> None:
 
 
 def test_moulds_and_their_blanks(panels: Panels) -> None:
-    rows = mould_rows(panels, "m")
+    rows = panel_tables(panels, "m")["Moulds"]
     assert [row["mould"] for row in rows] == [1, 2, 3]
     diameters = 2000 * panel_caps(panels).radii
-    listed = schedule_rows(panels, "m")
+    listed = panel_tables(panels, "m")["Panels"]
     for row in rows:
         members = [panel for panel in listed if panel["mould"] == row["mould"]]
         assert row["panels"] == len(members) == len(row["ids"])
@@ -69,15 +70,18 @@ def test_moulds_and_their_blanks(panels: Panels) -> None:
         assert 2 * row["radius_mm"] * np.sin(half) == pytest.approx(largest, rel=1e-9)
         rise = row["radius_mm"] * (1 - np.cos(half))
         assert row["blank_sagitta_mm"] == pytest.approx(rise, rel=1e-6)
-    assert mould_rows(cut_panels(face_planes(torus_net(8, 6, 10.0, 3.0)))[0], "m") == []
+    assert (
+        panel_tables(cut_panels(face_planes(torus_net(8, 6, 10.0, 3.0)))[0], "m")["Moulds"]
+        == []
+    )
 
 
 @pytest.mark.parametrize(("units", "scale"), [("mm", 1000.0), ("ft", 1 / 0.3048)])
 def test_law_millimetres_do_not_depend_on_units(
     panels: Panels, units: str, scale: float
 ) -> None:
-    expected = schedule_rows(panels, "m")
-    found = schedule_rows(scale_panels(panels, scale), units)
+    expected = panel_tables(panels, "m")["Panels"]
+    found = panel_tables(scale_panels(panels, scale), units)["Panels"]
     for a, b in zip(found, expected, strict=True):
         assert a.keys() == b.keys()
         for name, value in a.items():
@@ -92,7 +96,7 @@ def test_csv_opens_in_spreadsheets_and_programs(panels: Panels, tmp_path: Path) 
     assert path.read_bytes().startswith(b"\xef\xbb\xbfid,face,mould,")
     with path.open(encoding="utf-8-sig", newline="") as file:
         rows = list(csv.DictReader(file))
-    expected = schedule_rows(panels, "m")
+    expected = panel_tables(panels, "m")["Panels"]
     assert len(rows) == len(expected)
     for row, other in zip(rows, expected, strict=True):
         assert row["id"] == other["id"]
@@ -110,7 +114,7 @@ def test_csv_keeps_the_digits_of_site_coordinates(panels: Panels, tmp_path: Path
     path = write_schedule(Model(far), tmp_path / "schedule.csv").path
     with path.open(encoding="utf-8-sig", newline="") as file:
         rows = list(csv.DictReader(file))
-    for row, other in zip(rows, schedule_rows(far, "m"), strict=True):
+    for row, other in zip(rows, panel_tables(far, "m")["Panels"], strict=True):
         points = [[float(x) for x in point.split()] for point in row["corners_mm"].split(";")]
         np.testing.assert_allclose(points, other["corners_mm"], rtol=0, atol=1e-3)
         center = [float(x) for x in row["center_mm"].split()]
@@ -121,8 +125,8 @@ def test_json_is_strict(panels: Panels, tmp_path: Path) -> None:
     path = write_schedule(Model(panels), tmp_path / "schedule.json").path
     content = json.loads(path.read_text("utf-8"))
     assert content["units"] == "mm"
-    assert content["panels"] == json.loads(json.dumps(schedule_rows(panels, "m")))
-    assert content["moulds"] == json.loads(json.dumps(mould_rows(panels, "m")))
+    assert content["panels"] == json.loads(json.dumps(panel_tables(panels, "m")["Panels"]))
+    assert content["moulds"] == json.loads(json.dumps(panel_tables(panels, "m")["Moulds"]))
 
 
 def test_xlsx_has_numbers_as_numbers(panels: Panels, tmp_path: Path) -> None:
@@ -131,7 +135,7 @@ def test_xlsx_has_numbers_as_numbers(panels: Panels, tmp_path: Path) -> None:
     book = openpyxl.load_workbook(path)
     assert book.sheetnames == ["Panels", "Moulds"]
     header, *rows = book["Panels"].iter_rows(values_only=True)
-    expected = schedule_rows(panels, "m")
+    expected = panel_tables(panels, "m")["Panels"]
     assert list(header) == list(expected[0])
     assert len(rows) == panels.n_panels
     column = header.index("radius_mm")
@@ -152,7 +156,7 @@ def test_text_in_xlsx_is_what_it_is(panels: Panels, tmp_path: Path) -> None:
     cells = [{key.value: cell for key, cell in zip(header, row, strict=True)} for row in rows]
     assert [row["id"].value for row in cells] == list(names)
     assert {row["id"].data_type for row in cells} == {"s"}
-    for row, expected in zip(cells, schedule_rows(named, "m"), strict=True):
+    for row, expected in zip(cells, panel_tables(named, "m")["Panels"], strict=True):
         neighbors = " ".join(name or "-" for name in expected["neighbors"])
         assert row["neighbors"].value == neighbors
     assert any(row["neighbors"].value.startswith("- ") for row in cells)
@@ -169,9 +173,9 @@ def test_xlsx_without_openpyxl_names_the_extra(
 
 def test_warnings_stand_in_the_row_of_their_panel(panels: Panels, tmp_path: Path) -> None:
     small = scale_panels(panels, 0.002)
-    rows = schedule_rows(small, "m")
+    rows = panel_tables(small, "m")["Panels"]
     assert all(row["warnings"].startswith("P103 an edge of ") for row in rows)
-    assert not any("P103" in row["warnings"] for row in schedule_rows(panels, "m"))
+    assert not any("P103" in row["warnings"] for row in panel_tables(panels, "m")["Panels"])
     write_schedule(Model(small), tmp_path / "schedule.csv")
 
 

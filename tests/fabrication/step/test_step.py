@@ -45,10 +45,10 @@ from spheremesh.fabrication.step.writer import StepOptions, write_step
 from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.errors import InputError, MissingLibraryError
 from spheremesh.kernel.panels.cutting import EdgeMode, cut_panels
+from spheremesh.kernel.panels.facts import panel_volumes
 from spheremesh.kernel.panels.panels import (
     Panels,
     panel_areas,
-    panel_volumes,
 )
 from spheremesh.kernel.parts.colors import Color, mould_color
 from spheremesh.kernel.parts.records import select_parts

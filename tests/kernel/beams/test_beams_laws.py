@@ -182,7 +182,7 @@ def test_beams_that_cannot_be_cut_are_listed(annuli: Annuli) -> None:
         "the cut of an end misses a circle",
     }
     for beam in rejected:
-        assert beam.id == f"B{beam.edge_id:04d}"
+        assert beam.id == f"B{beam.element_id:04d}"
     _, rejected = cut_beams(annuli, 0.01, node_gap=0.3)
     assert any("cuts off one mitre" in beam.reason for beam in rejected)
 

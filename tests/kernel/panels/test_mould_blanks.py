@@ -10,9 +10,9 @@ from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.optimization.clustering import cluster_radii
 from spheremesh.kernel.panels.congruent import congruent_panels
 from spheremesh.kernel.panels.cutting import EdgeMode, cut_panels
-from spheremesh.kernel.panels.layers import Side
 from spheremesh.kernel.panels.mould_blanks import mould_blanks, panel_caps
-from spheremesh.kernel.panels.panels import Panels, inner_panel_arcs, panel_arcs
+from spheremesh.kernel.panels.panels import Panels, panel_arcs
+from spheremesh.kernel.panels.thickness import ThicknessSide
 from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.arcs import arc_points
@@ -44,7 +44,7 @@ def test_caps_of_regular_panels_in_closed_form(angle: float, n_sides: int) -> No
     np.testing.assert_allclose(caps.axes, [[0, 0, 1]], atol=1e-11)
 
 
-def roof_panels(edges: EdgeMode, thickness: float, side: Side) -> Panels:
+def roof_panels(edges: EdgeMode, thickness: float, side: ThicknessSide) -> Panels:
     found = minimize_angles(face_planes(roof_net(12, 16, 30.0)))[0]
     found, clusters = cluster_radii(found, 4)
     return cut_panels(found, edges, thickness, 0.02, clusters.labels, side)[0]
@@ -52,7 +52,7 @@ def roof_panels(edges: EdgeMode, thickness: float, side: Side) -> Panels:
 
 def outlines(panels: Panels) -> list[FloatArray]:
     """Points of the edges of both faces of each panel, carried onto its mould."""
-    both = panel_arcs(panels), inner_panel_arcs(panels)
+    both = panel_arcs(panels), panel_arcs(panels, "inner")
     layers = [arc_points(arcs, np.linspace(-1, 1, 41)) for arcs in both]
     points = np.concatenate(layers, axis=1)
     on_mould = project(panels.design_spheres[panels.corner_panels, None], points)
@@ -61,7 +61,9 @@ def outlines(panels: Panels) -> list[FloatArray]:
 
 @pytest.mark.parametrize("edges", ["bisector", "intersection"])
 @pytest.mark.parametrize("side", ["inward", "outward", "centred"])
-def test_law_caps_hold_their_panels_and_none_is_smaller(edges: EdgeMode, side: Side) -> None:
+def test_law_caps_hold_their_panels_and_none_is_smaller(
+    edges: EdgeMode, side: ThicknessSide
+) -> None:
     panels = roof_panels(edges, 0.2, side)
     caps = panel_caps(panels)
     moves = np.random.default_rng(2).normal(size=(20, 3))

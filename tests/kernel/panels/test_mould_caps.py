@@ -9,17 +9,17 @@ from spheremesh.kernel.arrays import dot, norm, unit
 from spheremesh.kernel.meshes.mesh import Mesh
 from spheremesh.kernel.optimization.clustering import cluster_radii
 from spheremesh.kernel.panels.cutting import cut_panels
-from spheremesh.kernel.panels.layers import Side
 from spheremesh.kernel.panels.mould_blanks import panel_caps
 from spheremesh.kernel.panels.mould_caps import mould_caps
 from spheremesh.kernel.panels.panels import Panels, panel_areas
+from spheremesh.kernel.panels.thickness import ThicknessSide
 from spheremesh.kernel.sphere_meshes.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.kernel.spheres.incidence import normals, signed_distance
 from spheremesh.kernel.surfaces.circular_nets import roof_net
 
 
-def clustered(side: Side = "inward", scale: float = 1.0, shift: float = 0.0) -> Panels:
+def clustered(side: ThicknessSide = "inward", scale: float = 1.0, shift: float = 0.0) -> Panels:
     """Domes, dishes and planes in five moulds; panel 4 is without."""
     mesh = roof_net(6, 5, 20.0)
     mesh = Mesh(scale * mesh.vertices + shift, mesh.faces)
@@ -36,7 +36,7 @@ def clustered(side: Side = "inward", scale: float = 1.0, shift: float = 0.0) -> 
 
 
 @pytest.mark.parametrize("side", ["inward", "outward", "centred"])
-def test_law_caps_are_the_moulds_and_hold_the_panels(side: Side) -> None:
+def test_law_caps_are_the_moulds_and_hold_the_panels(side: ThicknessSide) -> None:
     panels = clustered(side)
     found = mould_caps(panels)
     caps = found.caps

@@ -24,14 +24,13 @@ from spheremesh.kernel.panels.cutting import (
     flatten_nearly_plane,
     gap_report,
 )
+from spheremesh.kernel.panels.facts import panel_volumes
 from spheremesh.kernel.panels.panels import (
     Panels,
-    inner_panel_arcs,
     move_origins,
     panel_arcs,
     panel_areas,
     panel_ids,
-    panel_volumes,
     scale_panels,
 )
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
@@ -372,7 +371,7 @@ def test_inner_faces_are_parallel(optimum: dict[str, SphereMesh], name: str) -> 
     inner_area = panel_areas(cut_panels(optimum[name], thickness=thickness)[0])
     np.testing.assert_allclose(areas, inner_area)
     assert (np.abs(volumes / (thickness * areas) - 1) < 0.25).all()
-    arcs = inner_panel_arcs(panels)
+    arcs = panel_arcs(panels, "inner")
     np.testing.assert_allclose(arcs.starts, panels.inner_corners)
 
 
@@ -507,7 +506,7 @@ def only_reason(found: SphereMesh, mode: EdgeMode = "bisector", **lengths: float
     assert panels.n_panels == 0
     assert len(panels.corners) == len(panels.ids) == 0
     assert panel_areas(panels).shape == panel_volumes(panels).shape == (0,)
-    assert [r.face_id for r in rejected] == list(range(found.mesh.n_faces))
+    assert [r.element_id for r in rejected] == list(range(found.mesh.n_faces))
     assert len({r.reason for r in rejected}) == 1
     return rejected[0].reason
 
@@ -571,7 +570,7 @@ def test_walls_that_lean_over_are_rejected(nets: dict[str, Mesh]) -> None:
         assert any("leans over" in r.reason for r in rejected)
         for rows, arcs in (
             (panels.spheres, panel_arcs(panels)),
-            (panels.inner_spheres, inner_panel_arcs(panels)),
+            (panels.inner_spheres, panel_arcs(panels, "inner")),
         ):
             upwards = normals(rows[panels.corner_panels], (arcs.starts + arcs.ends) / 2)
             assert (dot(upwards, arcs.rises) > 0).all()
@@ -631,12 +630,12 @@ def test_no_panel_is_dropped_silently(
     edge, count = mean_edge_length(found.mesh), found.mesh.n_faces
     for gap in (0.0, 0.3, 0.8):
         panels, rejected = cut_panels(found, mode, joint_gap=gap * edge)
-        named = [r.face_id for r in rejected]
+        named = [r.element_id for r in rejected]
         assert sorted([*panels.face_ids.tolist(), *named]) == list(range(count))
         assert named == sorted(named)
         ids = panel_ids(count)
         assert panels.ids == tuple(ids[i] for i in panels.face_ids)
-        assert all(r.id == ids[r.face_id] and r.reason for r in rejected)
+        assert all(r.id == ids[r.element_id] and r.reason for r in rejected)
         assert (panel_areas(panels) > 0).all()
 
 
@@ -652,7 +651,7 @@ def test_what_is_kept_is_the_same_as_without_the_rejected(
     panels, rejected = cut_panels(
         SphereMesh.from_local(found.mesh, rows), thickness=0.1, labels=labels
     )
-    gone = {r.face_id for r in rejected}
+    gone = {r.element_id for r in rejected}
     assert {3, 40} <= gone
     np.testing.assert_array_equal(panels.labels, labels[panels.face_ids])
     near = {b for a in gone for b in np.unique(whole.neighbors[whole.corner_panels == a])}

@@ -6,7 +6,8 @@ from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import Mesh
 from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
-from spheremesh.kernel.panels.panels import Panels, panel_areas, panel_volumes
+from spheremesh.kernel.panels.facts import panel_volumes
+from spheremesh.kernel.panels.panels import Panels, panel_areas
 from spheremesh.kernel.panels.tessellation import (
     PanelTriangles,
     cut_ears,

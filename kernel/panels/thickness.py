@@ -9,26 +9,26 @@ from ..arrays import BoolArray, FloatArray
 from ..spheres.rows import offset
 from ..tolerances import EPSILON, NEAR_CENTER
 
-Side = Literal["inward", "outward", "centred"]
-Layer = Literal["offset", "power"]
+ThicknessSide = Literal["inward", "outward", "centred"]
+ThicknessRule = Literal["offset", "power"]
 
 OUTWARD_SHARE = {"inward": 0.0, "outward": 1.0, "centred": 0.5}
 """Share of the thickness that lies on the side of N."""
 
 
 @dataclass(frozen=True)
-class Layers:
+class PanelFaces:
     """
     Outer and inner faces.
 
     Attributes
     ----------
     outer_spheres, inner_spheres : (F, 5) float array
-        Unit rows, oriented as the given ones; those themselves where a layer does not exist.
+        Unit rows, oriented as the given ones; those themselves where one does not exist.
     thicknesses : (F,) float array
-        Distance of the inner from the outer face; 0 where a layer does not exist.
+        Distance of the inner from the outer face; 0 where one does not exist.
     exists : (F,) bool array
-        Whether both layers stay clear of the centre of the sphere.
+        Whether both stay clear of the centre of the sphere.
     """
 
     outer_spheres: FloatArray
@@ -37,7 +37,9 @@ class Layers:
     exists: BoolArray
 
 
-def panel_layers(rows: FloatArray, thickness: float, side: Side, layer: Layer) -> Layers:
+def panel_faces(
+    rows: FloatArray, thickness: float, side: ThicknessSide, layer: ThicknessRule
+) -> PanelFaces:
     """
     Outer and inner faces of panels.
 
@@ -52,12 +54,12 @@ def panel_layers(rows: FloatArray, thickness: float, side: Side, layer: Layer) -
     layer : {"offset", "power"}
         ``offset``: the same thickness everywhere. ``power``: the squared radii of the two faces
         differ by the same κ everywhere, so that neighbours which bulge to the same side meet
-        in the same plane on every layer. The thickness is then about κ / 2r: sharp panels are
+        in the same plane on both faces. The thickness is then about κ / 2r: sharp panels are
         thicker than flat ones, and planes have none.
 
     Returns
     -------
-    Layers
+    PanelFaces
         The faces.
 
     References
@@ -74,30 +76,30 @@ def panel_layers(rows: FloatArray, thickness: float, side: Side, layer: Layer) -
     left = np.stack([1 - 2 * rows[:, 0] * distance for distance in (outwards, inwards)])
     exists = np.all(left > NEAR_CENTER, axis=0)
     outwards, inwards = np.where(exists, outwards, 0.0), np.where(exists, inwards, 0.0)
-    return Layers(offset(rows, outwards), offset(rows, inwards), outwards - inwards, exists)
+    return PanelFaces(offset(rows, outwards), offset(rows, inwards), outwards - inwards, exists)
 
 
 def _power_distances(
-    rows: FloatArray, power: float, side: Side
+    rows: FloatArray, power: float, side: ThicknessSide
 ) -> tuple[FloatArray, FloatArray]:
     """
     Signed distances along N of the two faces whose squared radii differ by the power.
 
     With ``r'² = r² + δ`` the distance is ``r' - r = δ / (r' + r)``, written in the curvature k
-    so that planes get zero. Layers beyond the centre end at the centre.
+    so that planes get zero. Faces beyond the centre end at the centre.
     """
     curvature, share = 2 * rows[:, 0], OUTWARD_SHARE[side]
     distances: list[FloatArray] = []
     for change in (share * power, (share - 1) * power):
         square = np.maximum(1 - curvature * np.abs(curvature) * change, 0.0)
         distances.append(np.abs(curvature) * change / (1 + np.sqrt(square)))
-    # A layer that ends at the centre has gone the radius, no farther.
+    # A face that ends at the centre has gone the radius, no farther.
     with np.errstate(divide="ignore"):
         limit = 1 / np.abs(curvature)
     return np.minimum(distances[0], limit), np.maximum(distances[1], -limit)
 
 
-def _common_power(rows: FloatArray, thickness: float, side: Side) -> float:
+def _common_power(rows: FloatArray, thickness: float, side: ThicknessSide) -> float:
     """Difference κ of squared radii that gives curved panels the thickness on average."""
     from scipy.optimize import brentq
 

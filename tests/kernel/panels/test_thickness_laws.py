@@ -9,21 +9,20 @@ from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels, thickness_report
-from spheremesh.kernel.panels.layers import Layer, Side, panel_layers
+from spheremesh.kernel.panels.facts import panel_volumes
 from spheremesh.kernel.panels.panels import (
     Panels,
-    inner_panel_arcs,
     opposite_corners,
     panel_arcs,
     panel_areas,
-    panel_volumes,
 )
+from spheremesh.kernel.panels.thickness import ThicknessRule, ThicknessSide, panel_faces
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.arcs import arc_points
 from spheremesh.kernel.spheres.incidence import evaluate
 from spheremesh.kernel.spheres.rows import center_radius, from_center_radius
 
-SIDES: list[Side] = ["inward", "outward", "centred"]
+SIDES: list[ThicknessSide] = ["inward", "outward", "centred"]
 SHARES = {"inward": 0.0, "outward": 1.0, "centred": 0.5}
 
 
@@ -43,7 +42,9 @@ def octants(octahedron: Mesh, sign: float) -> SphereMesh:
 
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
-def test_law_shells_of_octants_on_every_side(octahedron: Mesh, side: Side, sign: float) -> None:
+def test_law_shells_of_octants_on_every_side(
+    octahedron: Mesh, side: ThicknessSide, sign: float
+) -> None:
     t = 0.3
     found = octants(octahedron, sign)
     panels, rejected = cut_panels(found, thickness=t, side=side)
@@ -68,7 +69,7 @@ def test_law_shells_of_octants_on_every_side(octahedron: Mesh, side: Side, sign:
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("layer", ["offset", "power"])
 def test_law_corners_lie_on_both_faces_of_any_layer(
-    optimum: dict[str, SphereMesh], name: str, side: Side, layer: Layer
+    optimum: dict[str, SphereMesh], name: str, side: ThicknessSide, layer: ThicknessRule
 ) -> None:
     edge = mean_edge_length(optimum[name].mesh)
     panels, rejected = cut_panels(
@@ -87,7 +88,7 @@ def test_law_corners_lie_on_both_faces_of_any_layer(
 
 def steps(panels: Panels, *, inner: bool) -> FloatArray:
     """Distances of the middles of the two arcs of each edge."""
-    arcs = inner_panel_arcs(panels) if inner else panel_arcs(panels)
+    arcs = panel_arcs(panels, "inner") if inner else panel_arcs(panels)
     middles = arc_points(arcs, np.zeros(1))[:, 0] + panels.origins[panels.corner_panels]
     twins = opposite_corners(panels)
     first = np.flatnonzero(twins > np.arange(len(twins)))
@@ -98,7 +99,7 @@ def steps(panels: Panels, *, inner: bool) -> FloatArray:
 @pytest.mark.parametrize("name", ["torus", "ellipsoid", "egg"])
 @pytest.mark.parametrize("side", SIDES)
 def test_law_e5_layers_of_constant_power_meet_in_the_same_planes(
-    optimum: dict[str, SphereMesh], name: str, side: Side
+    optimum: dict[str, SphereMesh], name: str, side: ThicknessSide
 ) -> None:
     found = optimum[name]
     edge = mean_edge_length(found.mesh)
@@ -106,7 +107,7 @@ def test_law_e5_layers_of_constant_power_meet_in_the_same_planes(
     assert (rows[:, 0] < 0).mean() > 0.5
     keep = rows[:, 0] < 0
     t = 0.05 * edge
-    layers = panel_layers(rows, t, side, "power")
+    layers = panel_faces(rows, t, side, "power")
     outer, inner = (center_radius(x)[1] for x in (layers.outer_spheres, layers.inner_spheres))
     square = center_radius(rows)[1]
     # Radii are large against κ: their squares cancel.
@@ -122,7 +123,7 @@ def test_law_e5_layers_of_constant_power_meet_in_the_same_planes(
 
 @pytest.mark.parametrize("side", SIDES)
 def test_law_e5_both_layers_are_watertight_with_constant_power(
-    optimum: dict[str, SphereMesh], side: Side
+    optimum: dict[str, SphereMesh], side: ThicknessSide
 ) -> None:
     found = optimum["ellipsoid"]
     edge = mean_edge_length(found.mesh)
@@ -140,10 +141,10 @@ def test_law_e5_both_layers_are_watertight_with_constant_power(
 def test_law_constant_power_is_covariant(optimum: dict[str, SphereMesh]) -> None:
     rows = optimum["egg"].local_spheres
     t = 0.05 * mean_edge_length(optimum["egg"].mesh)
-    expected = panel_layers(rows, t, "centred", "power").thicknesses
+    expected = panel_faces(rows, t, "centred", "power").thicknesses
     for scale in (1e-3, 1e3):
         scaled = rows * [1 / scale, 1, 1, 1, scale]
-        found = panel_layers(scaled, scale * t, "centred", "power").thicknesses
+        found = panel_faces(scaled, scale * t, "centred", "power").thicknesses
         np.testing.assert_allclose(found, scale * expected, rtol=1e-11)
 
 
@@ -152,7 +153,7 @@ def test_constant_power_on_two_radii_in_closed_form() -> None:
     rows = from_center_radius(np.zeros((2, 3)), radii**2)
     rows /= 2 * radii[:, None] * np.sign(-rows[:, :1])  # unit, N outwards
     assert (rows[:, 0] < 0).all()
-    layers = panel_layers(rows, 0.5, "inward", "power")
+    layers = panel_faces(rows, 0.5, "inward", "power")
     inner = np.sqrt(center_radius(layers.inner_spheres)[1])
     np.testing.assert_allclose(radii - inner, layers.thicknesses, rtol=1e-12)
     np.testing.assert_allclose(np.diff(inner**2), 21.0, rtol=1e-12)
@@ -198,7 +199,7 @@ def test_unknown_sides_and_layers_are_named(octahedron: Mesh) -> None:
 
 @pytest.mark.parametrize("side", SIDES)
 def test_law_panels_of_constant_power_are_those_of_their_own_thickness(
-    optimum: dict[str, SphereMesh], side: Side
+    optimum: dict[str, SphereMesh], side: ThicknessSide
 ) -> None:
     found = optimum["egg"]
     edge = mean_edge_length(found.mesh)

@@ -1,0 +1,81 @@
+"""The audit before files go out: whatever would trouble a workshop, found and numbered."""
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from ...kernel.beams.beams import Beams
+from ...kernel.panels.panels import Panels
+from ...kernel.parts.findings import Finding, refusals, repeated_names
+from ...kernel.parts.records import finite_parts
+from ..model import Model
+from ..units import millimeters_per
+from .beams import beam_subject, check_beams
+from .panels import check_panels, panel_subject
+from .subjects import USUAL_LIMITS, AuditLimits
+
+
+def audit_model(
+    model: Model,
+    limits: AuditLimits = USUAL_LIMITS,
+    rejected: Iterable[Mapping[str, str]] = (),
+) -> tuple[Finding, ...]:
+    """
+    Look for whatever would trouble a workshop.
+
+    Parameters
+    ----------
+    model : Model
+        Panels and beams, perhaps none.
+    limits : AuditLimits
+    rejected : iterable of mapping
+        Parts that could not be made, as `rejected_report` gives them.
+
+    Returns
+    -------
+    tuple of Finding
+        The rejected parts; then those of panels and of beams, by code, then in their order. Of
+        each code a part has one finding, the worst.
+
+        Errors of panels: P001 name used twice, P002 numbers that are not finite, P100 cannot be
+        made, P101 cap beyond 80 degrees. Notes: P102 sharp corner, P103 short edge, P104 thick
+        against its radius, P105 tilted wall, P106 other thickness than asked for, P107 blank
+        too large, P201 step to a neighbour, P202 neighbour missing.
+
+        Errors of beams: B001 name used twice, B002 numbers that are not finite, B100 edge
+        without an annulus, B101 cannot be cut at a node, B102 runs into a neighbour. Notes:
+        B201 tilted against the surface, B202 twisted against a node axis, B203 ends at a node
+        lie apart, B204 shallow, B205 short, B206 sharp bevel, B207 too long a piece, B208
+        drilling marks do not fit.
+
+        Checks from P101 and B102 on need finite numbers: where there is a P002 or B002 they
+        wait until it is mended.
+
+    Raises
+    ------
+    InputError
+        If the units are not known.
+    """
+    millimeters_per(model.units)
+    findings = sorted(refusals(rejected), key=lambda finding: finding.code[1:])
+    if model.panels is not None:
+        found = _unusable(model.panels, "P", "panels")
+        findings += found
+        if model.panels.ids and not any(finding.code == "P002" for finding in found):
+            findings += check_panels(panel_subject(model.panels, model.units, limits))
+    if model.beams is not None:
+        found = _unusable(model.beams, "B", "beams")
+        findings += found
+        if model.beams.ids and not any(finding.code == "B002" for finding in found):
+            findings += check_beams(beam_subject(model.beams, model.units, limits))
+    return tuple(findings)
+
+
+def _unusable(parts: Panels | Beams, letter: str, kind: str) -> list[Finding]:
+    """Names used twice and numbers that are not finite."""
+    broken = np.flatnonzero(~finite_parts(parts)).tolist()
+    message = "has numbers that are not finite"
+    return [
+        *repeated_names(parts.ids, f"{letter}001", kind),
+        *(Finding(f"{letter}002", parts.ids[i], message) for i in broken),
+    ]
