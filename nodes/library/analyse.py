@@ -6,7 +6,6 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 
 from ...kernel import analysis
-from ...kernel.arrays import FloatArray
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.panels import cutting
 from ...kernel.reports import Report
@@ -24,6 +23,7 @@ from .arrays import (
     EdgeDistances,
     FaceDistances,
     FaceMarks,
+    Numbers,
     Points,
     Spheres,
     VertexDistances,
@@ -291,7 +291,7 @@ def _mesh(source: SphereMesh | Mesh) -> Mesh:
 
 
 @node
-def signed_distance(spheres: Spheres, points: Points) -> FloatArray:
+def signed_distance(spheres: Spheres, points: Points) -> Numbers:
     """Distances of points from spheres and planes.
 
     Parameters

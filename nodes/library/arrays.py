@@ -42,6 +42,14 @@ MouldRadii: TypeAlias = Annotated[FloatArray, ArrayFacts("radii of moulds", ("k"
 
 Points: TypeAlias = Annotated[FloatArray, ArrayFacts("points", ("N", 3))]
 Spheres: TypeAlias = Annotated[FloatArray, ArrayFacts("spheres", ("N", 5))]
+Numbers: TypeAlias = Annotated[FloatArray, ArrayFacts("numbers", ("N",))]
+Angles: TypeAlias = Annotated[FloatArray, ArrayFacts("angles", ("N",)), _DEGREES]
+Marks: TypeAlias = Annotated[BoolArray, ArrayFacts("marks", ("N",))]
+Names: TypeAlias = Annotated[NDArray[np.str_], ArrayFacts("names", ("N",))]
+Quadruples: TypeAlias = Annotated[FloatArray, ArrayFacts("points, four each", ("N", 4, 3))]
+SpherePoints: TypeAlias = Annotated[FloatArray, ArrayFacts("points of the 3-sphere", ("N", 4))]
+Coordinates: TypeAlias = Annotated[FloatArray, ArrayFacts("coordinates", ("N", 5))]
+
 Vector: TypeAlias = Annotated[FloatArray, ArrayFacts("vector", (3,))]
 Matrix: TypeAlias = Annotated[FloatArray, ArrayFacts("matrix", (3, 3))]
 Sphere: TypeAlias = Annotated[FloatArray, ArrayFacts("sphere", (5,))]

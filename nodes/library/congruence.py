@@ -21,6 +21,8 @@ from .arrays import (
     FaceDistances,
     FaceMarks,
     FacePoints,
+    Marks,
+    Numbers,
     Points,
     VertexDistances,
     VertexMarks,
@@ -64,7 +66,7 @@ class SmoothEnvelope(NamedTuple):
 
     points_plus: Points
     points_minus: Points
-    is_real: BoolArray
+    is_real: Marks
 
 
 @node
@@ -162,11 +164,11 @@ def envelope(
 @node
 def smooth_envelope(
     centers: Points,
-    radii: FloatArray,
+    radii: Numbers,
     centers_u: Points,
     centers_v: Points,
-    radii_u: FloatArray,
-    radii_v: FloatArray,
+    radii_u: Numbers,
+    radii_v: Numbers,
 ) -> SmoothEnvelope:
     """Points in which the spheres of a smooth congruence touch the two surfaces they envelop.
 
@@ -202,7 +204,7 @@ def conjugacy(
     along_v: FloatArray,
     mixed: FloatArray,
     lift: FloatArray | None = None,
-) -> FloatArray:
+) -> Numbers:
     """How far a parametrisation or a net is from conjugate: distance of f_uv from a span.
 
     Parameters

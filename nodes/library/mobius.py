@@ -4,7 +4,6 @@ from typing import Annotated, NamedTuple, TypeVar
 
 import numpy as np
 
-from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.errors import InputError, name_ids
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.sphere_meshes.mobius import map_mesh, map_sphere_mesh
@@ -14,7 +13,17 @@ from ...kernel.spheres.arcs import Arcs
 from ...kernel.spheres.circles import Circles
 from ..graphs.node import node
 from ..graphs.ports import Port
-from .arrays import Matrix, Points, Sphere, Spheres, Transform, Vector
+from .arrays import (
+    Coordinates,
+    Marks,
+    Matrix,
+    Points,
+    Sphere,
+    SpherePoints,
+    Spheres,
+    Transform,
+    Vector,
+)
 
 Geometry = TypeVar("Geometry", SphereMesh, Mesh, Circles, Arcs, Points | Spheres)
 
@@ -126,7 +135,7 @@ def inverse(transform: Transform) -> Transform:
 
 
 @node
-def sent_to_infinity(points: Points, transform: Transform) -> BoolArray:
+def sent_to_infinity(points: Points, transform: Transform) -> Marks:
     """Which points a transform sends to infinity: `apply_mobius` refuses them.
 
     Parameters
@@ -218,12 +227,12 @@ def apply_mobius(geometry: Geometry, transform: Transform) -> Geometry:
 class Poles(NamedTuple):
     """Poles of spheres with respect to the unit 3-sphere."""
 
-    poles: FloatArray
-    is_infinite: BoolArray
+    poles: SpherePoints
+    is_infinite: Marks
 
 
 @node
-def stereographic(points: Points) -> FloatArray:
+def stereographic(points: Points) -> SpherePoints:
     """Stereographic image of points on the unit 3-sphere, from its north pole.
 
     Parameters
@@ -244,7 +253,7 @@ def stereographic(points: Points) -> FloatArray:
 
 
 @node
-def inverse_stereographic(points: FloatArray) -> Points:
+def inverse_stereographic(points: SpherePoints) -> Points:
     """Central projection from the north pole of the unit 3-sphere back to space.
 
     Parameters
@@ -292,7 +301,7 @@ def poles(spheres: Spheres) -> Poles:
 
 
 @node
-def pentaspherical_coordinates(spheres: Spheres) -> FloatArray:
+def pentaspherical_coordinates(spheres: Spheres) -> Coordinates:
     """Coordinates (B, C - A, C + A) of spheres, on which Möbius transforms act as matrices.
 
     Parameters
@@ -314,7 +323,7 @@ def pentaspherical_coordinates(spheres: Spheres) -> FloatArray:
 
 
 @node
-def polar_hyperplanes(spheres: Spheres) -> FloatArray:
+def polar_hyperplanes(spheres: Spheres) -> Coordinates:
     """Coefficients of the rows that are orthogonal to spheres.
 
     Parameters

@@ -4,9 +4,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...kernel.arrays import FloatArray
 from ...kernel.congruences import curvature_spheres as congruence
 from ...kernel.errors import name_ids
 from ...kernel.hexagons import dual_sphere_mesh as shex
@@ -19,7 +17,7 @@ from ...kernel.sphere_meshes.sphere_mesh import vertex_error as vertex_errors
 from ...kernel.tolerances import AXIS_SLACK
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
-from .arrays import FaceShapes, VertexDistances, VertexSpheres
+from .arrays import FaceShapes, Names, Numbers, VertexDistances, VertexSpheres
 
 
 @dataclass(frozen=True, eq=False)
@@ -355,9 +353,7 @@ def classify_hexagons(sphere_mesh: SphereMesh) -> FaceShapes:
 
 
 @node
-def pencil_positions(
-    curvatures: FloatArray, first: FloatArray, second: FloatArray
-) -> NDArray[np.str_]:
+def pencil_positions(curvatures: Numbers, first: Numbers, second: Numbers) -> Names:
     """Where touching spheres lie among the curvature spheres: faces are convex or bow-ties.
 
     Parameters

@@ -3,9 +3,7 @@
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.meshes.mesh import Mesh, edge_middles
 from ...kernel.sphere_meshes import central_spheres as central
 from ...kernel.sphere_meshes import fit
@@ -14,7 +12,7 @@ from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.spheres import circles, minkowski, rows
 from ..graphs.node import node
 from ..graphs.ports import Port
-from .arrays import EdgeSpheres, Points, Spheres
+from .arrays import Angles, EdgeSpheres, Marks, Names, Numbers, Points, Quadruples, Spheres
 
 
 class PrincipalSpheres(NamedTuple):
@@ -176,17 +174,17 @@ class SphereFacts(NamedTuple):
     """What rows stand for."""
 
     centers: Points
-    radii_squared: FloatArray
-    kinds: NDArray[np.str_]
+    radii_squared: Numbers
+    kinds: Names
 
 
 class SpherePairs(NamedTuple):
     """How spheres meet."""
 
-    angles: Annotated[FloatArray, Port(unit="deg")]
-    pencils: NDArray[np.str_]
-    is_orthogonal: BoolArray
-    is_tangent: BoolArray
+    angles: Angles
+    pencils: Names
+    is_orthogonal: Marks
+    is_tangent: Marks
 
 
 class Bisectors(NamedTuple):
@@ -197,7 +195,7 @@ class Bisectors(NamedTuple):
 
 
 @node
-def sphere_rows(centers: Points, radii: float | FloatArray) -> Spheres:
+def sphere_rows(centers: Points, radii: float | Numbers) -> Spheres:
     """Rows (A, Bx, By, Bz, C) of spheres: the points x with A x·x - B·x + C = 0.
 
     Parameters
@@ -222,7 +220,7 @@ def sphere_rows(centers: Points, radii: float | FloatArray) -> Spheres:
 
 
 @node
-def plane_rows(normals: Points, distances: float | FloatArray) -> Spheres:
+def plane_rows(normals: Points, distances: float | Numbers) -> Spheres:
     """Rows (0, n, d) of the planes n·x = d.
 
     Parameters
@@ -353,7 +351,7 @@ def intersection_circles(first: Spheres, second: Spheres) -> circles.Circles:
 
 
 @node
-def sphere_through_points(points: FloatArray) -> Spheres:
+def sphere_through_points(points: Quadruples) -> Spheres:
     """Spheres or planes through four points.
 
     Parameters

@@ -37,6 +37,14 @@ def steps() -> sm.Graph:
         g.add(node, sphere_mesh=start)
     for node in ("edge_arcs", "classify_hexagons", "support_structure", "support_type"):
         g.add(node, sphere_mesh=start)
+    g.add("mirror_points", sphere_mesh=start)
+    g.add("edge_spheres", mesh=net)
+    g.add("stereographic", points=mesh.normals)
+    g.add("sphere_rows", "balls", centers=mesh.normals, radii=1.0)
+    g.add("sphere_facts", spheres=spheres)
+    g.add("sphere_pairs", first=spheres, second=spheres)
+    g.add("pentaspherical_coordinates", spheres=spheres)
+    g.add("sent_to_infinity", points=mesh.normals, transform=g.wire("inversion"))
     return g
 
 
@@ -66,6 +74,17 @@ WRONG = [
     ("inversion.result", "apply_mobius.geometry"),
     ("tangent.result", "apply_mobius.transform"),
     ("tangent.result", "compose.transforms"),
+    ("mirror_points.points", "relax_congruence.spheres"),
+    ("edge_spheres.result", "relax_congruence.spheres"),
+    ("stereographic.result", "signed_distance.points"),
+    ("balls.result", "signed_distance.points"),
+    ("bump.normals", "inverse_stereographic.points"),
+    ("sphere_facts.centers", "sphere_through_points.points"),
+    ("sphere_facts.radii_squared", "signed_distance.points"),
+    ("sphere_facts.kinds", "sphere_rows.radii"),
+    ("sphere_pairs.angles", "panels.labels"),
+    ("pentaspherical_coordinates.result", "signed_distance.points"),
+    ("sent_to_infinity.result", "sphere_rows.radii"),
 ]  # fmt: skip
 
 
@@ -81,7 +100,8 @@ def needed(g: sm.Graph, node: str, but: str) -> dict[str, Any]:
     found: dict[str, Any] = {
         "mesh": g.wire("net"), "sphere_mesh": g.wire("start"), "spheres": spheres,
         "offset": 1.0, "edge_length": 1.0, "geometry": g.wire("net"), "center": [0, 0, 9],
-        "transform": g.wire("inversion"),
+        "transform": g.wire("inversion"), "points": g.wire("bump.normals"),
+        "centers": g.wire("bump.normals"),
     }  # fmt: skip
     inputs = find_node(node).inputs
     return {name: value for name, value in found.items() if name in inputs and name != but}
@@ -95,7 +115,7 @@ def test_a_wrong_array_is_refused_when_wired(source: str, target: str) -> None:
         g.add(node, "wrong", **needed(g, node, port), **{port: g.wire(source)})
     given, wanted = wire_type(g, source), find_node(node).inputs[port].type
     ends = f"{source} ({type_name(given)}) into wrong.{port} ({type_name(wanted)})"
-    assert str(error.value) == f"cannot wire {ends}"
+    assert str(error.value).partition(";")[0] == f"cannot wire {ends}"
 
 
 def test_every_type_of_array_has_its_refusal() -> None:
@@ -109,8 +129,7 @@ def test_every_type_of_array_has_its_refusal() -> None:
         for member in members(port.type)
         if member.facts
     }
-    # what apply_mobius gives is what it was given
-    assert given - refused == {find("Points"), find("Spheres")}
+    assert given == refused & given
 
 
 def find(name: str) -> ArrayFacts | None:
@@ -135,6 +154,7 @@ def test_every_array_of_the_library_says_what_it_is() -> None:
         if node.function.__module__.startswith("spheremesh.nodes.library")
         for port in (*node.inputs.values(), *node.outputs.values())
         if not all(member.facts for member in arrays_of(port.type))
+        and node.name != "conjugacy"  # takes vectors of any length
     ] == []
 
 
