@@ -2,6 +2,7 @@
 
 annotations  How types are read: alternatives, elements, what arrays hold, and their names.
 cache        Structural keys, and the results found by them.
+encoding     What steps are given, as JSON: values, wires, sliders, lists to map over.
 errors       What can go wrong with graphs, as types, and how a mistyped name is answered.
 file         Graphs as JSON: versioned, in a stable order, and without code.
 graph        The lazy graph: nodes wired together, run as far as a target needs.
