@@ -36,6 +36,29 @@ class Polygons:
     face_lines: ArrayLike = ()
 
 
+@dataclass(frozen=True)
+class FileContent:
+    """What was read from a file, before it is known to be a mesh.
+
+    Attributes
+    ----------
+    polygons : Polygons
+        Faces of all that was read, in the order of the file.
+    units : str
+        Model unit that the file names, one of `units.MILLIMETERS`; empty if it names none.
+    remarks : tuple of str
+        Sentences for the user: what was left out and why, what was mended in reading.
+    sources : tuple of (str, int)
+        Objects in their order, such as ``mesh 'shell' on layer 'Roof::Glass'``, and how many
+        faces each has; empty for files without objects.
+    """
+
+    polygons: Polygons
+    units: str = ""
+    remarks: tuple[str, ...] = ()
+    sources: tuple[tuple[str, int], ...] = ()
+
+
 def to_mesh(polygons: Polygons) -> Mesh:
     """The polygons as a mesh: same vertices, same faces, same order.
 

@@ -12,7 +12,7 @@ from typing import Final
 
 from ...kernel.errors import InputError
 from ...kernel.meshes.mesh import Mesh
-from ..polygons import Polygons, to_mesh
+from ..polygons import FileContent, Polygons, to_mesh
 from ..rhino.reader import read_3dm
 from ..rhino.surface_reader import GridSize
 from .obj import read_obj
@@ -62,6 +62,23 @@ def read_mesh(
         If the file cannot be read or is no orientable manifold mesh; the message names the
         file, the line (of text files) or the faces, and what to do. Faces are never flipped.
     """
+    content = read_content(path, layer, n_u, n_v)
+    try:
+        return to_mesh(content.polygons)
+    except InputError as error:
+        raise InputError(f"cannot read {path}: {error}") from error
+
+
+def read_content(
+    path: str | os.PathLike[str], layer: str = "", n_u: int = 24, n_v: int = 24
+) -> FileContent:
+    """What a mesh file holds, whether or not it is a mesh; see `read_mesh`.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read; the message names the file, the line and what to do.
+    """
     source = Path(path)
     suffix = mesh_suffix(source, "read")
     if layer and suffix in _READERS:
@@ -71,10 +88,10 @@ def read_mesh(
     data = _read_bytes(source)
     try:
         if suffix == ".3dm":
-            return to_mesh(read_3dm(data, layer, GridSize(n_u, n_v)))
+            return read_3dm(data, layer, GridSize(n_u, n_v))
         if suffix == ".obj":
-            return to_mesh(read_obj(data, layer))
-        return to_mesh(_READERS[suffix](data))
+            return FileContent(read_obj(data, layer))
+        return FileContent(_READERS[suffix](data))
     except InputError as error:
         raise InputError(f"cannot read {source}: {error}") from error
 

@@ -10,6 +10,7 @@ from ...kernel.errors import InputError
 from ...kernel.tolerances import COINCIDENT
 from ..opennurbs.mesh_ngons import read_mesh_object
 from ..polygons import (
+    FileContent,
     Polygons,
     drop_repeats,
     drop_unused,
@@ -24,8 +25,8 @@ from .surface_reader import SURFACES, GridSize, sample_object
 _GRID = GridSize(24, 24)
 
 
-def read_3dm(data: bytes, layer: str = "", size: GridSize = _GRID) -> Polygons:
-    """Polygons of all the meshes in a .3dm file, joined; without meshes, grids on its surfaces.
+def read_3dm(data: bytes, layer: str = "", size: GridSize = _GRID) -> FileContent:
+    """All the meshes in a .3dm file, joined; without meshes, grids on its surfaces.
 
     Parameters
     ----------
@@ -40,7 +41,7 @@ def read_3dm(data: bytes, layer: str = "", size: GridSize = _GRID) -> Polygons:
 
     Returns
     -------
-    Polygons
+    FileContent
         Faces in the order of the objects and, within a mesh, of the file; an ngon stands
         where the first of its triangles and quads stood. Vertices closer than COINCIDENT
         mean sides are one, as separate and unwelded meshes repeat the vertices of their
@@ -65,7 +66,7 @@ def read_3dm(data: bytes, layer: str = "", size: GridSize = _GRID) -> Polygons:
         if isinstance(each.geometry, rhino.Mesh) and each.geometry.Faces.Count
     ]
     if meshes:
-        return _weld(meshes)
+        return FileContent(_weld(meshes))
     grids = [
         transform_polygons(grid, each.transform)
         for each in objects
@@ -78,7 +79,7 @@ def read_3dm(data: bytes, layer: str = "", size: GridSize = _GRID) -> Polygons:
             raise InputError(
                 f"{size.n_u} by {size.n_v} quads on surfaces have no area: ask for more"
             )
-        return found
+        return FileContent(found)
     kinds = Counter(type(each.geometry).__name__ for each in objects)
     held = ", ".join(f"{count} {kind}" for kind, count in kinds.items()) or "no objects"
     where = f"layer {layer!r}" if layer else "the file"
