@@ -104,7 +104,10 @@ def panel_graph(options: PanelOptions) -> Graph:
     else:
         path = str(options.mesh.resolve())
         mesh = graph.add("read_mesh", "mesh", path=path, layer=options.layer)
-    optimum = _optimum(graph, options, mesh)
+    moves: dict[str, Wire] = {}
+    if options.tolerance:
+        moves = {"tolerance": graph.param("tolerance", options.tolerance, min=0)}
+    optimum = _optimum(graph, options, mesh, moves)
     spheres, labels, clusters, blanks = optimum.sphere_mesh, None, None, None
     landing = None
     if options.support and options.tolerance is None and options.moulds is None:
@@ -113,8 +116,9 @@ def panel_graph(options: PanelOptions) -> Graph:
     if options.moulds is not None:
         count = graph.param("moulds", options.moulds, min=1)
         moulds = graph.add(
-            "cluster_radii", "moulds", sphere_mesh=spheres, k=count, **_support_weights(options)
-        )
+            "cluster_radii", "moulds", sphere_mesh=spheres, k=count, **moves,
+            **_support_weights(options),
+        )  # fmt: skip
         spheres, labels, clusters = moulds.sphere_mesh, moulds.labels, moulds.report
     panels = graph.add(
         "panels", "panels", sphere_mesh=spheres, thickness=thickness, joint_gap=joint_gap,
@@ -150,18 +154,16 @@ def panel_graph(options: PanelOptions) -> Graph:
     return graph
 
 
-def _optimum(graph: Graph, options: PanelOptions, mesh: Step) -> Step:
+def _optimum(
+    graph: Graph, options: PanelOptions, mesh: Step, moves: Mapping[str, Wire]
+) -> Step:
     """The spheres: of smallest angles alone, or of more than that."""
     start = graph.add("fit_spheres", "start", mesh=mesh)
     target = {"target_angle": options.target_angle} if options.target_angle else {}
-    may_move = bool(options.tolerance)
-    if not (options.support or may_move):
+    if not (options.support or moves):
         allowed = {} if options.tolerance is None else {"max_miss": options.tolerance}
         return graph.add("minimize_angles", "optimum", sphere_mesh=start, **target, **allowed)
     angles = graph.add("minimize_angles", "angles", sphere_mesh=start, **target)
-    moves = (
-        {"tolerance": graph.param("tolerance", options.tolerance, min=0)} if may_move else {}
-    )
     return graph.add(
         "optimize_spheres", "optimum", sphere_mesh=angles.sphere_mesh, **target, **moves,
         **_support_weights(options),

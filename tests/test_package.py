@@ -30,7 +30,7 @@ def test_version_is_that_of_the_project() -> None:
 
 
 def test_import_leaves_heavy_libraries_alone() -> None:
-    heavy = ("scipy", "sklearn", "igl", "OCP", "cadquery", "rhino3dm", "PIL", "click", "rich")
+    heavy = ("scipy", "igl", "OCP", "cadquery", "rhino3dm", "PIL", "click", "rich")
     code = (
         "import sys, spheremesh, spheremesh.interfaces\n"
         f"print([name for name in {heavy!r} if name in sys.modules])"

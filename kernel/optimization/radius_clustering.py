@@ -5,7 +5,6 @@ would decide alone. The side to which a panel curves is no property of the mould
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from ..spheres.circles import circle_pencils, face_circles, pencil_spheres
 from ..tolerances import SAME_CURVATURE
 from .angle_minimization import pencil_angles
 from .energies.table import EnergyWeights
+from .line_clusters import line_clusters
 from .whole_energy import Conditions, Optimization, move_vertices
 
 RELAXED_CLOSENESS = 0.05
@@ -46,16 +46,17 @@ class RadiusClusters:
 
 
 def cluster_radii(
-    sphere_mesh: SphereMesh, k: int, seed: int = 0
+    sphere_mesh: SphereMesh, k: int, same_sagitta: float = 0.0
 ) -> tuple[SphereMesh, RadiusClusters]:
     """Replace the radii of all panels by at most k, vertices fixed.
 
     Parameters
     ----------
     k : int
-        Number of moulds, at least 1; fewer come out where fewer curvatures differ.
-    seed : int
-        Seed of the k-means starts.
+        Number of moulds, at least 1; fewer come out where fewer can be told apart.
+    same_sagitta : float
+        Moulds whose sagittas over the largest blank differ by less than this length are one,
+        and panels that bulge by less are flat.
 
     Returns
     -------
@@ -68,13 +69,14 @@ def cluster_radii(
     Raises
     ------
     InputError
-        If k is below 1.
+        If k is below 1, or the sagitta negative or not finite.
 
     Notes
     -----
-    k-means with 10 starts on ``|κ|``, in the unit of the sharpest. A panel cannot lie on a
-    sphere smaller than its circle (R < ρ): such a face goes to the sharpest mould on which it
-    lies, and the flattest mould grows, where necessary, to carry all of its faces.
+    The least sum of squared differences of ``|κ|``, exactly (`line_clusters`); flat panels have
+    a mould of their own where there are two or more. A panel cannot lie on a sphere smaller
+    than its circle (R < ρ): such a face goes to the sharpest mould on which it lies, and the
+    flattest mould grows, where necessary, to carry all of its faces.
 
     References
     ----------
@@ -82,6 +84,10 @@ def cluster_radii(
     """
     if k < 1:
         raise InputError(f"the number of moulds must be at least 1, not {k}")
+    if not 0 <= same_sagitta < np.inf:
+        raise InputError(
+            f"sagittas of one mould differ by a length of 0 or more, not by {same_sagitta}"
+        )
     circles, _ = face_circles(sphere_mesh.mesh)
     radii = np.sqrt(circles.radii_squared)
     angles = pencil_angles(sphere_mesh, circles)
@@ -90,7 +96,12 @@ def cluster_radii(
     curvatures = np.abs(np.sin(angles)) / radii
     side = np.where(angles < 0, -1.0, 1.0)
 
-    centers = _centers(curvatures, k, seed)
+    # The sagitta of a blank of radius ρ is κρ²/2 to first order.
+    same = 2 * same_sagitta / float(radii.max()) ** 2
+    is_flat = curvatures < max(same, SAME_CURVATURE * curvatures.max())
+    if k > 1 or is_flat.all():
+        curvatures[is_flat] = 0.0
+    centers = _centers(curvatures, k, same)
     centers[0] = min(centers[0], 1 / radii.max())
     fits = centers[None, :] * radii[:, None] <= 1
     distance = np.abs(centers[None, :] - curvatures[:, None])
@@ -153,25 +164,30 @@ def _circle_radii(mesh: Mesh) -> FloatArray:
     return np.sqrt(face_circles(mesh)[0].radii_squared)
 
 
-def _centers(curvatures: FloatArray, k: int, seed: int) -> FloatArray:
-    """Ascending cluster centres of the curvatures, at most k."""
-    scale = float(curvatures.max())
-    if scale == 0:
+def _centers(curvatures: FloatArray, k: int, same: float) -> FloatArray:
+    """Ascending cluster centres of the curvatures, at most k, at least `same` apart."""
+    curved = np.sort(curvatures[curvatures > 0])
+    if not len(curved):
         return np.zeros(1)
-    ordered = np.sort(curvatures)
+    if k == 1:
+        return np.array([curvatures.mean()])
+    if len(curved) == len(curvatures):
+        return _spaced_centers(curved, k, same)
+    return np.concatenate([[0.0], _spaced_centers(curved, k - 1, same)])
+
+
+def _spaced_centers(ordered: FloatArray, k: int, same: float) -> FloatArray:
+    """The most centres, up to k, of which none are closer than `same`."""
+    scale = float(ordered[-1])
     is_next = np.diff(ordered) > SAME_CURVATURE * scale
-    groups: IntArray = np.concatenate(
-        [np.zeros(1, np.int64), np.cumsum(is_next, dtype=np.int64)]
+    groups = np.concatenate([np.zeros(1, np.int64), np.cumsum(is_next, dtype=np.int64)])
+    weights = np.bincount(groups).astype(np.float64)
+    values = sum_by(groups, ordered, len(weights)) / weights
+    if len(values) <= k and (np.diff(values) >= same).all():
+        return values
+    if same > 0:
+        k = int(min(k, 1 + np.ptp(values) // same))
+    found = line_clusters(values / scale, weights, min(k, len(values)))
+    return scale * next(
+        centers for centers in reversed(found) if (scale * np.diff(centers) >= same).all()
     )
-    count = int(groups[-1]) + 1
-    if count <= k:
-        return sum_by(groups, ordered, count) / np.bincount(groups)
-    return np.sort(_k_means(curvatures / scale, k, seed)) * scale
-
-
-def _k_means(values: FloatArray, k: int, seed: int) -> FloatArray:
-    from sklearn import cluster  # pyright: ignore[reportMissingTypeStubs]
-
-    k_means: Any = cluster.k_means  # pyright: ignore[reportUnknownVariableType, reportUnknownMemberType]
-    centers, _, _ = k_means(values[:, None], k, n_init=10, random_state=seed)
-    return np.asarray(centers, np.float64)[:, 0]

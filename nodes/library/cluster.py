@@ -5,6 +5,7 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
+from ...fabrication.units import millimeters_per
 from ...kernel.analysis import angle_summary
 from ...kernel.optimization import radius_clustering
 from ...kernel.panels import congruent
@@ -14,7 +15,7 @@ from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.tolerances import COMMON_VERTEX
 from ..graphs.node import node, warn
-from ..graphs.ports import Length, Port
+from ..graphs.ports import Length, Port, Units
 from .arrays import FaceLabels, MouldRadii
 
 
@@ -61,10 +62,11 @@ def cluster_radii(
     sphere_mesh: SphereMesh,
     k: Annotated[int, Port(min=1)],
     relax: bool = True,  # noqa: FBT001, FBT002 - a toggle on the canvas
-    tolerance: Annotated[float, Port(min=0)] = 0.05,
+    tolerance: Annotated[float, Port(min=0)] = 0.0,
     regularity: Annotated[float, Port(min=0)] = 0.0,
     support: Annotated[float, Port(min=0)] = 0.0,
-    seed: Annotated[int, Port(min=0)] = 0,
+    same_sagitta: Annotated[float, Port(unit="mm", min=0)] = 0.1,
+    units: Units = "m",
 ) -> Clusters:
     """Give all panels at most k radii.
 
@@ -74,14 +76,18 @@ def cluster_radii(
     k : int
         Number of moulds.
     relax : bool
-        Whether vertices move, so that the panels of given radii meet more smoothly.
+        Whether vertices may move within the tolerance, so that the panels of given radii meet
+        more smoothly.
     tolerance : float
-        How far vertices move at most, in mean edges.
+        How far vertices may move, in mean edges; at 0 all stay.
     regularity, support : float
         Weights that keep planes upright and nodes free of torsion while vertices move, as in
         `optimize_spheres`.
-    seed : int
-        Seed of the clustering.
+    same_sagitta : float
+        What the workshop cannot tell apart: moulds whose sagittas over the largest blank
+        differ by less are one, and panels that bulge by less are flat.
+    units : {"mm", "cm", "m", "in", "ft"}
+        Model units.
 
     Returns
     -------
@@ -102,30 +108,39 @@ def cluster_radii(
     >>> moulds.report["panels_per_mould"], moulds.radii.round(2)
     ([24, 24, 24], array([1.24, 1.85, 8.07]))
     """
-    clustered, clusters = radius_clustering.cluster_radii(sphere_mesh, k, seed)
+    clustered, clusters = radius_clustering.cluster_radii(
+        sphere_mesh, k, same_sagitta / millimeters_per(units)
+    )
     result, move = clustered, 0.0
+    before = angle_summary(clustered)
     if relax and tolerance > 0:
         relaxed, run = radius_clustering.relax_moulds(
             clustered, clusters, tolerance, regularity=regularity, support=support
         )
-        if run.vertex_miss <= COMMON_VERTEX:
-            result, move = relaxed, run.vertex_move
-        else:
+        if run.vertex_miss > COMMON_VERTEX:
             warn(
                 f"vertices are not moved: within {tolerance:g} mean edges they do not reach "
                 "the spheres of the moulds; allow more tolerance"
             )
+        elif angle_summary(relaxed)["mean"] >= before["mean"]:
+            warn("vertices are not moved: neighbours would meet no more smoothly")
+        else:
+            result, move = relaxed, run.vertex_move
+            warn(f"the moulds moved vertices by up to {move:.2g} mean edges off the design")
     reassigned = np.flatnonzero(clusters.reassigned).tolist()
     if reassigned:
         warn(f"{len(reassigned)} faces are too large for their mould and moved to a larger one")
     if len(clusters.radii) < k:
-        warn(f"{len(clusters.radii)} moulds suffice: there are no more different radii")
+        warn(
+            f"{len(clusters.radii)} moulds suffice: no more can be told apart by "
+            f"{same_sagitta:g} mm of sagitta over the largest blank"
+        )
     report = MouldsReport(
         count=len(clusters.radii),
         radii=[float(r) if np.isfinite(r) else None for r in clusters.radii],
         panels_per_mould=clusters.counts.tolist(),
         angles_deg=angle_summary(result),
-        unrelaxed_angles_deg=angle_summary(clustered),
+        unrelaxed_angles_deg=before,
         reassigned=reassigned,
         relaxed=result is not clustered,
         vertex_move=move,

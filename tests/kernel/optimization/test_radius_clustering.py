@@ -1,14 +1,16 @@
-"""Few radii (D13): k-means on curvatures, circles and sides kept."""
+"""Few radii (D13): the best clusters of curvatures, circles and sides kept."""
 
 import numpy as np
 import pytest
-import sklearn.cluster  # noqa: F401  its import takes seconds: not within a test
+from hypothesis import given
+from hypothesis import strategies as st
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.optimization.angle_minimization import minimize_angles, pencil_angles
+from spheremesh.kernel.optimization.line_clusters import line_clusters
 from spheremesh.kernel.optimization.radius_clustering import cluster_radii
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
@@ -94,18 +96,33 @@ def test_law_d13_clusters(optimum: dict[str, SphereMesh], name: str, k: int) -> 
 
 @pytest.mark.parametrize("name", ["egg", "vase", "roof"])
 @pytest.mark.parametrize("k", [2, 4, 7])
-def test_law_d13_k_means_is_near_the_optimum(
+def test_law_d13_clusters_are_the_optimum(
     optimum: dict[str, SphereMesh], name: str, k: int
 ) -> None:
     values = curvatures(optimum[name])
-    values = values / values.max()
     after, clusters = cluster_radii(optimum[name], k)
     assert not clusters.reassigned.any()
-    means = curvatures(after) / curvatures(optimum[name]).max()
-    least = optimal_cost(values, k)
-    cost = float(((values - means) ** 2).sum())
-    assert least <= cost + 1e-11
-    assert cost <= 1.02 * least + 1e-11
+    cost = float((((values - curvatures(after)) / values.max()) ** 2).sum())
+    assert cost == pytest.approx(optimal_cost(values / values.max(), k), abs=1e-11)
+
+
+@given(
+    st.lists(st.floats(0, 1).map(lambda x: round(x, 3)), min_size=1, max_size=60, unique=True),
+    st.integers(1, 12), st.integers(0, 2**32 - 1),
+)  # fmt: skip
+def test_law_d13_runs_of_numbers_are_the_optimum(
+    numbers: list[float], k: int, seed: int
+) -> None:
+    values = np.sort(numbers)
+    times = np.random.default_rng(seed).integers(1, 4, len(values))
+    k = min(k, len(values))
+    found = line_clusters(values, times.astype(float), k)
+    assert [len(means) for means in found] == list(range(1, k + 1))
+    repeated = np.repeat(values, times)
+    for count, means in enumerate(found, 1):
+        assert (np.diff(means) > 0).all()
+        cost = ((repeated[:, None] - means) ** 2).min(axis=1).sum()
+        assert cost == pytest.approx(optimal_cost(repeated, count), abs=1e-11)
 
 
 def test_the_exact_optimum_of_this_test() -> None:
@@ -214,12 +231,52 @@ def test_reassigned_faces_are_told() -> None:
     assert vertex_error(after).max() < 1e-9
 
 
-def test_results_are_reproducible(optimum: dict[str, SphereMesh]) -> None:
-    first, clusters = cluster_radii(optimum["roof"], 6, seed=3)
-    again, same = cluster_radii(optimum["roof"], 6, seed=3)
-    np.testing.assert_array_equal(first.spheres, again.spheres)
-    np.testing.assert_array_equal(clusters.labels, same.labels)
-    np.testing.assert_array_equal(clusters.radii, same.radii)
+def test_the_order_of_faces_does_not_matter(optimum: dict[str, SphereMesh]) -> None:
+    before = optimum["roof"]
+    order = np.random.default_rng(3).permutation(before.mesh.n_faces)
+    mesh = Mesh(before.mesh.vertices, [before.mesh.faces[i] for i in order])
+    shuffled = SphereMesh(mesh, before.spheres[order])
+    _, clusters = cluster_radii(before, 6)
+    _, same = cluster_radii(shuffled, 6)
+    np.testing.assert_array_equal(clusters.labels[order], same.labels)
+    np.testing.assert_allclose(clusters.radii, same.radii, rtol=1e-9)
+
+
+@given(st.floats(0.01, 0.2), st.integers(2, 9), st.sampled_from([1e-3, 1.0, 1e3]))
+def test_moulds_that_nobody_can_tell_apart_are_one(
+    same_sagitta: float, k: int, scale: float
+) -> None:
+    signed = np.sin(np.arange(40.0))
+    before = squares_of_curvature(signed)
+    mesh = Mesh(scale * before.mesh.vertices, before.mesh.faces)
+    circles, _ = face_circles(mesh)
+    turned = np.arcsin(signed * np.sqrt(0.5))
+    before = SphereMesh.from_local(mesh, pencil_spheres(*circle_pencils(circles), turned))
+    _, clusters = cluster_radii(before, k, scale * same_sagitta)
+    assert len(clusters.radii) <= k
+    # A square of side 1 lies in a circle whose squared radius is 1/2.
+    sagittas = 0.25 / (clusters.radii / scale)
+    assert (-np.diff(sagittas) >= same_sagitta * (1 - 1e-9)).all()
+    is_flat = np.isinf(clusters.radii[clusters.labels])
+    assert is_flat[0.25 * np.abs(signed) < same_sagitta].all()
+    # Without that tolerance all moulds that were asked for come out.
+    assert len(cluster_radii(before, k)[1].radii) == k
+
+
+def test_flat_panels_have_a_mould_of_their_own() -> None:
+    signed = np.array([0.0, 0.0, 0.1, 0.2, 0.8, -0.9])
+    for k in (2, 3, 4):
+        _, clusters = cluster_radii(squares_of_curvature(signed), k)
+        assert np.isinf(clusters.radii).tolist() == [False] * (k - 1) + [True]
+        assert (clusters.labels[:2] == k - 1).all()
+    _, clusters = cluster_radii(squares_of_curvature(signed), 1)
+    assert clusters.radii == pytest.approx([6 / 2.0])
+
+
+@pytest.mark.parametrize("bad", [-1e-9, np.nan, np.inf])
+def test_bad_sagittas_are_refused(bad: float) -> None:
+    with pytest.raises(InputError, match="sagittas"):
+        cluster_radii(squares_of_curvature(np.ones(2)), 2, bad)
 
 
 @pytest.mark.parametrize("scale", [1e-3, 1e3])

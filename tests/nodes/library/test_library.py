@@ -27,7 +27,7 @@ def test_every_node_has_an_example(name: str) -> None:
 
 
 def test_importing_spheremesh_imports_no_node_and_nothing_heavy() -> None:
-    heavy = ("scipy", "sklearn", "igl", "rich", "click", "rhino3dm", "cadquery", "OCP", "ezdxf")
+    heavy = ("scipy", "igl", "rich", "click", "rhino3dm", "cadquery", "OCP", "ezdxf")
     code = f"""
 import sys, spheremesh
 print([name for name in sys.modules if name.startswith("spheremesh.nodes.library")])
