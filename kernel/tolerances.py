@@ -183,6 +183,8 @@ SINGLE_EPSILON: Final = 1.1920928955078125e-07
 """Spacing of float32 at 1."""
 EDGE_MISS: Final = 0.01
 """A trimmed face whose edges lie farther off its surface, in edge lengths, is refused."""
+SAME_BOX: Final = 0.01
+"""A mesh whose box differs by less from that of a surface, relatively, was made from it."""
 CLOSED: Final = 1e-6
 """A surface whose ends lie this close, relative to its size, is closed there."""
 OVERLAP: Final = 1e-6

@@ -184,7 +184,7 @@ def test_sides_on_a_seam_lie_where_the_face_is(end: int) -> None:
         assert np.array_equal(side[:, :: 1 - 2 * axis], right)
 
 
-def test_layers_blocks_and_meshes_first(tmp_path: Path) -> None:
+def test_layers_blocks_and_meshes_beside_surfaces(tmp_path: Path) -> None:
     model = rhino3dm.File3dm()
     layers = []
     for name in ("Design", "Mesh"):
@@ -212,7 +212,7 @@ def test_layers_blocks_and_meshes_first(tmp_path: Path) -> None:
     )
     path = tmp_path / "a.3dm"
     model.Write(str(path), 8)
-    assert read_mesh(path).n_faces == 1
+    assert read_mesh(path, n_u=3, n_v=5).n_faces == 16
     assert read_mesh(path, layer="Design", n_u=3, n_v=5).n_faces == 15
     assert nodes.read_mesh(path, "Design", 2, 2).n_faces == 4
 
