@@ -17,6 +17,7 @@ solids      The same parts as shapes of OpenCASCADE and CadQuery.
 model       What every writer writes, and what it gives back.
 files       Files written whole or not at all.
 units       Units of length: the only place that knows what a millimetre is.
+sizes       How large a model is in its units, and whether a building can be so.
 polygons    What a mesh file says, before it is known to be a mesh.
 triangles   Triangles for the formats that have nothing else.
 text        Text files of numbers: lines, words, and errors that name the line.

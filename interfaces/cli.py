@@ -58,8 +58,17 @@ def main() -> None:
     help="The same thickness everywhere, or the same difference of squared radii: neighbours "
     "that bulge alike then meet on both faces.",
 )
-@click.option("--units", type=click.Choice(UNITS), default="m", help="Model units.")
-@click.option("--layer", default="", help="Only this layer (.3dm) or group (OBJ).")
+@click.option(
+    "--units",
+    type=click.Choice(UNITS),
+    help="Model units; those of the file by default, and m for files that name none.",
+)
+@click.option(
+    "--layer",
+    multiple=True,
+    callback=lambda _context, _option, names: ",".join(names),
+    help="Only this layer (.3dm) or group (OBJ); several with commas or repeated.",
+)
 @click.option(
     "--edges",
     type=click.Choice(["bisector", "intersection"]),
@@ -101,12 +110,14 @@ def panel(  # numpydoc ignore=PR01
 
     Reads OBJ, OFF, PLY, STL and .3dm. Without MESH, a demonstration roof is panelled.
     """
-    from .panel import PanelOptions, panel_graph, run_job
+    from .panel import PanelOptions, file_units, panel_graph, run_job
 
     _warn_of_no_beams(options)
     with _errors(), _progress() as progress:
-        report, files = run_job(panel_graph(PanelOptions(**options)), out, progress)
-    _print_report(report, out, files, as_json=as_json)
+        job = PanelOptions(**options)
+        report, files = run_job(panel_graph(job), out, progress)
+        is_assumed = job.mesh is not None and not (job.units or file_units(job))
+    _print_report(report, out, files, as_json=as_json, is_assumed=is_assumed)
     if strict and _has_errors(report):
         sys.exit(GATE_FAILED)
 
@@ -260,7 +271,12 @@ def _setting(text: str) -> tuple[str, Any]:
 
 
 def _print_report(
-    report: dict[str, Any], out: Path, files: tuple[str, ...], *, as_json: bool
+    report: dict[str, Any],
+    out: Path,
+    files: tuple[str, ...],
+    *,
+    as_json: bool,
+    is_assumed: bool = False,
 ) -> None:
     """Warnings and rejected panels on standard error; the report, or what matters of it."""
     for text in report["warnings"]:
@@ -276,6 +292,7 @@ def _print_report(
     if as_json:
         click.echo(json.dumps(report, indent=1))
         return
+    _print_size(report["input"], is_assumed=is_assumed)
     for name in files:
         click.echo(f"  {out / name}")
     planar, spherical = report["angles_deg"]["planar"], report["angles_deg"]["spherical"]
@@ -296,6 +313,14 @@ def _print_report(
         click.echo(f"beams {beams['written']} written, {len(beams['rejected'])} rejected")
     if report["audit"]:
         _print_audit(report["audit"])
+
+
+def _print_size(model: Mapping[str, Any], *, is_assumed: bool) -> None:
+    """How large the model is, which shows whether its units are right."""
+    from ..fabrication.sizes import describe_size
+
+    hint = "; --units to change" if is_assumed else ""
+    click.echo(describe_size(model["size"], model["mean_edge"], model["units"]) + hint)
 
 
 def _has_errors(report: Mapping[str, Any]) -> bool:

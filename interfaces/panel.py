@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 from .. import __version__
 from ..fabrication.files import replacing_all
+from ..fabrication.mesh_files.reader import read_content
 from ..kernel.errors import ConvergenceError, InputError
 from ..nodes.graphs.graph import Graph
 from ..nodes.graphs.wires import Step, Wire
@@ -29,9 +30,9 @@ class PanelOptions:
     mesh : Path or None
         Mesh file; the demo roof if None.
     layer : str
-        Layer or group of the file to use.
-    units : str
-        Model units.
+        Layers or groups of the file to use, several with commas.
+    units : str or None
+        Model units; None for those of the file, and metres if it names none.
     moulds : int or None
         Number of moulds; None for a radius per panel.
     thickness, joint_gap : float
@@ -59,7 +60,7 @@ class PanelOptions:
 
     mesh: Path | None = None
     layer: str = ""
-    units: str = "m"
+    units: str | None = None
     moulds: int | None = None
     thickness: float = 0.0
     joint_gap: float = 0.0
@@ -95,8 +96,11 @@ def panel_graph(options: PanelOptions) -> Graph:
     ------
     GraphError
         If an option is out of range.
+    InputError
+        If the units of the file are to be used and it cannot be read, or has others than asked
+        for.
     """
-    graph = Graph(options.mesh.stem if options.mesh else "roof", units=options.units)
+    graph = Graph(options.mesh.stem if options.mesh else "roof", units=_units(options))
     thickness = graph.param("thickness", options.thickness, min=0)
     joint_gap = graph.param("joint_gap", options.joint_gap, min=0)
     if options.mesh is None:
@@ -148,6 +152,30 @@ def panel_graph(options: PanelOptions) -> Graph:
     graph.add("write_schedule", "list", **made, path="schedule.json")
     graph.add("render", "picture", panels=panels.panels, path="preview.png")
     return graph
+
+
+def file_units(options: PanelOptions) -> str:
+    """Units that the file of a job names; empty if it names none.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
+    if options.mesh is None or options.mesh.suffix.lower() != ".3dm":
+        return ""
+    return read_content(options.mesh.resolve(), options.layer).units
+
+
+def _units(options: PanelOptions) -> str:
+    """Model units of a job."""
+    found = file_units(options)
+    if options.units and found not in ("", options.units):
+        raise InputError(
+            f"{options.mesh} is drawn in {found}, which contradicts --units {options.units}; "
+            "leave that out, or change the units in Rhino (Units) and save"
+        )
+    return options.units or found or "m"
 
 
 def _optimum(graph: Graph, options: PanelOptions, mesh: Step) -> Step:

@@ -62,7 +62,22 @@ def read_mesh(
         If the file cannot be read or is no orientable manifold mesh; the message names the
         file, the line (of text files) or the faces, and what to do. Faces are never flipped.
     """
-    content = read_content(path, layer, n_u, n_v)
+    return content_mesh(read_content(path, layer, n_u, n_v), path)
+
+
+def content_mesh(content: FileContent, path: str | os.PathLike[str]) -> Mesh:
+    """What was read from a file, as a mesh.
+
+    Parameters
+    ----------
+    path : path
+        The file, for the message.
+
+    Raises
+    ------
+    InputError
+        If it is no orientable manifold mesh.
+    """
     try:
         return to_mesh(content.polygons)
     except InputError as error:

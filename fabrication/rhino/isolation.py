@@ -32,7 +32,7 @@ MEMORY: Final = 384 * 2**20
 """Bytes that may be used beyond those of the libraries, and beyond PER_BYTE."""
 
 PER_BYTE: Final = 24
-"""Bytes that may be used for each byte of the arguments: the file, its objects, their copies."""
+"""Bytes that may be used for each byte of the arguments: the file, its objects, copies."""
 
 BYTES_PER_SECOND: Final = 2**20
 """Arguments of so many bytes lengthen the time by a second."""

@@ -1,18 +1,21 @@
 """Meshes to start from: read from files, or exactly circular nets."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
 from ...fabrication.mesh_files import reader, writer
+from ...fabrication.sizes import doubt_size
+from ...kernel.errors import InputError
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.surfaces import circular_nets as surfaces
 from ...kernel.surfaces import triangulated
-from ..graphs.node import node
+from ..graphs.node import node, warn
 from ..graphs.ports import Length, Port, ReadPath, WritePath
 from .arrays import VertexNormals
 
+FileUnits = Annotated[Literal["", "mm", "cm", "m", "in", "ft"], Port(graph_units=True)]
 Count = Annotated[int, Port(min=1, max=2000)]
 
 
@@ -24,7 +27,13 @@ class SampledSurface(NamedTuple):
 
 
 @node
-def read_mesh(path: ReadPath, layer: str = "", n_u: Count = 24, n_v: Count = 24) -> Mesh:
+def read_mesh(
+    path: ReadPath,
+    layer: str = "",
+    n_u: Count = 24,
+    n_v: Count = 24,
+    units: FileUnits = "",
+) -> Mesh:
     """Read a mesh from a file.
 
     Parameters
@@ -34,7 +43,9 @@ def read_mesh(path: ReadPath, layer: str = "", n_u: Count = 24, n_v: Count = 24)
     layer : str
         Only what is on this layer (.3dm) or in this group (OBJ), and below.
     n_u, n_v : int
-        Faces along u and v of each surface, where a .3dm holds surfaces and no meshes.
+        Faces along u and v of each surface of a .3dm.
+    units : str
+        Units that the file must have, if it names any; in a graph, those of the graph.
 
     Returns
     -------
@@ -49,7 +60,18 @@ def read_mesh(path: ReadPath, layer: str = "", n_u: Count = 24, n_v: Count = 24)
     ...     read_mesh(write_mesh(vase_mesh(12, 6), f"{folder}/vase.obj")).n_faces
     72
     """
-    return reader.read_mesh(path, layer, n_u, n_v)
+    content = reader.read_content(path, layer, n_u, n_v)
+    if units and content.units not in ("", units):
+        raise InputError(
+            f"cannot read {path}: it is drawn in {content.units}, not in {units}; use units "
+            f"{content.units!r}"
+        )
+    mesh = reader.content_mesh(content, path)
+    actual = content.units or units
+    for remark in (*content.remarks, doubt_size(mesh, actual) if actual else ""):
+        if remark:
+            warn(remark)
+    return mesh
 
 
 @node

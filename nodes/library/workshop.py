@@ -8,6 +8,7 @@ import numpy as np
 from ...fabrication.audit.report import audit_model
 from ...fabrication.audit.subjects import AuditLimits
 from ...fabrication.model import Model
+from ...fabrication.sizes import model_extents
 from ...fabrication.solids.cadquery_assembly import beams_to_cadquery, to_cadquery
 from ...fabrication.step.check import check_part21
 from ...kernel.analysis import angle_summary
@@ -78,7 +79,7 @@ class PanellingReport(Report):
     Attributes
     ----------
     input : dict
-        ``vertices``, ``faces`` and ``units``.
+        ``vertices``, ``faces``, ``units``, ``size`` along x, y and z, and ``mean_edge``.
     angles_deg : dict
         ``planar`` and ``spherical`` (what is built), and with moulds ``unclustered``.
     vertex_error, edge_gap : dict
@@ -328,7 +329,13 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         found = {name: moulds[name] for name in found}
     miss = float(vertex_error(sphere_mesh).max())
     return PanellingReport(
-        input={"vertices": mesh.n_vertices, "faces": mesh.n_faces, "units": units},
+        input={
+            "vertices": mesh.n_vertices,
+            "faces": mesh.n_faces,
+            "units": units,
+            "size": model_extents(mesh),
+            "mean_edge": mean_edge_length(mesh),
+        },
         angles_deg=angles,
         vertex_error={"max": miss, "relative_to_edge": miss / mean_edge_length(mesh)},
         edge_gap=dict(cut["edge_gap"]),
