@@ -210,6 +210,7 @@ def test_layers_blocks_and_meshes_beside_surfaces(tmp_path: Path) -> None:
         (sphere().ToNurbsSurface(),),
         (attributes,),
     )
+    model.Settings.ModelUnitSystem = rhino3dm.UnitSystem.Meters
     path = tmp_path / "a.3dm"
     model.Write(str(path), 8)
     assert read_mesh(path, n_u=3, n_v=5).n_faces == 16
