@@ -21,15 +21,7 @@ _LETTER = 0.9
 def fixed_ezdxf() -> Generator[_Untyped]:
     """Import ezdxf, without time and random identifiers in what it writes.
 
-    Yields
-    ------
-    module
-        The library.
-
-    Raises
-    ------
-    MissingLibraryError
-        If it is missing.
+    Raises MissingLibraryError if it is missing.
     """
     try:
         import ezdxf
@@ -46,15 +38,7 @@ def fixed_ezdxf() -> Generator[_Untyped]:
 
 
 def millimeter_drawing(library: _Untyped, layers: Mapping[str, int]) -> _Untyped:
-    """An empty drawing in millimetres.
-
-    Parameters
-    ----------
-    library : module
-        From `fixed_ezdxf`.
-    layers : mapping of str to int
-        Layers and their colours, by AutoCAD's index.
-    """
+    """An empty drawing in millimetres, with layers and their colours by AutoCAD's index."""
     document = library.new("R2010")
     document.units = _MILLIMETERS
     document.header["$MEASUREMENT"] = 1

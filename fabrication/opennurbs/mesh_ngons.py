@@ -22,14 +22,8 @@ _CLASS_DATA_START = 44
 class MeshContent(NamedTuple):
     """What a mesh of openNURBS holds.
 
-    Attributes
-    ----------
-    vertices : (V, 3) float array
-        As exact as they are there.
-    faces : (F, 4) int array
-        Quads; a triangle repeats its last corner.
-    ngons : list of ((n,) int array, (m,) int array)
-        Vertices around each ngon, and its faces.
+    Vertices (V, 3), as exact as they are there; faces (F, 4), in which a triangle repeats its
+    last corner; of each ngon the vertices around it, and its faces.
     """
 
     vertices: FloatArray
@@ -38,13 +32,7 @@ class MeshContent(NamedTuple):
 
 
 def read_mesh_object(encoded: bytes) -> MeshContent:
-    """Vertices, faces and ngons of a mesh.
-
-    Parameters
-    ----------
-    encoded : bytes
-        An `ON_Mesh`, as openNURBS encodes it.
-    """
+    """Vertices, faces and ngons of an `ON_Mesh`, as openNURBS encodes it."""
     stream = BytesIO(_class_data(encoded))
     vertices, faces = _read_to_ngons(stream)
     ngons = _read_ngons(stream) if stream.read(1) == b"\x01" else []
@@ -55,19 +43,10 @@ def read_mesh_object(encoded: bytes) -> MeshContent:
 
 
 def insert_ngons(encoded: bytes, ngons: Sequence[Sequence[int]]) -> bytes:
-    """Give a mesh ngons.
+    """Give a mesh ngons: a chunk of version 1.0 with their count and the ngons.
 
-    Parameters
-    ----------
-    encoded : bytes
-        An `ON_Mesh` without ngons, as openNURBS encodes it.
-    ngons : sequence of sequence of int
-        Of each ngon the number of its corners and of its faces, its corners, its faces.
-
-    Returns
-    -------
-    bytes
-        The mesh with a chunk of version 1.0, the count and the ngons.
+    The `ON_Mesh` has none yet; an ngon is the number of its corners and of its faces, its
+    corners, its faces.
     """
     data = _class_data(encoded)
     before = BytesIO(data)

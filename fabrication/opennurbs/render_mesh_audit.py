@@ -15,23 +15,9 @@ def audit_render_meshes(
 ) -> tuple[FloatArray, list[tuple[str, BoolArray]]]:
     """How far the vertices of render meshes lie from their spheres, and what else is wrong.
 
-    Parameters
-    ----------
-    streams : (n, bytes) uint8 array
-        Streams of one layout.
-    mesh : FaceMesh
-        Where the mesh stands.
-    rows : (n, 5) float array
-        Unit rows of the spheres, relative to their origins.
-    origins : (n, 3) float array
-
-    Returns
-    -------
-    distances : (n,) float array
-        The largest distances, in model units; of vertices in float32 alone, what their
-        rounding does not explain.
-    defects : list of (str, (n,) bool array)
-        Each defect and the streams that have it.
+    Unit rows (n, 5) of the spheres are relative to origins (n, 3). The largest distances (n,)
+    are in model units; of vertices in float32 alone, what their rounding does not explain. Then
+    each defect and the streams (n,) that have it.
     """
     points, rounding = _vertices(streams, mesh)
     local = points - origins[:, None]
