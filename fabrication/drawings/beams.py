@@ -5,7 +5,6 @@ names of its nodes and the bevels of its ends, ``DRILL`` circles where it is dri
 the outlines of the sheets.
 """
 
-import io
 import math
 import os
 from dataclasses import dataclass
@@ -23,7 +22,7 @@ from ...kernel.support.node_axes import node_name
 from ..files import check_suffix, replacing
 from ..model import Model, Written, check_parts
 from ..units import millimeters_per
-from .dxf import fixed_ezdxf, millimeter_drawing, text_width
+from .dxf import drawing_text, fixed_ezdxf, millimeter_drawing, text_width
 
 # What comes from ezdxf is partly untyped.
 _Untyped: TypeAlias = Any
@@ -89,10 +88,9 @@ def write_dxf(
         _add_labels(space, beams, contours, shifts)
         if beams.marks is not None:
             _add_marks(space, beams, beams.marks, shifts)
-        stream = io.StringIO()
-        document.write(stream)
+        text = drawing_text(document)
     with replacing(target) as temporary:
-        temporary.write_text(stream.getvalue(), encoding="utf-8")
+        temporary.write_text(text, encoding="utf-8")
     shown = ", ".join(beams.ids[i] for i in oversize[:8])
     note = f"{len(oversize)} beams are larger than the sheet: {shown}"
     return Written(target, notes=(note,) if oversize else (), counts={"sheets": len(corners)})

@@ -1,5 +1,6 @@
 """DXF documents in millimetres, without dates and random identifiers."""
 
+import io
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from typing import Any, TypeAlias
@@ -45,6 +46,16 @@ def millimeter_drawing(library: _Untyped, layers: Mapping[str, int]) -> _Untyped
     for name, color in layers.items():
         document.layers.add(name, color=color)
     return document
+
+
+def drawing_text(document: _Untyped) -> str:
+    """The drawing as text; the same entities give the same text."""
+    # Left alone, ezdxf declares the classes in use in the order of their hashes.
+    for name in sorted(document.entitydb.dxf_types_in_use()):
+        document.classes.add_class(name)
+    stream = io.StringIO()
+    document.write(stream)
+    return stream.getvalue()
 
 
 def text_width(text: str) -> float:

@@ -4,7 +4,6 @@ A drawing is laid out once, as lines, circles and labels on named layers, and th
 DXF (for CAD and plotters) or SVG (for browsers and print).
 """
 
-import io
 import os
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +21,7 @@ from ...kernel.spheres.arcs import Arcs, arc_points
 from ..files import check_suffix, replacing
 from ..model import Model, Written, check_parts
 from ..units import millimeters_per
-from .dxf import fixed_ezdxf, millimeter_drawing, text_width
+from .dxf import drawing_text, fixed_ezdxf, millimeter_drawing, text_width
 
 _LAYERS: Final = {"OUTER": 7, "INNER": 8, "BLANK": 5, "TEXT": 3}
 """Layers and their colours in DXF: outer and inner outlines, rims of blanks, labels."""
@@ -198,9 +197,7 @@ def _dxf(drawing: Drawing) -> str:
             text = model.add_text(label.text, height=label.height, dxfattribs={"layer": "TEXT"})
             centered, left = TextEntityAlignment.CENTER, TextEntityAlignment.LEFT
             text.set_placement(label.at, align=centered if label.is_centered else left)
-        stream = io.StringIO()
-        document.write(stream)
-    return stream.getvalue()
+        return drawing_text(document)
 
 
 def _svg(drawing: Drawing) -> str:

@@ -7,7 +7,7 @@ from ...kernel.arrays import BoolArray, FloatArray, dot, norm
 from ...kernel.spheres.incidence import normals, signed_distance
 from ...kernel.tolerances import SINGLE_EPSILON
 from .brep_layout import FaceMesh
-from .stream_reader import BufferPlace, inflated
+from .stream_reader import BufferPlace, buffer_content
 
 
 def audit_render_meshes(
@@ -53,7 +53,7 @@ def _vertices(streams: NDArray[np.uint8], mesh: FaceMesh) -> tuple[FloatArray, F
 def _points(streams: NDArray[np.uint8], buffer: BufferPlace, dtype: str) -> FloatArray:
     """Points (n, V, 3) of a buffer; a deflated one is the same in all streams."""
     if buffer.is_deflated:
-        content = np.frombuffer(inflated(streams[0].tobytes(), buffer), dtype)
+        content = np.frombuffer(buffer_content(streams[0].tobytes(), buffer), dtype)
         raw = np.broadcast_to(content, (len(streams), len(content)))
     else:
         raw = np.ascontiguousarray(streams[:, buffer.start : buffer.stop]).view(dtype)

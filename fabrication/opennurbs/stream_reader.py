@@ -111,11 +111,17 @@ class StreamReader:
                 raise UnreadableError(f"a table of unknown version before {self.position}")
             yield self.ints(1)[0]
 
-    def buffer(self, size: int) -> BufferPlace:
-        """Pass a buffer that must hold so many bytes."""
+    def skip_chunk(self) -> None:
+        """Pass a chunk of any type."""
+        start = self.take(codes.CHUNK_HEADER.size)
+        self.take(codes.CHUNK_HEADER.unpack_from(self.data, start)[1])
+
+    def buffer(self, expected: int | None = None) -> BufferPlace:
+        """Pass a buffer; it must hold so many bytes if that is given."""
         begin = self.position
-        if self.ints(1)[0] != size:
-            raise UnreadableError(f"the buffer at byte {begin} does not hold {size} bytes")
+        (size,) = self.ints(1)
+        if expected not in (None, size):
+            raise UnreadableError(f"the buffer at byte {begin} does not hold {expected} bytes")
         if size == 0:
             return BufferPlace(self.position, self.position, is_deflated=False)
         place = self.take(codes.CRC.size)
@@ -127,16 +133,17 @@ class StreamReader:
         with self.chunk(codes.ANONYMOUS):
             start = self.take(self.limit - self.position)
             found = BufferPlace(start, self.position, is_deflated=True)
-        content = inflated(self.data, found)
+        content = buffer_content(self.data, found)
         (checksum,) = codes.CRC.unpack_from(self.data, place)
         if len(content) != size or checksum != zlib.crc32(content):
             raise UnreadableError(f"the buffer at byte {begin} does not inflate to its content")
         return found
 
 
-def inflated(data: bytes, buffer: BufferPlace) -> bytes:
-    """Content of a deflated buffer: the content; empty if the bytes are damaged."""
+def buffer_content(data: bytes, buffer: BufferPlace) -> bytes:
+    """Content of a buffer; empty if deflated bytes are damaged."""
+    content = data[buffer.start : buffer.stop]
     try:
-        return zlib.decompress(data[buffer.start : buffer.stop])
+        return zlib.decompress(content) if buffer.is_deflated else content
     except zlib.error:
         return b""

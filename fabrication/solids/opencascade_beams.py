@@ -17,10 +17,8 @@ from typing import TypeAlias
 
 import numpy as np
 from OCP.Geom import Geom_Curve, Geom_CylindricalSurface, Geom_Ellipse, Geom_Line, Geom_Plane
-from OCP.Geom2d import Geom2d_BSplineCurve, Geom2d_Curve, Geom2d_Line
+from OCP.Geom2d import Geom2d_Curve, Geom2d_Line
 from OCP.gp import gp_Ax2, gp_Ax3, gp_Dir, gp_Dir2d, gp_Elips, gp_Pnt, gp_Pnt2d
-from OCP.TColgp import TColgp_Array1OfPnt2d
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape, TopoDS_Vertex
 
 from ...kernel.arrays import FloatArray, dot, norm
@@ -310,16 +308,5 @@ def _parameter_curves(
             )
             x, y, z = solids.numbers.frames[beam, k] @ relative.T
             points = np.stack([np.pi + np.arctan2(-y, -x), z], 1)
-            yield edge, _straight(points.tolist(), float(norm(relative[1] - relative[0])))
-
-
-def _straight(points: list[list[float]], length: float) -> Geom2d_BSplineCurve:
-    """Line in the parameters of a surface, by the length of its edge."""
-    poles = TColgp_Array1OfPnt2d(1, 2)
-    knots = TColStd_Array1OfReal(1, 2)
-    multiplicities = TColStd_Array1OfInteger(1, 2)
-    for i, (point, knot) in enumerate(zip(points, (0.0, length), strict=True), 1):
-        poles.SetValue(i, gp_Pnt2d(*point))
-        knots.SetValue(i, knot)
-        multiplicities.SetValue(i, 2)
-    return Geom2d_BSplineCurve(poles, knots, multiplicities, 1)
+            length = float(norm(relative[1] - relative[0]))
+            yield edge, occ.make_spline([0.0, length], points.tolist(), 1)

@@ -134,8 +134,10 @@ def quintic_poles(nodes: FloatArray, steps: FloatArray) -> FloatArray:
     return ring.reshape(len(steps), -1, 2)
 
 
-def make_spline(knots: list[float], poles: list[list[float]]) -> Geom2d_BSplineCurve:
-    """A quintic spline in the parameters of a surface: n + 1 knots, 3n + 3 poles."""
+def make_spline(
+    knots: list[float], poles: list[list[float]], degree: int = 5
+) -> Geom2d_BSplineCurve:
+    """A spline in the parameters of a surface: for degree 5, n + 1 knots and 3n + 3 poles."""
     points = TColgp_Array1OfPnt2d(1, len(poles))
     for i, pole in enumerate(poles, 1):
         points.SetValue(i, gp_Pnt2d(*pole))
@@ -144,6 +146,6 @@ def make_spline(knots: list[float], poles: list[list[float]]) -> Geom2d_BSplineC
     for i, knot in enumerate(knots, 1):
         values.SetValue(i, knot)
         multiplicities.SetValue(i, 3)
-    multiplicities.SetValue(1, 6)
-    multiplicities.SetValue(len(knots), 6)
-    return Geom2d_BSplineCurve(points, values, multiplicities, 5)
+    multiplicities.SetValue(1, degree + 1)
+    multiplicities.SetValue(len(knots), degree + 1)
+    return Geom2d_BSplineCurve(points, values, multiplicities, degree)
