@@ -176,8 +176,7 @@ def _rejection_reasons(
     closest = half_angles.min(axis=(1, 2))
     _note(closest < PARALLEL_PLANES, "another beam leaves the node in the same direction")
     _note(
-        ~exists,
-        "the cut of an end misses a circle: make the beams thinner or the node smaller",
+        ~exists, "the cut of an end misses a circle: make the beams thinner or the node smaller"
     )
     ridges = np.abs(beams.levels[..., 1]) >= beams.thickness / 2
     _note(

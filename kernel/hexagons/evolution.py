@@ -198,10 +198,7 @@ def _evolve(surface: TangentSurface, rules: _Rules) -> tuple[TangentSurface, Flo
 
 
 def _retreat(
-    surface: TangentSurface,
-    offsets: FloatArray,
-    aims: FloatArray,
-    rules: _Rules,
+    surface: TangentSurface, offsets: FloatArray, aims: FloatArray, rules: _Rules
 ) -> tuple[TangentSurface, FloatArray, FloatArray, int]:
     """Lower the aims where faces are not convex: around small enough spheres they are."""
     n_flips, least, aims = 0, least_offsets(surface.mesh), aims.copy()

@@ -183,9 +183,7 @@ def angle_density(target: float) -> EdgeEnergy:
     """
     aim = np.cos(target) ** 2
 
-    def _density(
-        products: FloatArray,
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _density(products: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         size, side = np.abs(products), np.sign(products)
         excess = products * size - aim
         return excess**2, 4 * size * excess, 4 * side * excess + 8 * products**2
@@ -194,9 +192,7 @@ def angle_density(target: float) -> EdgeEnergy:
 
 
 def minimize_angles(
-    sphere_mesh: SphereMesh,
-    target_angle: float = 0.0,
-    edge_weights: ArrayLike | None = None,
+    sphere_mesh: SphereMesh, target_angle: float = 0.0, edge_weights: ArrayLike | None = None
 ) -> tuple[SphereMesh, AngleReport]:
     """Spheres through the faces' circles that meet their neighbours most smoothly.
 

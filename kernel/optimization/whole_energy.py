@@ -22,13 +22,7 @@ from ..sphere_meshes.fit import face_planes
 from ..sphere_meshes.sphere_mesh import SphereMesh, intersection_angles, vertex_error
 from ..spheres.circles import circle_pencils, face_circles, pencil_spheres
 from ..spheres.rows import recenter, rescale
-from ..tolerances import (
-    COMMON_VERTEX,
-    ENERGY_CHANGE,
-    RESTING_MODEL,
-    STAGE_CHANGE,
-    STEP_MODEL,
-)
+from ..tolerances import COMMON_VERTEX, ENERGY_CHANGE, RESTING_MODEL, STAGE_CHANGE, STEP_MODEL
 from .angle_minimization import check_angle_options, minimize_angles, pencil_angles
 from .energies.freedom import Boundary, Freedom, Interior, vertex_freedom
 from .energies.minimize import energy_problem, minimize_energy

@@ -93,14 +93,8 @@ def _faults(panels: Panels, found: Found) -> list[Fault]:
             "thickness",
             is_thin,
         ),
-        (
-            "the thickness leaves no corner on the outer face",
-            _any_corner(~found.outer_corners),
-        ),
-        (
-            "the thickness leaves no corner on the inner face",
-            _any_corner(~found.inner_corners),
-        ),
+        ("the thickness leaves no corner on the outer face", _any_corner(~found.outer_corners)),
+        ("the thickness leaves no corner on the inner face", _any_corner(~found.inner_corners)),
     ]
     sides = found.references[panels.next_corners] - found.references
     has_sides = panels.thickness > 0 or panels.joint_gap > 0
@@ -118,10 +112,7 @@ def _faults(panels: Panels, found: Found) -> list[Fault]:
                 ),
             ),
             (f"a cutting plane leans over the {name} face: cut it by bisectors", leaning),
-            (
-                f"the {name} face reaches more than 80 degrees from its middle: split it",
-                steep,
-            ),
+            (f"the {name} face reaches more than 80 degrees from its middle: split it", steep),
         ]
     return faults
 

@@ -17,13 +17,7 @@ from ..spheres.arcs import (
 from ..spheres.incidence import normals
 from ..spheres.rows import center_radius, offset
 from .mould_blanks import PanelCaps, panel_caps
-from .panels import (
-    Panels,
-    corner_points,
-    opposite_corners,
-    panel_arcs,
-    panel_areas,
-)
+from .panels import Panels, corner_points, opposite_corners, panel_arcs, panel_areas
 
 
 @dataclass(frozen=True)

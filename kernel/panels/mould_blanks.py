@@ -119,10 +119,7 @@ def panel_caps(panels: Panels) -> PanelCaps:
 
 
 def mould_blanks(
-    panels: Panels,
-    same: CongruentPanels,
-    size_step: float = 0.0,
-    caps: PanelCaps | None = None,
+    panels: Panels, same: CongruentPanels, size_step: float = 0.0, caps: PanelCaps | None = None
 ) -> MouldBlanks:
     """How many blanks of which size every mould must give.
 

@@ -12,13 +12,7 @@ import numpy as np
 
 from ..arrays import FloatArray, dot
 from ..tolerances import STEP_MODEL
-from .blocks import (
-    JacobianPattern,
-    Layout,
-    block_diagonal,
-    diagonal_blocks,
-    jacobian_matrix,
-)
+from .blocks import JacobianPattern, Layout, block_diagonal, diagonal_blocks, jacobian_matrix
 from .conjugate_gradients import truncated_step
 from .factorization import SparseArray, solve_definite
 from .levenberg_marquardt import DampedStep
@@ -56,9 +50,7 @@ class Linearization:
 
 
 def linearization(
-    pattern: JacobianPattern,
-    residuals: FloatArray,
-    entries: Sequence[Sequence[FloatArray]],
+    pattern: JacobianPattern, residuals: FloatArray, entries: Sequence[Sequence[FloatArray]]
 ) -> Linearization:
     """Collect what a step needs.
 

@@ -13,12 +13,7 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, sum_by, unit
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_centroids, local_corners, mean_edge_length
 from ..solvers.weighted_graphs import weighted_graph
-from ..spheres.circles import (
-    Circles,
-    circle_pencils,
-    face_circles,
-    pencil_spheres,
-)
+from ..spheres.circles import Circles, circle_pencils, face_circles, pencil_spheres
 from ..spheres.minkowski import minkowski
 from ..spheres.rows import recenter
 from ..tolerances import CIRCULAR

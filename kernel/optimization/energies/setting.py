@@ -194,7 +194,5 @@ def first_unknowns(sphere_mesh: SphereMesh) -> Unknowns:
     corner_normals = face_normals(mesh)[mesh.topology.corner_faces]
     normals = unit(sum_by(mesh.corners, corner_normals, mesh.n_vertices))
     return Unknowns(
-        spheres,
-        np.zeros((mesh.n_vertices, 3)),
-        normals[~mesh.topology.is_boundary_vertex],
+        spheres, np.zeros((mesh.n_vertices, 3)), normals[~mesh.topology.is_boundary_vertex]
     )

@@ -174,10 +174,7 @@ def _corner_map(surface: CongruenceMesh, seams: Seams, alignment: Alignment) -> 
 
 
 def _least_squares(
-    surface: CongruenceMesh,
-    corner_map: SparseArray,
-    along: FloatArray,
-    across: FloatArray,
+    surface: CongruenceMesh, corner_map: SparseArray, along: FloatArray, across: FloatArray
 ) -> tuple[SparseArray, FloatArray]:
     from scipy.sparse import csr_array, vstack
 
