@@ -188,16 +188,8 @@ def _corner_distances(rows: FloatArray, points: FloatArray) -> FloatArray:
 def mirror_points(sphere_mesh: SphereMesh) -> MirrorPoints:
     """Second envelope of a sphere mesh: where the spheres around a vertex meet once more.
 
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
-        The sphere mesh; its spheres pass through the vertices.
-
-    Returns
-    -------
-    MirrorPoints
-        The mirror images of the interior vertices in the planes of the centres; around
-        vertices of more than three faces by least squares.
+    The spheres pass through the vertices. Mirror images of the interior vertices in the planes
+    of the centres; around vertices of more than three faces by least squares.
 
     Notes
     -----
@@ -243,18 +235,9 @@ def _rows_at_vertices(sphere_mesh: SphereMesh, size: float) -> FloatArray:
 def contact_points(sphere_mesh: SphereMesh) -> tuple[FloatArray, FloatArray]:
     """Discrete contact points: the points nearest to all spheres around each vertex.
 
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
-        The sphere mesh; its vertices are the start.
-
-    Returns
-    -------
-    points : (V, 3) float array
-        Least squares of the distances from the spheres, by steps of least length: a vertex on
-        fewer than three spheres moves no farther than it must. Unused vertices stay.
-    residuals : (V,) float array
-        Distance from the farthest of the spheres, in model units.
+    Least squares (V, 3) of the distances from the spheres, by steps of least length from the
+    vertices: a vertex on fewer than three spheres moves no farther than it must. Unused
+    vertices stay. Also the distances (V,) from the farthest of the spheres, in model units.
 
     References
     ----------
@@ -299,17 +282,10 @@ def _contact_step(
 def ribaucour_residuals(sphere_mesh: SphereMesh) -> tuple[FloatArray, FloatArray]:
     """How far the two envelopes of a sphere mesh are from circular nets.
 
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
-        A sphere mesh; a Q-congruence if its `mirror_points` have no residuals.
-
-    Returns
-    -------
-    plus, minus : (F,) float array
-        Of each face of the mesh, and of the face of its mirror points: least singular value of
-        the lifted corners that must vanish on a circle, relative to the largest. Zero for
-        triangles; NaN where a corner has no mirror point.
+    It is a Q-congruence if its `mirror_points` have no residuals. Of each face (F,) of the
+    mesh, and of the face of its mirror points: least singular value of the lifted corners that
+    must vanish on a circle, relative to the largest. Zero for triangles; NaN where a corner has
+    no mirror point.
 
     Notes
     -----

@@ -57,18 +57,10 @@ def strip_weights(mesh: Mesh, family: Family) -> FloatArray:
 
 
 def strip_weights_along(mesh: Mesh, direction: FloatArray) -> FloatArray:
-    """Weights that join faces along a direction in space.
+    """Weights (E,) that join faces along a direction in space, (3,) or (F, 3).
 
-    Parameters
-    ----------
-    direction : (3,) or (F, 3) float array
-        Direction in which strips run, for all faces or for each.
-
-    Returns
-    -------
-    (E,) float array
-        1 on edges that cross the direction at more than 45 degrees, 0 on the others, and where
-        the direction stands upright on the mesh.
+    1 on edges that cross the direction at more than 45 degrees, 0 on the others, and where the
+    direction stands upright on the mesh.
 
     Raises
     ------

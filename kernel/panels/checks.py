@@ -43,19 +43,10 @@ Fault = tuple[str, BoolArray]
 
 
 def rejection_reasons(panels: Panels, found: Found) -> dict[int, str]:
-    """Why panels cannot be made.
+    """Why panels cannot be made, by panel; those that can be made do not occur.
 
-    Parameters
-    ----------
-    panels : Panels
-        P panels with H corners, sound or not.
-
-    Returns
-    -------
-    dict of int to str
-        Reason by panel; panels that can be made do not occur. Where one fault brings others
-        with it, the reason is the cause: every fault is looked for in every panel, and they
-        are ranked (`_faults`).
+    Where one fault brings others with it, the reason is the cause: every fault is looked for in
+    every panel, and they are ranked (`_faults`).
     """
     faults = _faults(panels, found)
     sound = ~np.any([bad for _, bad in faults], axis=0)

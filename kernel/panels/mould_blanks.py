@@ -73,12 +73,7 @@ class MouldBlanks:
 
 
 def panel_caps(panels: Panels) -> PanelCaps:
-    """Smallest cap of each panel's mould over which both of its faces lie.
-
-    Returns
-    -------
-    PanelCaps
-        The caps, in the coordinates local to each panel.
+    """Smallest cap of each panel's mould over which both of its faces lie; local to it.
 
     Raises
     ------

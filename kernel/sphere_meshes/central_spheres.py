@@ -23,19 +23,11 @@ NAMED_FACES = 4
 
 
 def edge_spheres(mesh: Mesh) -> FloatArray:
-    """Sphere of each interior edge, through the circumcircles of its two faces.
+    """Sphere of each interior edge of a circular mesh, through the circles of its two faces.
 
-    Parameters
-    ----------
-    mesh : Mesh
-        A circular mesh, of any face degrees.
-
-    Returns
-    -------
-    (E, 5) float array
-        Unit rows, planes included, in the coordinates local to the edge: seen from the middle
-        of its two vertices, with the axes of the model. N agrees with the normal of the first
-        face. Where both faces have the same circle, its plane.
+    Unit rows (E, 5), planes included, in the coordinates local to the edge: seen from the
+    middle of its two vertices, with the axes of the model. N agrees with the normal of the
+    first face. Where both faces have the same circle, its plane.
 
     Raises
     ------
@@ -63,19 +55,10 @@ def edge_spheres(mesh: Mesh) -> FloatArray:
 def bisectors(s: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Both spheres that bisect the angles of two spheres.
 
-    Parameters
-    ----------
-    s, t : (..., 5) float array
-        Unit rows of spheres or planes that meet, seen from near their circle.
-
-    Returns
-    -------
-    acute : (..., 5) float array
-        Unit rows ``ε s + t`` of the bisectors of the smaller angle, with ε the sign of
-        ``<<s, t>>``. Orthogonal rows count as ε = +1: then both angles are the smaller one.
-    obtuse : (..., 5) float array
-        Unit rows ``ε s - t`` of the bisectors of the larger angle, orthogonal to the first.
-        NaN where the spheres are the same or do not meet: then nothing is bisected.
+    Of unit rows (..., 5) that meet, seen from near their circle: ``ε s + t`` for the smaller
+    angle, with ε the sign of ``<<s, t>>``, orthogonal rows counting as ε = +1, since then both
+    angles are the smaller one; and ``ε s - t`` for the larger angle, orthogonal to the first.
+    NaN where the spheres are the same or do not meet: then nothing is bisected.
 
     Notes
     -----
@@ -146,19 +129,11 @@ def principal_spheres(mesh: Mesh) -> tuple[SphereMesh, SphereMesh]:
 def central_spheres(mesh: Mesh) -> SphereMesh:
     """Discrete central spheres: the Möbius-invariant mean of the curvatures at each face.
 
-    Parameters
-    ----------
-    mesh : Mesh
-        A circular mesh, of any face degrees.
-
-    Returns
-    -------
-    SphereMesh
-        On quads the sphere that bisects the smaller angle of the two principal spheres (see
-        `principal_spheres`, also for the boundary). On other faces the sphere S through the
-        circle with the largest sum of ``<<S, s>>²`` over the spheres s of the edges. Exact on
-        meshes inscribed in a sphere; commutes with Möbius maps. Only a face without a
-        neighbour on another circle gets its plane, which does not.
+    On quads of a circular mesh the sphere that bisects the smaller angle of the two principal
+    spheres (see `principal_spheres`, also for the boundary). On other faces the sphere S
+    through the circle with the largest sum of ``<<S, s>>²`` over the spheres s of the edges.
+    Exact on meshes inscribed in a sphere; commutes with Möbius maps. Only a face without a
+    neighbour on another circle gets its plane, which does not.
 
     Raises
     ------

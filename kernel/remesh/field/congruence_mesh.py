@@ -56,13 +56,7 @@ class CongruenceMesh:
 
     @property
     def vertex_areas(self) -> FloatArray:
-        """A third of the areas of the faces around each vertex.
-
-        Returns
-        -------
-        (V,) float array
-            Areas, in squared mean edges.
-        """
+        """A third of the areas of the faces around each vertex, (V,), in squared mean edges."""
         shares = np.repeat(self.face_areas / 3, 3)
         return sum_by(self.triangles.ravel(), shares, len(self.points))
 
@@ -70,15 +64,8 @@ class CongruenceMesh:
 def congruence_mesh(mesh: Mesh, spheres: ArrayLike) -> CongruenceMesh:
     """Check a triangle mesh with spheres at its vertices, and bring it into local coordinates.
 
-    Parameters
-    ----------
-    spheres : (V, 5) array_like of float
-        Real rows of any scale, not zero, in model coordinates; planes included.
-
-    Returns
-    -------
-    CongruenceMesh
-        The congruence in units of the mean edge.
+    The spheres are real rows (V, 5) of any scale, not zero, in model coordinates; planes
+    included.
 
     Raises
     ------

@@ -22,16 +22,9 @@ LEAST_PATCH = 0.15
 def transport(source: FloatArray, target: FloatArray) -> ComplexArray:
     """Parallel transport between tangent planes, as factors of complex coordinates.
 
-    Parameters
-    ----------
-    source, target : (..., 3, 3) float array
-        Right-handed frames: two tangents and the normal.
-
-    Returns
-    -------
-    (...) complex array
-        Unit factors r: the vector with coordinate w in the source has ``r w`` in the target,
-        after the smallest rotation that takes normal to normal; 1 if the normals are opposite.
+    The frames (..., 3, 3) are right-handed: two tangents and the normal. Unit factors r: the
+    vector with coordinate w in the source has ``r w`` in the target, after the smallest
+    rotation that takes normal to normal; 1 if the normals are opposite.
     """
     first, second = source[..., 0, :], source[..., 1, :]
     along, across = target[..., 0, :], target[..., 1, :]
@@ -46,19 +39,8 @@ def orient_forms(
 ) -> tuple[FloatArray, ComplexArray]:
     """Reverse forms beyond curves on which they vanish.
 
-    Parameters
-    ----------
-    trace : (V,) float array
-        Means of the forms.
-    deviator : (V,) complex array
-        Deviators, in the coordinates of `vertex_frames`.
-
-    Returns
-    -------
-    trace : (V,) float array
-        Means of the same forms, up to signs.
-    deviator : (V,) complex array
-        Their deviators.
+    Trace and deviator (V,) of the same forms, up to signs, in the coordinates of
+    `vertex_frames`.
 
     Notes
     -----
@@ -107,21 +89,8 @@ def smooth_forms(
 ) -> tuple[FloatArray, ComplexArray]:
     """Smooth a field of forms where it says little, and keep it where it is sure.
 
-    Parameters
-    ----------
-    trace : (V,) float array
-        Means of the forms.
-    deviator : (V,) complex array
-        Deviators, in the coordinates of `vertex_frames`.
-    length : float
-        Distance over which the field is smoothed, in mean edges; 0 gives the normalised field.
-
-    Returns
-    -------
-    trace : (V,) float array
-        Means of the smooth field.
-    deviator : (V,) complex array
-        Its deviators.
+    Trace and deviator are (V,), in the coordinates of `vertex_frames`. `length` is the distance
+    over which the field is smoothed, in mean edges; 0 gives the normalised field.
 
     Notes
     -----

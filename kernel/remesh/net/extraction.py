@@ -63,16 +63,8 @@ def extract_net(
 ) -> Net:
     """Trace the lines at whole numbers and a half, and the cells between them.
 
-    Parameters
-    ----------
-    frames : CombedFrames
-        Signs between the charts of neighbouring faces.
-
-    Returns
-    -------
-    Net
-        Cells on the boundary are cut by it, with a corner where it has one; cells that have a
-        hole inside cover it.
+    Cells on the boundary are cut by it, with a corner where it has one; cells that have a hole
+    inside cover it.
 
     Raises
     ------

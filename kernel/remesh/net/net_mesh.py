@@ -46,17 +46,9 @@ class NetMesh(NamedTuple):
 
 
 def net_mesh(net: Net, edge_length: float) -> NetMesh:
-    """Build the mesh of a net.
+    """Build the mesh of a net with steps of a given length.
 
-    Parameters
-    ----------
-    edge_length : float
-        Length of a step of the net.
-
-    Returns
-    -------
-    NetMesh
-        Where contracting the short edges would pinch the mesh they are kept.
+    Where contracting the short edges would pinch the mesh they are kept.
 
     Raises
     ------
