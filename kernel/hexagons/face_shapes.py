@@ -31,10 +31,9 @@ class PencilPosition(IntEnum):
 def face_shapes(sphere_mesh: SphereMesh) -> NDArray[Any]:
     """Tell visually convex faces from bow-ties and from those whose boundary crosses itself.
 
-    For each face
-    ``"convex"``: seen along the direction of its largest shadow, no corner is reflex; ``"bow-tie"``:
-    some are (two, in the typical case); ``"crossing"``: two of its arcs meet, or the face is
-    folded over and runs clockwise about N.
+    For each face ``"convex"``: seen along the direction of its largest shadow, no corner is
+    reflex; ``"bow-tie"``: some are (two, in the typical case); ``"crossing"``: two of its arcs
+    meet, or the face is folded over and runs clockwise about N.
 
     Notes
     -----
