@@ -122,9 +122,9 @@ def insets_at(levels: FloatArray, insets: FloatArray, heights: FloatArray) -> Fl
 def cut_corners(annuli: Annuli, insets: FloatArray) -> tuple[FloatArray, BoolArray]:
     """Where lines parallel to the ends meet the circles.
 
-    Insets (B, 2, n) of the lines from those of the ends, into the annuli. Points (B, 2, 2, n,
-    3) at both ends, on the outer and the inner circle, local, in the planes; and whether all
-    lines of an annulus meet its circles.
+    Insets (B, 2, n) of the lines from those of the ends, into the annuli. Points
+    (B, 2, 2, n, 3) at both ends, on the outer and the inner circle, local, in the planes; and
+    whether all lines of an annulus meet its circles.
     """
     across = inward_directions(annuli)[:, :, None, None]
     points = annuli.corners[:, :, :, None] + insets[:, :, None, :, None] * across

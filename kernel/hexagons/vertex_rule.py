@@ -9,11 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm
-from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, mean_edge_length
-from ..spheres.minkowski import minkowski
-from ..spheres.rows import Kind, kind, recenter
-from ..tolerances import DEGENERATE, EPSILON
+from ..spheres.row_checks import check_rows, seen_from, unit_rows
+from ..spheres.rows import recenter
+from ..tolerances import DEGENERATE
 
 
 def meet_three(rows: FloatArray) -> tuple[FloatArray, BoolArray]:
@@ -78,32 +77,10 @@ def vertex_rows(mesh: Mesh, spheres: ArrayLike) -> FloatArray:
     InputError
         If the rows do not match the vertices, are not finite, or are no real spheres or planes;
         the message names the vertices.
-
-    Notes
-    -----
-    Far from the origin a row rounds its last coefficient: where the vertex lies on its sphere
-    up to this rounding, it lies on it exactly.
     """
     rows = np.asarray(spheres, float)
-    if rows.shape != (mesh.n_vertices, 5):
-        raise InputError(
-            f"spheres must be one per vertex, of shape ({mesh.n_vertices}, 5), not {rows.shape}"
-        )
-    bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
-    if len(bad):
-        raise InputError(f"the spheres of vertices {name_ids(bad.tolist())} are not finite")
-    points = mesh.vertices
-    local = recenter(rows, points)
-    scale = np.abs(rows[:, 4]) + np.abs(dot(rows[:, 1:4], points))
-    scale = scale + np.abs(rows[:, 0]) * dot(points, points)
-    local[np.abs(local[:, 4]) <= 8 * EPSILON * scale, 4] = 0
-    kinds = kind(local)
-    bad = np.flatnonzero((kinds == Kind.IMAGINARY) | (kinds == Kind.POINT))
-    if len(bad):
-        raise InputError(
-            f"the spheres of vertices {name_ids(bad.tolist())} are imaginary or points"
-        )
-    return local / np.sqrt(minkowski(local, local))[:, None]
+    check_rows(rows, mesh.n_vertices, "vertex")
+    return unit_rows(seen_from(rows, mesh.vertices), np.arange(mesh.n_vertices))
 
 
 def triangle_points(

@@ -1,4 +1,4 @@
-"""Weighted graphs as sparse matrices that every version of scipy walks."""
+"""Pieces of graphs, and weighted graphs that every version of scipy walks."""
 
 import numpy as np
 
@@ -19,3 +19,13 @@ def weighted_graph(
     ends = tails.astype(np.int32), heads.astype(np.int32)
     graph: SparseArray = csr_array((weights, ends), shape=(count, count))
     return graph
+
+
+def piece_labels(tails: IntArray, heads: IntArray, count: int) -> IntArray:
+    """Connected piece of each of `count` vertices, numbered by their first vertices."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    graph = coo_array((np.ones(len(tails)), (tails, heads)), shape=(count, count))
+    labels: IntArray = np.asarray(connected_components(graph, directed=False)[1], np.int64)
+    return labels

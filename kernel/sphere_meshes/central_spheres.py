@@ -12,7 +12,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray, dot, sum_by, unit
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_centroids, local_corners, mean_edge_length
-from ..solvers.weighted_graphs import weighted_graph
+from ..solvers.weighted_graphs import piece_labels, weighted_graph
 from ..spheres.circles import Circles, circle_pencils, face_circles, pencil_spheres
 from ..spheres.minkowski import minkowski
 from ..spheres.rows import recenter
@@ -239,8 +239,7 @@ def _direction_labels(mesh: Mesh) -> IntArray:
     Each quad has two nodes, one per direction; along a spanning tree of the quads they fall
     apart into two sets per piece.
     """
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import connected_components, minimum_spanning_tree
+    from scipy.sparse.csgraph import minimum_spanning_tree
 
     topology, count = mesh.topology, mesh.n_faces
     pairs, edges = np.unique(np.sort(topology.edge_faces, axis=1), axis=0, return_index=True)
@@ -252,8 +251,6 @@ def _direction_labels(mesh: Mesh) -> IntArray:
     left, right = topology.edge_faces[tree].T
     starts = np.concatenate([left, left + count])
     ends = np.concatenate([right + swaps * count, right + (1 - swaps) * count])
-    cover = csr_array((np.ones(len(starts)), (starts, ends)), shape=(2 * count, 2 * count))
-    sets = np.asarray(connected_components(cover, directed=False)[1])
-    pieces = connected_components(graph, directed=False)[1]
+    sets, pieces = piece_labels(starts, ends, 2 * count), piece_labels(*pairs.T, count)
     _, roots, piece = np.unique(pieces, return_index=True, return_inverse=True)
     return (sets[:count] != sets[roots[piece]]).astype(np.int64)

@@ -48,8 +48,8 @@ def surface_heights(
     """Heights of points (n, 3) near a smooth surface over it.
 
     Signed distances (n,), to first order: those from the paraboloids at the corners of the
-    nearest triangle, in the ratio of the barycentric coordinates; and their unit gradients (n,
-    3), but for the change of the ratio.
+    nearest triangle, in the ratio of the barycentric coordinates; and their unit gradients
+    (n, 3), but for the change of the ratio.
     """
     vertices, weights = nearest_triangles(surface.mesh, points)
     offsets = points[:, None] - surface.mesh.points[vertices]

@@ -4,6 +4,7 @@ import numpy as np
 
 from ...arrays import ComplexArray, FloatArray, IntArray, dot, norm, sum_by
 from ...solvers.factorization import SparseArray, factorize_symmetric
+from ...solvers.weighted_graphs import piece_labels
 from ...tolerances import LEAST_STIFFNESS
 from .congruence_mesh import CongruenceMesh
 from .tree_signs import tree_signs
@@ -63,7 +64,6 @@ def _patches(
 ) -> tuple[IntArray, SparseArray]:
     """Patch of forms of one sign of each vertex, and how alike the patches are."""
     from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import connected_components
 
     tails = surface.triangles.ravel()
     heads = np.roll(surface.triangles, -1, axis=1).ravel()
@@ -74,14 +74,13 @@ def _patches(
     bound = size[tails] * size[heads]
     likeness = np.divide(products, bound, out=np.ones_like(bound), where=bound > 0)
     is_alike = likeness > ALIKE_FORMS
-    ends = (tails[is_alike], heads[is_alike])
-    links = csr_array((np.ones(len(ends[0])), ends), shape=(len(size), len(size)))
-    count, patches = connected_components(links, directed=False)
+    patches = piece_labels(tails[is_alike], heads[is_alike], len(size))
+    count = int(patches.max()) + 1
     between = patches[tails] != patches[heads]
     ends = (patches[tails[between]], patches[heads[between]])
     votes = csr_array((likeness[between], ends), shape=(count, count))
     votes = (votes + votes.T).tocsr()
-    return np.asarray(patches, np.int64), votes / np.abs(votes.data).max(initial=1.0)
+    return patches, votes / np.abs(votes.data).max(initial=1.0)
 
 
 def smooth_forms(
