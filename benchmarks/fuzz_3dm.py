@@ -43,7 +43,9 @@ def seeds(folder: Path) -> dict[str, bytes]:
     a = np.pi / 3 * np.arange(6)
     contents = {
         "mesh": [to_rhino_mesh(roof)],
-        "ngons": [to_rhino_mesh(Mesh(np.column_stack([np.cos(a), np.sin(a), 0 * a]), [range(6)]))],
+        "ngons": [
+            to_rhino_mesh(Mesh(np.column_stack([np.cos(a), np.sin(a), 0 * a]), [range(6)]))
+        ],
         "surface": [ball.ToNurbsSurface()],
         "brep": [ball.ToBrep(), rhino3dm.Cylinder(circle, 2.0).ToBrep(True, True)],  # noqa: FBT003
         "extrusion": [rhino3dm.Extrusion.Create(circle.ToNurbsCurve(), 3.0, True)],  # noqa: FBT003
