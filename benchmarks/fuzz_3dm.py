@@ -30,7 +30,7 @@ from spheremesh.kernel.errors import InputError
 
 SIZE = GridSize(4, 4)
 MOST_SECONDS, MOST_MEGABYTES = 5.0, 500.0
-CUTS = 150
+CUTS = 40
 """Places where each seed is cut: every byte of a batch of neighbours, and steps between."""
 
 

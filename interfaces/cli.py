@@ -39,6 +39,11 @@ def main() -> None:
     """Turn design surfaces into spherical panels that can be built."""
 
 
+def _joined(_context: click.Context, _option: click.Parameter, names: tuple[str, ...]) -> str:
+    """An option that may be repeated, as one list with commas."""
+    return ",".join(names)
+
+
 @main.command()
 @click.argument("mesh", required=False, type=click.Path(path_type=Path))
 @click.option("-o", "--out", required=True, type=click.Path(path_type=Path), help="Folder.")
@@ -66,7 +71,7 @@ def main() -> None:
 @click.option(
     "--layer",
     multiple=True,
-    callback=lambda _context, _option, names: ",".join(names),
+    callback=_joined,
     help="Only this layer (.3dm) or group (OBJ); several with commas or repeated.",
 )
 @click.option(

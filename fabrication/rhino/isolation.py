@@ -83,8 +83,8 @@ def isolated(function: Callable[P, T], *arguments: P.args, **options: P.kwargs) 
         pipe = cast("IO[bytes]", child.stdout)
         threading.Thread(target=_listen, args=(pipe, lines), daemon=True).start()
         threading.Thread(target=_tell, args=(child.stdin, call), daemon=True).start()
+        sign, content = _ALIVE, b"%d" % QUIET_SECONDS
         try:
-            sign, content = _ALIVE, b"%d" % QUIET_SECONDS
             while sign == _ALIVE:
                 sign, content = lines.get(timeout=SLOWNESS * int(content))
         except Empty:

@@ -115,12 +115,12 @@ def _split(paths: dict[int, str], names: str) -> list[str]:
 def _matches(paths: dict[int, str], hidden: set[int], name: str) -> list[int]:
     """Layers of this path: exactly, without regard to capitals, or as its end."""
     folded = name.casefold()
-    for fits in (
-        lambda path: path == name,
-        lambda path: path.casefold() == folded,
-        lambda path: path.casefold().endswith(f"::{folded}"),
+    plain = {index: path.casefold() for index, path in paths.items()}
+    for found in (
+        [index for index, path in paths.items() if path == name],
+        [index for index, path in plain.items() if path == folded],
+        [index for index, path in plain.items() if path.endswith(f"::{folded}")],
     ):
-        found = [index for index, path in paths.items() if fits(path)]
         if found:
             return found
     raise InputError(

@@ -96,7 +96,7 @@ def kind_name(geometry: RhinoObject) -> str:
         return "unknown object"
     if type(geometry).__name__ == "Brep" and len(geometry.Faces) == 1:
         return "surface"
-    kind = geometry.ObjectType.name
+    kind = str(geometry.ObjectType.name)
     return _KINDS.get(kind, kind.lower())
 
 
