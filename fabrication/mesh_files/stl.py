@@ -116,7 +116,7 @@ def _statements(data: bytes) -> Iterator[tuple[int, str, list[str]]]:
             starts = [0]
         else:
             starts = [i for i, word in enumerate(row) if word.lower() in _KEYWORDS]
-        for start, end in zip(starts, [*starts[1:], len(row)], strict=True):
+        for start, end in zip(starts, [*starts[1:], len(row)], strict=False):
             yield number, row[start].lower(), row[start + 1 : end]
 
 

@@ -90,6 +90,7 @@ def test_stl_refuses_to_merge_vertices_that_float32_cannot_tell_apart(
         SOLID.replace("solid part", "Solid vertex facet"),
         SOLID.replace("endsolid part\n", "endsolid"),
         SOLID.replace("\n", "\r\n"),
+        SOLID.replace("endfacet", "color 1 0 0\nendfacet"),
     ],
 )
 def test_stl_capitals_and_line_ends_do_not_matter(
