@@ -157,13 +157,18 @@ def other_seeds(suffix: str) -> list[bytes]:
 def _rhino_seeds() -> list[bytes]:
     import rhino3dm
 
-    model = rhino3dm.File3dm()
     sphere = rhino3dm.Sphere(rhino3dm.Point3d(0, 0, 0), 2.0)
-    model.Objects.AddBrep(sphere.ToBrep())
-    model.Objects.AddSurface(sphere.ToNurbsSurface())
+    seeds = [_written(".3dm")]
     with tempfile.TemporaryDirectory() as folder:
-        model.Write(f"{folder}/a.3dm", 8)
-        return [_written(".3dm"), (Path(folder) / "a.3dm").read_bytes()]
+        for add, what in (
+            ("AddBrep", sphere.ToBrep()),
+            ("AddSurface", sphere.ToNurbsSurface()),
+        ):
+            model = rhino3dm.File3dm()
+            getattr(model.Objects, add)(what)
+            model.Write(f"{folder}/a.3dm", 8)
+            seeds.append((Path(folder) / "a.3dm").read_bytes())
+    return seeds
 
 
 def _graph_seeds() -> list[bytes]:
