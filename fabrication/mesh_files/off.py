@@ -1,13 +1,14 @@
 """Object File Format (OFF): polygons of any degree, vertices counted from 0."""
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import product
+from itertools import islice, product
 from typing import Final
 
 from ...kernel.errors import InputError
 from ...kernel.meshes.mesh import Mesh
-from ..polygons import FileContent
+from ..polygons import FileContent, Polygons
 from ..text import (
     TextPolygons,
     decode,
@@ -22,6 +23,9 @@ from .mending import Source, mended
 _KEYWORD: Final = re.compile(r"(ST)?(C)?(N)?(4)?(n)?(OFF|off)")
 """What follows the point on its line: texture coordinates, colours, normals."""
 
+_HEADER_ROWS: Final = 5
+"""Keyword, three counts, and one more row, at most."""
+
 _Row = tuple[int, list[str]]
 
 
@@ -30,6 +34,7 @@ class _Header:
     n_vertices: int
     n_faces: int
     line: int
+    n_rows: int
     widths: tuple[int, ...]  # numbers of a vertex, where rows are broken
     behind: tuple[str, ...]  # what stands behind the counts on their line
     has_edges: bool  # whether the number of edges was among them
@@ -56,28 +61,29 @@ def read_off(data: bytes) -> FileContent:
     InputError
         If a line cannot be read or lines are missing; the message names the line.
     """
-    rows = list(numbered_words(decode(data)))
-    header, first = _read_header(rows)
-    found, fault = _read_rows(rows[first:], header)
-    last = header.n_vertices + header.n_faces
-    if not _is_tidy(found, rows[first:], header):
+    text = decode(data)
+    header = _read_header(list(islice(numbered_words(text), _HEADER_ROWS)))
+    found, fault, behind = _read_rows(islice(numbered_words(text), header.n_rows, None), header)
+    polygons = None if fault or behind else _tidy(found, header)
+    if polygons is None:
         # Perhaps not one row a line, but numbers wherever lines end.
-        broken = _read_stream(rows[first:], header)
+        broken = _read_stream(list(islice(numbered_words(text), header.n_rows, None)), header)
         if broken is None and fault:
             raise InputError(fault)
-        found, last = (broken, len(rows)) if broken else (found, last)
+        found, behind = (broken, 0) if broken else (found, behind)
+        polygons = found.polygons()
     remarks: tuple[str, ...] = ()
-    if first + last < len(rows):
+    if behind:
         remarks = (
-            f"line {rows[first + last][0]}: the file goes on after the {header.n_faces} faces "
-            "that it counts; what follows is left out: check the counts on the lines above",
+            f"line {behind}: the file goes on after the {header.n_faces} faces that it counts; "
+            f"what follows is left out: check the counts on line {header.line}",
         )
     source = Source(significant_digits(found.coordinates), has_end=not unended(data))
-    return mended(found.polygons(), source, remarks)
+    return mended(polygons, source, remarks)
 
 
-def _read_header(rows: list[_Row]) -> tuple[_Header, int]:
-    """Counts behind the keyword or below it; and how many rows they take."""
+def _read_header(rows: list[_Row]) -> _Header:
+    """Counts behind the keyword or below it."""
     number, words = rows[0] if rows else (1, [""])
     keyword = _KEYWORD.match(words[0])
     widths = (3,)
@@ -104,7 +110,7 @@ def _read_header(rows: list[_Row]) -> tuple[_Header, int]:
             f"line {number}: expected the numbers of vertices, faces and edges, not "
             f"{' '.join(counts)[:60]!r}; save as ascii OFF"
         )
-    return _Header(numbers[0], numbers[1], number, widths, tuple(behind), len(counts) > 2), at
+    return _Header(numbers[0], numbers[1], number, at, widths, tuple(behind), len(counts) > 2)
 
 
 def _has_more_counts(counts: list[str], row: _Row) -> bool:
@@ -117,39 +123,42 @@ def _widths(keyword: re.Match[str]) -> tuple[int, ...]:
     return (known + 4, known + 3) if keyword[2] else (known,)
 
 
-def _read_rows(rows: list[_Row], header: _Header) -> tuple[TextPolygons, str]:
-    """One row a line: what could be read, and what is wrong with the row after it."""
+def _read_rows(rows: Iterator[_Row], header: _Header) -> tuple[TextPolygons, str, int]:
+    """One row a line: what could be read, what is wrong with the row after it, and its line."""
     n_vertices, n_faces = header.n_vertices, header.n_faces
     found = TextPolygons()
     line = header.line
-    for line, words in rows[:n_vertices]:
+    for line, words in islice(rows, n_vertices):
         if len(words) < 3:
-            return found, f"line {line}: a vertex needs three coordinates"
+            return found, f"line {line}: a vertex needs three coordinates", line
         found.add_vertex(line, words)
-    for line, words in rows[n_vertices : n_vertices + n_faces]:
+    for line, words in islice(rows, n_faces):
         degree = to_count(words[0])
         if not 0 <= degree < len(words):
-            return found, (
+            fault = (
                 f"line {line}: a face is its number of corners and so many vertices, not "
                 f"{' '.join(words)[:60]!r}; export the mesh again"
             )
+            return found, fault, line
         found.add_face(line, words[1 : 1 + degree])
-    if len(rows) >= n_vertices + n_faces:
-        return found, ""
-    return found, (
+    if len(found.vertex_lines) + len(found.face_lines) == n_vertices + n_faces:
+        return found, "", next((number for number, _ in rows), 0)
+    fault = (
         f"line {line}: the file ends after {len(found.vertex_lines)} of {n_vertices} vertices "
         f"and {len(found.face_lines)} of {n_faces} faces; export the mesh again"
     )
+    return found, fault, line
 
 
-def _is_tidy(found: TextPolygons, rows: list[_Row], header: _Header) -> bool:
-    """Whether rows are lines: all are used, points have equal widths, faces their vertices."""
-    n_vertices, n_faces = header.n_vertices, header.n_faces
-    if len(rows) != n_vertices + n_faces or len(found.face_lines) < n_faces:
-        return False
-    widths = {len(words) for _, words in rows[:n_vertices]}
-    is_sound = all(0 <= to_count(word) < n_vertices for word in found.corner_words)
-    return len(widths) < 2 and is_sound and min(found.degrees, default=3) > 2
+def _tidy(found: TextPolygons, header: _Header) -> Polygons | None:
+    """The polygons, if they are what rows on lines of their own give."""
+    try:
+        polygons = found.polygons()
+    except InputError:
+        return None
+    corners, degrees = polygons.corners, polygons.degrees
+    is_sound = ((corners >= 0) & (corners < header.n_vertices)).all() and (degrees > 2).all()
+    return polygons if is_sound else None
 
 
 def _read_stream(rows: list[_Row], header: _Header) -> TextPolygons | None:
