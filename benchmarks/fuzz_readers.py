@@ -341,7 +341,7 @@ def watched(name: str, seconds: float, keep: Path) -> int:
     """Fuzz a reader and print a row; a process that dies is a fault, and started anew."""
     spent, seed = 0.0, 1
     total: Counter[str] = Counter()
-    faults: dict[str, bytes] = {}
+    faults: dict[str, tuple[str, bytes]] = {}
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{name}{READERS[name].suffix}"
         while spent < seconds:
@@ -357,14 +357,15 @@ def watched(name: str, seconds: float, keep: Path) -> int:
             if ended:
                 break
             data = path.read_bytes() if path.exists() else b""
-            faults.setdefault(f"FAULT the process ended or hung ({process.exitcode})", data)
+            outcome = f"FAULT the process ended or hung ({process.exitcode})"
+            faults.setdefault(outcome, (outcome, data))
     keep.mkdir(parents=True, exist_ok=True)
     print(
         f"{name:6} {spent:6.0f} s  {sum(total.values()):8d} runs  {total['read']:8d} read  "
         f"{total['refused']:8d} refused  {total['FAULT']:5d} faults",
         flush=True,
     )
-    for outcome, data in faults.items():
+    for outcome, data in faults.values():
         file = keep / f"{hashlib.sha1(data).hexdigest()[:10]}{READERS[name].suffix}"  # noqa: S324
         file.write_bytes(data)
         print(f"       {outcome}\n       {file}", flush=True)
@@ -374,7 +375,7 @@ def watched(name: str, seconds: float, keep: Path) -> int:
 def follow(
     process: Any,  # noqa: ANN401
     answers: Any,  # noqa: ANN401
-    faults: dict[str, bytes],
+    faults: dict[str, tuple[str, bytes]],
 ) -> tuple[tuple[float, dict[str, int]], bool]:
     """Listen to a process: CPU seconds and counts, and whether it came to its end."""
     run: tuple[float, dict[str, int]] = (0.0, {})
@@ -391,7 +392,7 @@ def follow(
         last = time.monotonic()
         if kind == "fault":
             if len(faults) < 40:
-                faults.setdefault(re.sub(r"\d+", "0", first), second)
+                faults.setdefault(re.sub(r"\d+", "0", first), (first, second))
         else:
             run = (first, second)
             if kind == "done":

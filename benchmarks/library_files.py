@@ -97,12 +97,8 @@ def _igl(folder: Path, shapes: dict[str, Mesh]) -> Iterator[Case]:
 
     for name, mesh in shapes.items():
         triangles = mesh.corners.reshape(-1, 3)
-        for suffix, tolerance in (
-            (".obj", 1e-9),
-            (".off", 1e-9),
-            (".ply", 1e-6),
-            (".stl", 1e-6),
-        ):
+        tolerances = {".obj": 1e-9, ".off": 1e-9, ".ply": 1e-5, ".stl": 1e-6}
+        for suffix, tolerance in tolerances.items():
             path = folder / f"{name}{suffix}"
             igl.write_triangle_mesh(str(path), mesh.vertices, triangles)
             yield case(f"libigl {name}{suffix}", path, mesh, tolerance)

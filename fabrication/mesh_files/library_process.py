@@ -8,9 +8,11 @@ import importlib
 import io
 import os
 import sys
+import time
 import warnings
 from contextlib import redirect_stdout
 from functools import partial
+from math import ceil
 from pathlib import Path
 from typing import Any, Final
 
@@ -57,6 +59,8 @@ def main(arguments: list[str]) -> int:
         Exit code: 0, or 3 with a line on standard error.
     """
     path, suffix, seconds, memory = arguments
+    for name in READERS[suffix]:
+        importlib.import_module(name)  # what that takes is not the fault of the file
     _limit(int(seconds), int(memory))
     output = io.BytesIO()
     try:
@@ -79,7 +83,8 @@ def _limit(seconds: int, memory: int) -> None:
         import resource
     except ImportError:  # Windows: the caller waits so long only
         return
-    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
+    most = ceil(time.process_time()) + seconds
+    resource.setrlimit(resource.RLIMIT_CPU, (most, most + 1))
     statistics = Path("/proc/self/statm")
     if statistics.exists():
         in_use = int(statistics.read_text().split()[0]) * os.sysconf("SC_PAGE_SIZE")

@@ -19,7 +19,7 @@ from .mending import SINGLE, Source, mended
 OTHER_SUFFIXES: Final = tuple(READERS)
 """Formats that are read with the extra ``formats``."""
 SPARE_BYTES, BYTES_PER_BYTE = 400_000_000, 30
-SPARE_SECONDS, SECONDS_PER_BYTE = 4.0, 2e-6
+SPARE_SECONDS, SECONDS_PER_BYTE = 3.0, 2e-6
 """What a process may take: a little, and so much for each byte of its file."""
 _BAD_INPUT: Final = 3
 _START: Final = 30.0

@@ -104,7 +104,7 @@ def test_what_the_process_says_is_one_line(
 def test_a_file_on_which_a_library_never_ends_is_refused(
     error_of: ErrorOf, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(other_formats, "SPARE_SECONDS", 2.0)
+    monkeypatch.setattr(other_formats, "SPARE_SECONDS", 1.0)
     assert "damaged" in error_of("a.msh", b'(1 "a file that is cut off")\n(2 3)\n(39 (1')
 
 
