@@ -57,8 +57,8 @@ class _Statements(TextPolygons):
     others: dict[str, list[int]] = field(default_factory=dict[str, list[int]])
 
     def add(self, number: int, words: list[str]) -> None:
-        """Add a statement."""
-        keyword = words[0]
+        """Add a statement; its word may have capitals."""
+        keyword = words[0].lower()
         if keyword == "v":
             self.add_vertex(number, words[1:])
         elif keyword in _FACES:
@@ -102,7 +102,7 @@ def read_obj(data: bytes, layer: str | Sequence[str] = "") -> FileContent:
     number, words = 0, [""]
     for number, words in numbered_words(_join_continued(decode(data))):
         found.add(number, words)
-    if unended(data) and words[0] in _FACES and found.degrees[-1] < 3:
+    if unended(data) and words[0].lower() in _FACES and found.degrees[-1] < 3:
         raise InputError(
             f"line {number}: the file is cut off in its last face; export the mesh again"
         )
@@ -144,7 +144,7 @@ def _no_faces(others: dict[str, list[int]]) -> str:
     cure = "export the model as a polygon mesh"
     held = _shapes(others)
     if not held:
-        return f"the file has no faces; {cure}"
+        return "; ".join(["the file has no faces", *_unknown(others), cure])
     first = min(others[key][0] for key in _SHAPES if key in others)
     if "surf" in others:
         cure += ", or the surface as .3dm"
@@ -153,18 +153,22 @@ def _no_faces(others: dict[str, list[int]]) -> str:
 
 def _left_out(others: dict[str, list[int]]) -> list[str]:
     """Sentences on shapes that are no polygons, and on words that are none of OBJ's."""
-    said: list[str] = []
-    if held := _shapes(others):
-        said.append(f"left out: {held}; only faces (f) are read")
+    held = _shapes(others)
+    said = [f"left out: {held}; only faces (f) are read"] if held else []
+    return [*said, *_unknown(others)]
+
+
+def _unknown(others: dict[str, list[int]]) -> list[str]:
     unknown = {word: lines for word, lines in others.items() if word not in _SHAPES}
-    if unknown:
-        word, lines = next(iter(unknown.items()))
-        count = sum(map(len, unknown.values()))
-        said.append(
-            f"line {lines[0]}: {word[:40]!r} is no statement of an OBJ file that is read; "
-            f"{count} such {'line was' if count == 1 else 'lines were'} left out"
-        )
-    return said
+    if not unknown:
+        return []
+    word, lines = next(iter(unknown.items()))
+    count = sum(map(len, unknown.values()))
+    what = "line was" if count == 1 else "lines were"
+    return [
+        f"line {lines[0]}: {word[:40]!r} is no statement of an OBJ file that is read; "
+        f"{count} such {what} left out"
+    ]
 
 
 def _join_continued(text: str) -> str:

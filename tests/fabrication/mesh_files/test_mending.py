@@ -13,6 +13,7 @@ from spheremesh import Graph, Mesh
 from spheremesh.fabrication.mesh_files.reader import read_content, read_mesh
 from spheremesh.fabrication.mesh_files.writer import write_mesh
 from spheremesh.fabrication.polygons import FileContent
+from spheremesh.kernel.errors import InputError
 from spheremesh.nodes import NodeWarning
 from spheremesh.nodes import read_mesh as read_mesh_node
 
@@ -151,6 +152,51 @@ def test_a_last_line_without_end_is_said(content: Content, name: str, text: str)
     found = content(name, text[:-1])
     assert ["no end" in each for each in found.remarks] == [True]
     assert content(name, text.replace("\n", "\r\n")).remarks == ()
+
+
+PLY_TEXT = """ply
+format ascii 1.0
+element vertex 6
+property double x
+property double y
+property double z
+element face 3
+property list uchar int vertex_indices
+end_header
+0 0 0
+1 0 0
+10.5 1 0
+0 1 0
+2 0 0
+2 1 0
+4 0 1 2 3
+3 1 4 5
+3 1 5 2
+"""
+OFF_TEXT = "OFF\n6 3 0\n" + PLY_TEXT.partition("end_header\n")[2]
+OBJ_TEXT = (
+    "v 0 0 0\nv 1 0 0\nv 10.5 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nf 2 5 6\nf 1 2 3 4\nf 2 6 3\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"), [("a.obj", OBJ_TEXT), ("a.off", OFF_TEXT), ("a.ply", PLY_TEXT)]
+)
+def test_text_cut_anywhere_is_refused_or_said_or_has_lost_nothing(
+    content: Content, name: str, text: str
+) -> None:
+    whole = content(name, text)
+    assert whole.remarks == ()
+    silent = []
+    for size in range(1, len(text)):
+        try:
+            found = content(name, text[:size])
+        except InputError:
+            continue
+        if not found.remarks:
+            silent.append(text[:size])
+    # What no reader can know: an OBJ file cut at the end of a line, all its vertices used.
+    assert silent == ([OBJ_TEXT.removesuffix("f 2 6 3\n")] if name == "a.obj" else [])
 
 
 def rounded(digits: int, *, far: float) -> str:

@@ -217,5 +217,10 @@ def test_obj_backslashes_join_lines_but_not_comments(read: Read, faces_of: Faces
     assert read("b.obj", long).n_faces == 1
 
 
-def test_obj_old_faces_are_faces(read: Read, faces_of: FacesOf) -> None:
+def test_obj_old_faces_and_capitals_are_faces(read: Read, faces_of: FacesOf) -> None:
     assert faces_of(read("a.obj", TRIANGLE + "fo 1 2 3\n")) == [[0, 1, 2]]
+    assert faces_of(read("b.obj", TRIANGLE.upper() + "F 1 2 3\n")) == [[0, 1, 2]]
+
+
+def test_obj_without_faces_names_the_first_word_that_is_not_known(error_of: ErrorOf) -> None:
+    assert "no faces; line 4: 'face' is no" in error_of("a.obj", TRIANGLE + "face 1 2 3\n")

@@ -55,6 +55,8 @@ OFF = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n"
         ("OFF\n", ["line 1", "numbers of vertices"]),
         ("OFF\nmany 1 0\n", ["line 2", "numbers of vertices"]),
         ("OFF\n" + "9" * 30 + " 1 0\n", ["line 2", "numbers of vertices"]),
+        (OFF.replace("3 1 0", "999999999999 1 0"), ["line 5", "3 of 999999999999"]),
+        (OFF.replace("3 1 0", "3 999999999999 0") + "3 0 1 2\n", ["1 of 999999999999 faces"]),
         (OFF, ["line 5", "3 of 3 vertices", "0 of 1 faces", "export"]),
         ("OFF\n3 1 0\n0 0 0\n1 0\n", ["line 4", "three coordinates"]),
         ("OFF\n3 1 0\n0 0 0\n1 0 inf\n0 1 0\n3 0 1 2", ["line 4", "finite"]),
