@@ -80,7 +80,7 @@ def _mended(folder: Path) -> Iterator[Case]:
         path = write_mesh(soup, folder / f"soup{suffix}")
         yield case(f"by hand unwelded{suffix}", path, mesh, remark="vertices of its own")
     path = _saved(folder, "slivers.obj", obj_text(mesh) + "f 1 2 2\nf 5 5 6\n")
-    yield case("by hand slivers.obj", path, mesh, remark="2 faces have equal corners")
+    yield case("by hand slivers.obj", path, mesh, remark="2 triangles have equal corners")
     path = _saved(folder, "lines.obj", obj_text(mesh) + "l 1 2 3\np 4\n")
     yield case("by hand lines.obj", path, mesh, remark="1 line element and 1 point element")
     path = _saved(folder, "no-end.obj", obj_text(mesh)[:-1])

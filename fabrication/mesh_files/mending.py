@@ -53,10 +53,9 @@ def mended(polygons: Polygons, source: Source, remarks: tuple[str, ...] = ()) ->
     Returns
     -------
     FileContent
-        Where every face has vertices of its own, equal vertices are one; corners that repeat
-        the one before are left out, and triangles that have no three left. Polygons with
-        corners out of range or coordinates that are not finite stay as they are, for `to_mesh`
-        to report.
+        Where every face has vertices of its own, equal vertices are one; triangles with equal
+        corners are left out. Polygons with corners out of range or coordinates that are not
+        finite stay as they are, for `to_mesh` to report.
 
     Raises
     ------
@@ -76,11 +75,9 @@ def mended(polygons: Polygons, source: Source, remarks: tuple[str, ...] = ()) ->
         said += [] if source.is_soup else [remark]
     else:
         said += _doubles(polygons)
-    is_repeat = _repeats(polygons)
     said += _unused(polygons)
-    if is_repeat.any():
-        polygons, sentences = _without(polygons, is_repeat)
-        said += sentences
+    polygons, sentences = _without_slivers(polygons)
+    said += sentences
     if not source.has_end:
         said.append(
             "the last line of the file has no end: if the file was cut off there, faces are "
@@ -178,41 +175,25 @@ def _unused(polygons: Polygons) -> list[str]:
     return [f"{count} to no face: {where}; check that no faces are missing"]
 
 
-def _repeats(polygons: Polygons) -> BoolArray:
-    """Corners that name the vertex of the corner before, in faces of three corners or more."""
-    owners = np.repeat(polygons.degrees, polygons.degrees)
-    return (polygons.corners == polygons.corners[_before(polygons.degrees)]) & (owners > 2)
-
-
-def _without(polygons: Polygons, is_repeat: BoolArray) -> tuple[Polygons, list[str]]:
-    """Leave out repeated corners, and the faces that have less than three corners left."""
-    n_faces = len(polygons.degrees)
-    owners = np.repeat(np.arange(n_faces), polygons.degrees)
-    n_repeats = np.bincount(owners[is_repeat], minlength=n_faces)
-    degrees = polygons.degrees - n_repeats
-    is_sliver = (n_repeats > 0) & (degrees < 3)
-    if is_sliver.all():
+def _without_slivers(polygons: Polygons) -> tuple[Polygons, list[str]]:
+    """Leave out triangles with equal corners, unless there is nothing else."""
+    is_repeated = polygons.corners == polygons.corners[_before(polygons.degrees)]
+    owners = np.repeat(np.arange(len(polygons.degrees)), polygons.degrees)
+    has_repeat = np.bincount(owners[is_repeated], minlength=len(polygons.degrees)) > 0
+    is_sliver = has_repeat & (polygons.degrees == 3)
+    if not is_sliver.any() or is_sliver.all():
         return polygons, []
-    said: list[str] = []
-    slivers, shorter = np.flatnonzero(is_sliver), np.flatnonzero((n_repeats > 0) & ~is_sliver)
-    if len(slivers):
-        count = _count(len(slivers), "face has", "faces have")
-        where = _places(slivers, polygons.face_lines, "faces")
-        said.append(f"{count} equal corners and no area: left out {where} of the file")
-    if len(shorter):
-        count = _count(len(shorter), "face names", "faces name")
-        where = _places(shorter, polygons.face_lines, "faces")
-        said.append(f"{count} a corner twice in a row, read as one corner: {where} of the file")
+    slivers = np.flatnonzero(is_sliver)
+    count = _count(len(slivers), "triangle has", "triangles have")
+    where = _places(slivers, polygons.face_lines, "faces")
     lines = np.asarray(polygons.face_lines)
-    return (
-        replace(
-            polygons,
-            corners=polygons.corners[~is_repeat & ~is_sliver[owners]],
-            degrees=degrees[~is_sliver],
-            face_lines=lines[~is_sliver] if len(lines) else lines,
-        ),
-        said,
+    kept = replace(
+        polygons,
+        corners=polygons.corners[~is_sliver[owners]],
+        degrees=polygons.degrees[~is_sliver],
+        face_lines=lines[~is_sliver] if len(lines) else lines,
     )
+    return kept, [f"{count} equal corners and no area: left out {where} of the file"]
 
 
 def _places(ids: IntArray, lines: ArrayLike, kind: str) -> str:

@@ -114,16 +114,10 @@ def test_slivers_of_binary_files_are_said_with_their_numbers(
     assert "faces [2]" in found.remarks[0]
 
 
-def test_a_quad_that_names_a_corner_twice_in_a_row_is_a_triangle(content: Content) -> None:
-    found = content("a.obj", TWO_TRIANGLES.replace("f 1 3 4", "f 1 3 4 4"))
-    assert found.polygons.degrees.tolist() == [3, 3]
-    assert found.polygons.corners.tolist() == [0, 1, 2, 0, 2, 3]
-    assert "lines [6]" in found.remarks[0]
-
-
-def test_a_corner_named_twice_elsewhere_is_refused(error_of: ErrorOf) -> None:
-    message = error_of("a.obj", TWO_TRIANGLES + "f 1 2 1 4\n")
-    assert "line 7" in message
+@pytest.mark.parametrize("face", ["1 2 1 4", "1 2 5 5"])
+def test_a_corner_named_twice_in_a_larger_face_is_refused(error_of: ErrorOf, face: str) -> None:
+    message = error_of("a.obj", "v 5 5 5\n" + TWO_TRIANGLES + f"f {face}\n")
+    assert "line 8" in message
     assert "repeated corner" in message
 
 
