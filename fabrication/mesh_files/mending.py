@@ -54,8 +54,8 @@ def mended(polygons: Polygons, source: Source, remarks: tuple[str, ...] = ()) ->
     -------
     FileContent
         Where every face has vertices of its own, equal vertices are one; triangles with equal
-        corners are left out. Polygons with corners out of range or coordinates that are not
-        finite stay as they are, for `to_mesh` to report.
+        corners are left out. Faces without corners, corners out of range and coordinates that
+        are not finite stay as they are, for `to_mesh` to report.
 
     Raises
     ------
@@ -64,6 +64,7 @@ def mended(polygons: Polygons, source: Source, remarks: tuple[str, ...] = ()) ->
     """
     n_vertices, corners = len(polygons.vertices), polygons.corners
     is_sound = ((corners >= 0) & (corners < n_vertices)).all() and len(corners)
+    is_sound = is_sound and (polygons.degrees > 0).all()
     if not is_sound or not np.isfinite(polygons.vertices).all():
         return FileContent(polygons, remarks=remarks)
     said = list(remarks)

@@ -144,6 +144,7 @@ TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
         (TRIANGLE + "f 1 2 0\n", ["line 4", "out of range"]),
         (TRIANGLE + "f 1 2 -4\n", ["line 4", "out of range"]),
         (TRIANGLE + "\n# c\nf 1 2\n", ["line 6", "2 corners", "needs 3"]),
+        (TRIANGLE + "f 1 2 3\nf # 1 2\n", ["line 5", "0 corners", "needs 3"]),
         (TRIANGLE + "f 1 2 2\n", ["line 4", "repeated corner", "remove"]),
         (TRIANGLE + "f 1 2 \\\n 3\nf 1 2 two\n", ["line 6", "'two'", "integers"]),
         (TRIANGLE + f"f 1 2 {'9' * 6000}\n", ["line 4", f"'{'9' * 40}' is not"]),
