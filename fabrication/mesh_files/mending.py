@@ -97,7 +97,8 @@ def _rounding(polygons: Polygons, source: Source) -> str:
     else:
         step = 10.0 ** (floor(log10(largest)) + 1 - source.digits)
         digits = f"{source.digits} significant digits"
-    side = mean_side(polygons)
+    with np.errstate(over="ignore"):  # coordinates near the largest numbers
+        side = mean_side(polygons)
     if step <= ROUNDED_FILE * side:
         return ""
     fact = (
@@ -123,8 +124,7 @@ def _before(degrees: IntArray) -> IntArray:
     """The corner before each corner, around its face."""
     ends = np.cumsum(degrees)
     before = np.arange(int(degrees.sum())) - 1
-    is_face = degrees > 0
-    before[(ends - degrees)[is_face]] = ends[is_face] - 1
+    before[ends - degrees] = ends - 1
     return before
 
 

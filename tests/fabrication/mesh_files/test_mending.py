@@ -245,6 +245,11 @@ def test_numbers_written_by_hand_are_not_called_rounded(content: Content) -> Non
     assert content("a.obj", text).remarks == ()
 
 
+def test_the_largest_numbers_do_no_harm(content: Content) -> None:
+    text = "v 0 0 0\nv 1.23456e308 0 0\nv 0 -1.23456e308 0\nf 1 2 3\n"
+    assert content("a.obj", text).remarks == ()
+
+
 def test_the_node_hands_remarks_on(tmp_path: Path) -> None:
     path = write_mesh(alone(grid()), tmp_path / "a.obj")
     with pytest.warns(NodeWarning, match="vertices of its own"):
