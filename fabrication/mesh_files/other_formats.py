@@ -22,7 +22,7 @@ SPARE_BYTES, BYTES_PER_BYTE = 400_000_000, 30
 SPARE_SECONDS, SECONDS_PER_BYTE = 3.0, 2e-6
 """What a process may take: a little, and so much for each byte of its file."""
 _BAD_INPUT: Final = 3
-_START: Final = 30.0
+_START: Final = 120.0
 """Seconds in which a process has started on any machine."""
 
 
