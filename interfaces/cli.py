@@ -99,7 +99,8 @@ def panel(  # numpydoc ignore=PR01
 ) -> None:
     """Panel a MESH with spheres and write CAD files, schedule and report.
 
-    Reads OBJ, OFF, PLY, STL and .3dm. Without MESH, a demonstration roof is panelled.
+    Reads OBJ, OFF, PLY, STL and .3dm, and others with spheremesh[formats]. Without MESH, a
+    demonstration roof is panelled.
     """
     from .panel import PanelOptions, panel_graph, run_job
 

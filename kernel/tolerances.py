@@ -179,6 +179,8 @@ COINCIDENT: Final = 1e-6
 """Vertices of separate meshes closer than this, in mean edges, are one (1 µm per m)."""
 EXACT_BREP: Final = 1e-12
 """How far the parts of a Brep may lie apart, relative to the radius of its sphere."""
+ROUNDED_FILE: Final = 0.01
+"""Coordinates of a file rounded by more, in mean edges, are worth a remark (1 cm per m)."""
 SINGLE_EPSILON: Final = 1.1920928955078125e-07
 """Spacing of float32 at 1."""
 EDGE_MISS: Final = 0.01
