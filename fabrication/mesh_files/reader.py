@@ -64,7 +64,7 @@ def read_mesh(
     """
     content = read_content(path, layer, n_u, n_v)
     try:
-        return to_mesh(content.polygons)
+        return to_mesh(content.polygons, content.sources)
     except InputError as error:
         raise InputError(f"cannot read {path}: {error}") from error
 
