@@ -97,7 +97,7 @@ def _check_coincident_corners(mesh: Mesh) -> None:
         faces = np.unique(mesh.topology.corner_faces[is_point]).tolist()
         raise MeshError(
             f"two corners of faces {{faces}} coincide, such as vertices {mesh.corners[first]} "
-            f"and {following[first]}; make these faces smaller by a corner, or let {CURE} do so",
+            f"and {following[first]}; leave one out, or let {CURE} do so",
             faces,
         )
 

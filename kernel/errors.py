@@ -17,8 +17,8 @@ class MeshError(InputError):
     Parameters
     ----------
     text : str
-        The message, with ``{0}``, ``{1}`` and so on for the faces one by one, or ``{faces}`` for
-        a list of all.
+        The message, with ``{0}``, ``{1}`` and so on for the faces one by one, or ``{faces}``
+        for a list of all.
     faces : list of int
         The faces.
 
