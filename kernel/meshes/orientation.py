@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..arrays import BoolArray, IntArray
+from ..solvers.weighted_graphs import connected_parts, weighted_graph
 
 
 def faces_to_flip(
@@ -50,26 +51,21 @@ def faces_to_flip(
 
 def _sides(n_faces: int, links: IntArray, is_aligned: BoolArray) -> tuple[IntArray, IntArray]:
     """Component of the front and of the back of every face."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     left, right = links.T
     other = np.where(is_aligned, n_faces, 0)
     rows = np.concatenate([left, left + n_faces])
     columns = np.concatenate([right + other, right + n_faces - other])
-    graph = coo_array((np.ones(len(rows), bool), (rows, columns)), (2 * n_faces,) * 2)
-    labels = np.asarray(connected_components(graph, directed=False)[1], np.int64)
+    labels = connected_parts(rows, columns, 2 * n_faces)
     return labels[:n_faces], labels[n_faces:]
 
 
 def _tree(n_faces: int, links: IntArray) -> IntArray:
     """Links of a spanning tree of every piece."""
-    from scipy.sparse import coo_array
     from scipy.sparse.csgraph import minimum_spanning_tree
 
     # Of several links of two faces the first counts; numbers from 1 are weights.
     low, high = np.sort(links, axis=1).T
     _, firsts = np.unique(low * n_faces + high, return_index=True)
     firsts = firsts[low[firsts] != high[firsts]]
-    graph = coo_array((firsts + 1.0, (low[firsts], high[firsts])), (n_faces, n_faces))
-    return np.asarray(minimum_spanning_tree(graph.tocsr()).data, np.int64) - 1
+    graph = weighted_graph(firsts + 1.0, low[firsts], high[firsts], n_faces)
+    return np.asarray(minimum_spanning_tree(graph).data, np.int64) - 1

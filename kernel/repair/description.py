@@ -1,6 +1,8 @@
 """What a mesh is, whether or not it is one yet, and what can be done with it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any, Final
 
 import numpy as np
 
@@ -10,13 +12,19 @@ from ..meshes.curvature import principal_curvatures
 from ..meshes.mesh import Mesh, face_normals, mean_edge_length, shortest_edge
 from ..meshes.triangulation import triangulate
 from ..reports import Report
+from ..solvers.weighted_graphs import connected_parts
 from ..sphere_meshes.planarity_circularity import circularity, planarity
 from ..tolerances import CIRCULAR, CREASE, PLANAR
 from .faces import usable_faces
-from .pipeline import RepairReport, repair, repair_counts, repair_sentence
+from .pipeline import RepairReport, repair, repair_counts, repair_words
 from .raw_mesh import RawMesh, keep_faces
 
-_POLYGONS = {3: "triangles", 4: "quads", 5: "pentagons", 6: "hexagons"}
+_POLYGONS: Final = {
+    "3": ("triangle", "triangles"),
+    "4": ("quad", "quads"),
+    "5": ("pentagon", "pentagons"),
+    "6": ("hexagon", "hexagons"),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,25 +136,48 @@ def describe(raw: RawMesh) -> MeshReport:
     )
 
 
-def describe_lines(report: MeshReport) -> tuple[str, ...]:
-    """What a mesh is in a line or two, and what a repair would do."""
+def size_words(report: Mapping[str, Any], unit: str) -> str:
+    """How large a mesh is, in a unit.
+
+    Parameters
+    ----------
+    report : mapping
+        A `MeshReport`, or what was read of one from a file.
+    unit : str
+        The unit that is assumed.
+
+    Returns
+    -------
+    str
+        Such as ``38.2 x 12.1 x 6.4 m, mean edge 1.21 m``.
+    """
+    extents = " x ".join(f"{length:.3g}" for length in report["size"])
+    return f"{extents} {unit}, mean edge {report['mean_edge']:.3g} {unit}"
+
+
+def describe_lines(report: Mapping[str, Any]) -> tuple[str, ...]:
+    """What a mesh is in a line, and what a repair would do in another.
+
+    Parameters
+    ----------
+    report : mapping
+        A `MeshReport`, or what was read of one from a file.
+    """
     kinds = [
-        f"{count} {_POLYGONS.get(int(degree), f'faces of {degree} corners')}"
-        for degree, count in report.faces_by_degree.items()
+        _number(count, *_POLYGONS.get(degree, ("face", "faces")))
+        + ("" if degree in _POLYGONS else f" of {degree} corners")
+        for degree, count in report["faces_by_degree"].items()
     ]
     parts = [
         ", ".join(kinds[:4]) + (" and others" if len(kinds) > 4 else ""),
-        _number(report.pieces, "piece", "pieces"),
-        _number(report.boundary_loops, "boundary loop", "boundary loops"),
+        _number(report["pieces"], "piece", "pieces"),
+        _number(report["boundary_loops"], "boundary loop", "boundary loops"),
     ]
-    if report.crease_edges:
-        parts.append(_number(report.crease_edges, "crease edge", "crease edges"))
+    if report["crease_edges"]:
+        parts.append(_number(report["crease_edges"], "crease edge", "crease edges"))
     lines = ["; ".join(parts)]
-    if report.repair:
-        todo = ", ".join(
-            f"{count} {name.replace('_', ' ')}" for name, count in report.repair.items()
-        )
-        lines.append(f"repair_mesh (--repair) would see to {todo}")
+    if report["repair"]:
+        lines.append(f"--repair would {repair_words(report['repair'], is_done=False)}")
     return tuple(lines)
 
 
@@ -218,11 +249,7 @@ def _facts(mesh: Mesh) -> _Facts:
 
 
 def _n_components(size: int, links: IntArray) -> int:
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    graph = coo_array((np.ones(len(links), bool), tuple(links.T)), (size, size))
-    return int(connected_components(graph, directed=False)[0])
+    return int(connected_parts(*links.T, size).max(initial=-1)) + 1
 
 
 def _distances(values: FloatArray, edge: float) -> dict[str, float] | None:
@@ -267,10 +294,11 @@ def _suits(mesh: Mesh) -> list[str]:
 def _advice(mesh: Mesh, facts: _Facts, done: RepairReport | None) -> list[str]:
     found: list[str] = []
     if done is not None and repair_counts(done):
-        found.append(f"repair_mesh (--repair): {repair_sentence(done)}")
+        counts = repair_counts(done)
+        found.append(f"repair_mesh (--repair) would {repair_words(counts, is_done=False)}")
     if facts.lone_faces:
         found.append(
-            f"{facts.lone_faces} of {mesh.n_faces} faces have no neighbour: their panels are "
+            f"faces without a neighbour: {facts.lone_faces} of {mesh.n_faces}; their panels are "
             "flat, and no beams run between them"
         )
     if (mesh.degrees == 3).all() and mesh.n_faces > 1:
@@ -287,7 +315,7 @@ def _advice(mesh: Mesh, facts: _Facts, done: RepairReport | None) -> list[str]:
         found.append("faces are planar but have no circle: spheres miss some of their corners")
     if facts.crease_edges:
         found.append(
-            f"{facts.crease_edges} edges turn by more than 40 degrees: spheres do not meet "
+            f"edges that turn by more than 40 degrees: {facts.crease_edges}; spheres do not meet "
             "smoothly there"
         )
     return found

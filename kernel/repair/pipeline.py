@@ -1,7 +1,8 @@
 """The repair: all steps in their order, and what they did."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -207,18 +208,24 @@ def _unique(faces: IntArray, left: IntArray) -> list[int]:
     return np.intersect1d(faces, left).tolist()
 
 
-WORDS = {
-    "welded_vertices": ("place was welded", "places were welded"),
-    "unusable_faces": ("unusable face was dropped", "unusable faces were dropped"),
-    "sliver_faces": ("sliver was dropped", "slivers were dropped"),
-    "duplicate_faces": ("repeated face was dropped", "repeated faces were dropped"),
-    "shortened_faces": ("face lost a coinciding corner", "faces lost coinciding corners"),
-    "triangulated_faces": ("face was cut into triangles", "faces were cut into triangles"),
-    "t_junctions": ("T-junction was split", "T-junctions were split"),
-    "flipped_faces": ("face was turned over", "faces were turned over"),
-    "separated_vertices": ("vertex was separated", "vertices were separated"),
-    "unused_vertices": ("unused vertex was dropped", "unused vertices were dropped"),
+WORDS: Final = {
+    "welded_vertices": ("weld", "welded", "place", "places"),
+    "unusable_faces": ("drop", "dropped", "unusable face", "unusable faces"),
+    "sliver_faces": ("drop", "dropped", "sliver", "slivers"),
+    "duplicate_faces": ("drop", "dropped", "repeated face", "repeated faces"),
+    "shortened_faces": (
+        "shorten",
+        "shortened",
+        "face with coinciding corners",
+        "faces with coinciding corners",
+    ),
+    "triangulated_faces": ("triangulate", "triangulated", "face", "faces"),
+    "t_junctions": ("split", "split", "T-junction", "T-junctions"),
+    "flipped_faces": ("turn over", "turned over", "face", "faces"),
+    "separated_vertices": ("separate", "separated", "vertex", "vertices"),
+    "unused_vertices": ("drop", "dropped", "unused vertex", "unused vertices"),
 }
+"""Kinds of repairs: what is to be done, what was done, of one and of more."""
 
 
 def repair_counts(report: RepairReport) -> dict[str, int]:
@@ -226,9 +233,16 @@ def repair_counts(report: RepairReport) -> dict[str, int]:
     return {name: len(report[name]) for name in WORDS if report[name]}
 
 
-def repair_sentence(report: RepairReport) -> str:
-    """What a repair did in one sentence; empty if it had nothing to do."""
-    parts = [
-        f"{count} {WORDS[name][count > 1]}" for name, count in repair_counts(report).items()
-    ]
+def repair_words(counts: Mapping[str, int], *, is_done: bool) -> str:
+    """What a repair does, or did, in the words of a message; empty if nothing.
+
+    Examples
+    --------
+    >>> repair_words({"welded_vertices": 38, "sliver_faces": 1}, is_done=True)
+    'welded 38 places, dropped 1 sliver'
+    """
+    parts: list[str] = []
+    for name, count in counts.items():
+        to_do, did, one, more = WORDS[name]
+        parts.append(f"{did if is_done else to_do} {count} {one if count == 1 else more}")
     return ", ".join(parts)

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import BoolArray, IntArray
 from ..meshes.orientation import faces_to_flip
+from ..solvers.weighted_graphs import connected_parts
 from .raw_mesh import RawMesh
 from .sides import find_sides, paired_sides
 
@@ -52,17 +53,12 @@ def separate_and_unify(raw: RawMesh) -> tuple[RawMesh, BoolArray]:
 
 def _separated(raw: RawMesh, pairs: IntArray, is_aligned: BoolArray) -> RawMesh:
     """The faces with one vertex for each fan of corners that pairs of sides hold together."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     heads = raw.next_corners
     left, right = pairs.T
     far = np.where(is_aligned, right, heads[right])
     near = np.where(is_aligned, heads[right], right)
     rows, columns = np.concatenate([left, heads[left]]), np.concatenate([far, near])
-    n_corners = len(raw.corners)
-    graph = coo_array((np.ones(len(rows), bool), (rows, columns)), (n_corners, n_corners))
-    labels = np.asarray(connected_components(graph, directed=False)[1], np.int64)
+    labels = connected_parts(rows, columns, len(raw.corners))
     _, firsts, fans = np.unique(labels, return_index=True, return_inverse=True)
     owners = raw.corners[firsts]
     # The fan of the first corner keeps the vertex, the others follow in the order of corners.

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, norm
+from ..solvers.weighted_graphs import connected_parts
 from ..tolerances import (
     EPSILON,
     ROUNDED_PLACES,
@@ -101,16 +102,13 @@ def weld_vertices(raw: RawMesh, distance: float) -> RawMesh:
 
 
 def _first_of_group(points: FloatArray, distance: float) -> IntArray:
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
     from scipy.spatial import KDTree
 
     _, firsts, places = np.unique(points, axis=0, return_index=True, return_inverse=True)
     places = places.reshape(-1)
     if distance > 0 and len(firsts):
         pairs = KDTree(points[firsts]).query_pairs(distance, output_type="ndarray")
-        links = coo_array((np.ones(len(pairs), bool), tuple(pairs.T)), (len(firsts),) * 2)
-        places = np.asarray(connected_components(links, directed=False)[1], np.int64)[places]
+        places = connected_parts(*pairs.T, len(firsts))[places]
     least = np.full(len(firsts), len(points))
     np.minimum.at(least, places, np.arange(len(points)))
     return least[places]
