@@ -298,8 +298,8 @@ def _advice(mesh: Mesh, facts: _Facts, done: RepairReport | None) -> list[str]:
         found.append(f"repair_mesh (--repair) would {repair_words(counts, is_done=False)}")
     if facts.lone_faces:
         found.append(
-            f"faces without a neighbour: {facts.lone_faces} of {mesh.n_faces}; their panels are "
-            "flat, and no beams run between them"
+            f"faces without a neighbour: {facts.lone_faces} of {mesh.n_faces}; their panels "
+            "are flat, and no beams run between them"
         )
     if (mesh.degrees == 3).all() and mesh.n_faces > 1:
         found.append(
@@ -315,7 +315,7 @@ def _advice(mesh: Mesh, facts: _Facts, done: RepairReport | None) -> list[str]:
         found.append("faces are planar but have no circle: spheres miss some of their corners")
     if facts.crease_edges:
         found.append(
-            f"edges that turn by more than 40 degrees: {facts.crease_edges}; spheres do not meet "
-            "smoothly there"
+            f"edges that turn by more than 40 degrees: {facts.crease_edges}; spheres do not "
+            "meet smoothly there"
         )
     return found

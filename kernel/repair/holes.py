@@ -35,14 +35,16 @@ def triangulate_holes(raw: RawMesh, faces: IntArray) -> RawMesh:
     numbers: list[int] = []
     for face in faces.tolist():
         ring = np.arange(raw.offsets[face], raw.offsets[face + 1])
-        triangles = _cut_ears(_flattened(raw.vertices[raw.corners[ring]]))
-        if triangles is None:
-            raise MeshError(
-                "the boundary of face {0} crosses itself, and no triangles fill it; delete it",
-                [int(raw.face_ids[face])],
-            )
-        corners.append(ring[triangles].ravel())
-        numbers += [face] * len(triangles)
+        flat = _flattened(raw.vertices[raw.corners[ring]])
+        for loop in _loops(np.arange(len(ring)), raw.corners[ring], flat):
+            triangles = _cut_ears(flat[loop])
+            if triangles is None:
+                raise MeshError(
+                    "the boundary of face {0} crosses itself, no triangles fill it; delete it",
+                    [int(raw.face_ids[face])],
+                )
+            corners.append(ring[loop[triangles]].ravel())
+            numbers += [face] * len(triangles)
     kept = ~np.isin(np.arange(raw.n_faces), faces)
     order = np.concatenate([np.flatnonzero(kept[raw.corner_faces]), *corners])
     degrees = np.concatenate([raw.degrees[kept], np.full(len(numbers), 3)])
@@ -61,6 +63,32 @@ def _flattened(points: FloatArray) -> FloatArray:
     normal = unit(np.cross(centred, np.roll(centred, -1, axis=0)).sum(axis=0))
     first = unit(np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))]))
     return centred @ np.stack([first, np.cross(normal, first)], 1) / norm(centred).max()
+
+
+def _loops(ring: IntArray, vertices: IntArray, flat: FloatArray) -> list[IntArray]:
+    """Cut a polygon where it touches itself from outside: both loops run the same way round.
+
+    Parameters
+    ----------
+    ring : (n,) int array
+        Rows of `vertices` and `flat` in their order around the polygon.
+    """
+    seen: dict[int, int] = {}
+    for place, vertex in enumerate(vertices[ring].tolist()):
+        start = seen.get(vertex)
+        seen[vertex] = place
+        if start is None:
+            continue
+        inner, outer = ring[start:place], np.concatenate([ring[:start], ring[place:]])
+        if min(_area(flat[inner]), _area(flat[outer])) > DEGENERATE:
+            return _loops(inner, vertices, flat) + _loops(outer, vertices, flat)
+    return [ring]
+
+
+def _area(points: FloatArray) -> float:
+    """Twice the area of a polygon (n, 2)."""
+    x, y = points.T
+    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
 
 
 def _cut_ears(flat: FloatArray) -> IntArray | None:

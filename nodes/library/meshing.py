@@ -164,13 +164,16 @@ def repair_mesh(
     mesh : Mesh
         The repaired mesh; the same, number by number, if it wants nothing.
     report : RepairReport
-        What was done, by kind and ids.
+        What was done, by kind and ids; a warning sums it up.
 
     Examples
     --------
+    >>> import warnings
     >>> from spheremesh.nodes import repair_mesh
     >>> points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [1, 0, 0], [2, 0, 0], [2, 1, 0]]
-    >>> mesh, report = repair_mesh((points, [[0, 1, 2, 3], [2, 6, 5, 4], [3, 2, 1, 0]]))
+    >>> faces = [[0, 1, 2, 3], [2, 6, 5, 4], [3, 2, 1, 0]]
+    >>> with warnings.catch_warnings(action="ignore"):
+    ...     mesh, report = repair_mesh((points, faces))
     >>> mesh.n_faces, report.welded_vertices, report.duplicate_faces
     (2, [[1, 4]], [[2, 0]])
     """

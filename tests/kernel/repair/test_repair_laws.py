@@ -27,6 +27,7 @@ def random_mesh(rng: np.random.Generator) -> tuple[FloatArray, Faces, list[tuple
             quad = [a, a + m + 1, a + m + 2, a + 1]
             faces += [quad] if rng.random() < 0.6 else [quad[:3], [quad[0], *quad[2:]]]
     middles: list[tuple[int, int]] = []
+    touched: set[int] = set()
     for face in rng.permutation(len(faces)).tolist():
         if len(middles) == 3:
             break
@@ -36,8 +37,9 @@ def random_mesh(rng: np.random.Generator) -> tuple[FloatArray, Faces, list[tuple
             k for k, other in enumerate(faces)
             if (b, a) in zip(other, other[1:] + other[:1], strict=True)
         ]  # fmt: skip
-        if not across or len(across) > 1 or len(set(ring) | set(faces[across[0]])) > 8:
+        if not across or {face, across[0]} & touched:
             continue
+        touched |= {face, across[0], len(faces)}
         middle = len(vertices)
         vertices.append(((np.array(vertices[a]) + vertices[b]) / 2).tolist())
         faces[face] = [middle, *ring[1:]]
