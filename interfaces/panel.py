@@ -90,9 +90,9 @@ def panel_graph(options: PanelOptions) -> Graph:
     Graph
         Its steps are named mesh, description, start, angles (before an optimum of more than
         angles), optimum, panels, audit, report, step, rhino, table, list and picture; with a
-        number of moulds also moulds, blanks, mould_drawing and mould_picture, with a support landing
-        (without moulds or a tolerance), nodes, annuli, beams, drawing and beam_table. Its
-        writers write relative to the folder of the run.
+        number of moulds also moulds, blanks, mould_drawing and mould_picture, with a support
+        landing (without moulds or a tolerance), nodes, annuli, beams, drawing and beam_table.
+        Its writers write relative to the folder of the run.
 
     Raises
     ------
