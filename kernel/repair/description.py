@@ -100,9 +100,11 @@ def describe(raw: RawMesh) -> MeshReport:
     MeshReport
         Of faces of which no repair makes a mesh only the counts and the problem are known.
     """
+    usable = keep_faces(raw, usable_faces(raw))
     mesh, problem = _as_it_is(raw)
     repaired, done, failure = _repaired(raw)
-    usable = keep_faces(raw, usable_faces(raw))
+    if mesh and usable.n_faces < raw.n_faces:
+        mesh, problem = None, "coordinates are beyond 1e100; export the mesh again"
     points = usable.vertices[usable.corners]
     size = np.ptp(points, axis=0).tolist() if len(points) else [0.0, 0.0, 0.0]
     degrees, counts = np.unique(raw.degrees, return_counts=True)
@@ -242,7 +244,7 @@ def _facts(mesh: Mesh) -> _Facts:
         shortest_edge=shortest_edge(mesh),
         planarity=_distances(planarity(mesh), edge),
         circularity=_circularity(mesh, edge),
-        umbilicity=_umbilicity(mesh),
+        umbilicity=_umbilicity(mesh) if edge else None,
         crease_edges=int((turns > CREASE).sum()),
         sharpest_edge_deg=float(np.degrees(turns.max(initial=0.0))),
     )

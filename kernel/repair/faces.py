@@ -3,16 +3,18 @@
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, batches_by_count, norm
+from ..tolerances import FARTHEST
 from .raw_mesh import RawMesh, keep_corners, keep_faces
 
 
 def usable_faces(raw: RawMesh) -> BoolArray:
-    """Faces (F,) with three corners or more, all of them on finite vertices that there are."""
+    """Faces (F,) with three corners or more, all of them on places that there are."""
     n_vertices = len(raw.vertices)
     is_bad = (raw.corners < 0) | (raw.corners >= n_vertices)
     inside = np.where(is_bad, 0, raw.corners)
     if n_vertices:
-        is_bad |= ~np.isfinite(raw.vertices).all(axis=1)[inside]
+        is_place = (np.abs(raw.vertices) <= FARTHEST).all(axis=1)
+        is_bad |= ~is_place[inside]
     bad = np.bincount(raw.corner_faces[is_bad], minlength=raw.n_faces)
     return (bad == 0) & (raw.degrees > 2)
 

@@ -29,7 +29,7 @@ class RepairReport(Report):
     welded_vertices : list of list of int
         Vertices that became one, those of each place.
     unusable_faces : list of int
-        Dropped: less than three corners, vertices that are missing or not finite.
+        Dropped: less than three corners, vertices that are missing, not finite or beyond 1e100.
     sliver_faces : list of int
         Dropped: all corners on a line.
     duplicate_faces : list of list of int

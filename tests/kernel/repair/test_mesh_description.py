@@ -116,3 +116,12 @@ def test_reports_are_plain_and_follow_the_scale() -> None:
         assert other[name] == one[name]
     assert size_words(one, "m").endswith(f" m, mean edge {one.mean_edge:.3g} m")
     assert size_words(one, "m").count(" x ") == 2
+
+
+@pytest.mark.parametrize("size", [1e-300, 1e-160, 1e160, 1e300])
+def test_sizes_beyond_reason_are_described(size: float) -> None:
+    points, faces = box()
+    report = describe(raw_from_faces(np.multiply(points, size), faces))
+    assert report.faces == 6
+    assert report.is_mesh == (size < 1)
+    assert ("beyond 1e100" in report.problem) == (size > 1)
