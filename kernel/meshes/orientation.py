@@ -44,9 +44,9 @@ def faces_to_flip(
     _, firsts, piece_numbers = np.unique(pieces, return_index=True, return_inverse=True)
     first_side = side[firsts][piece_numbers]
     is_even = votes[pieces] == 0
-    is_flipped = np.where(is_even, side != first_side, side ^ (votes[pieces] < 0))
-    turned = is_flipped[links[:, 0]] != is_flipped[links[:, 1]]
-    return is_flipped, turned == is_aligned
+    is_flipped: BoolArray = side != np.where(is_even, first_side, votes[pieces] < 0)
+    is_turned = is_flipped[links[:, 0]] != is_flipped[links[:, 1]]
+    return is_flipped, is_turned == is_aligned
 
 
 def _sides(n_faces: int, links: IntArray, is_aligned: BoolArray) -> tuple[IntArray, IntArray]:
@@ -67,5 +67,5 @@ def _tree(n_faces: int, links: IntArray) -> IntArray:
     low, high = np.sort(links, axis=1).T
     _, firsts = np.unique(low * n_faces + high, return_index=True)
     firsts = firsts[low[firsts] != high[firsts]]
-    graph = weighted_graph(firsts + 1.0, low[firsts], high[firsts], n_faces)
+    graph = weighted_graph((firsts + 1).astype(np.float64), low[firsts], high[firsts], n_faces)
     return np.asarray(minimum_spanning_tree(graph).data, np.int64) - 1

@@ -251,7 +251,7 @@ def _facts(mesh: Mesh) -> _Facts:
 
 
 def _n_components(size: int, links: IntArray) -> int:
-    return int(connected_parts(*links.T, size).max(initial=-1)) + 1
+    return int(connected_parts(links[:, 0], links[:, 1], size).max(initial=-1)) + 1
 
 
 def _distances(values: FloatArray, edge: float) -> dict[str, float] | None:

@@ -9,12 +9,9 @@ from .raw_mesh import RawMesh, keep_corners, keep_faces
 
 def usable_faces(raw: RawMesh) -> BoolArray:
     """Faces (F,) with three corners or more, all of them on places that there are."""
-    n_vertices = len(raw.vertices)
-    is_bad = (raw.corners < 0) | (raw.corners >= n_vertices)
-    inside = np.where(is_bad, 0, raw.corners)
-    if n_vertices:
-        is_place = (np.abs(raw.vertices) <= FARTHEST).all(axis=1)
-        is_bad |= ~is_place[inside]
+    is_bad = (raw.corners < 0) | (raw.corners >= len(raw.vertices))
+    no_places = np.flatnonzero(~(np.abs(raw.vertices) <= FARTHEST).all(axis=1))
+    is_bad |= np.isin(raw.corners, no_places)
     bad = np.bincount(raw.corner_faces[is_bad], minlength=raw.n_faces)
     return (bad == 0) & (raw.degrees > 2)
 
@@ -86,8 +83,8 @@ def repeated_faces(raw: RawMesh) -> IntArray:
 
 def _canonical_rings(rings: IntArray) -> IntArray:
     """Rings (n, k) from their least vertex on, towards the lesser of its neighbours."""
-    degree = rings.shape[1]
-    steps = np.arange(degree)
+    degree = int(rings.shape[1])
+    steps: IntArray = np.arange(degree)
     start = rings.argmin(axis=1)[:, None]
     forward = np.take_along_axis(rings, (start + steps) % degree, axis=1)
     backward = np.take_along_axis(rings, (start - steps) % degree, axis=1)
@@ -101,6 +98,7 @@ def drop_narrow_and_repeated(raw: RawMesh, width: float) -> tuple[RawMesh, IntAr
     Returns
     -------
     raw : RawMesh
+        The faces that are left, in their order.
     narrow : (n,) int array
         Input numbers of faces without area.
     repeats : (m, 2) int array

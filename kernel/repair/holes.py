@@ -34,7 +34,7 @@ def triangulate_holes(raw: RawMesh, faces: IntArray) -> RawMesh:
     corners: list[IntArray] = []
     numbers: list[int] = []
     for face in faces.tolist():
-        ring = np.arange(raw.offsets[face], raw.offsets[face + 1])
+        ring: IntArray = np.arange(int(raw.offsets[face]), int(raw.offsets[face + 1]))
         flat = _flattened(raw.vertices[raw.corners[ring]])
         for loop in _loops(np.arange(len(ring)), raw.corners[ring], flat):
             triangles = _cut_ears(flat[loop])
@@ -59,10 +59,12 @@ def triangulate_holes(raw: RawMesh, faces: IntArray) -> RawMesh:
 
 def _flattened(points: FloatArray) -> FloatArray:
     """Corners (n, 2) in the plane of their polygon, in units of its size."""
-    centred = points - points.mean(axis=0)
-    normal = unit(np.cross(centred, np.roll(centred, -1, axis=0)).sum(axis=0))
-    first = unit(np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))]))
-    return centred @ np.stack([first, np.cross(normal, first)], 1) / norm(centred).max()
+    points = points - points[:1]
+    crosses = np.cross(points, np.concatenate([points[1:], points[:1]]))
+    normal = unit(crosses.sum(axis=0, keepdims=True))
+    first = unit(np.cross(normal, np.eye(3)[np.argmin(np.abs(normal), axis=1)]))
+    axes = np.concatenate([first, np.cross(normal, first)])
+    return points @ axes.T / norm(points).max()
 
 
 def _loops(ring: IntArray, vertices: IntArray, flat: FloatArray) -> list[IntArray]:
@@ -98,20 +100,20 @@ def _cut_ears(flat: FloatArray) -> IntArray | None:
     corners are told by their place in the ring, not by their point, so that both banks of a
     bridge keep their own side.
     """
-    ring = np.arange(len(flat))
+    ring = list(range(len(flat)))
     triangles: list[list[int]] = []
     while len(ring) > 3:
-        before, after = np.roll(ring, 1), np.roll(ring, -1)
+        before, after = ring[-1:] + ring[:-1], ring[1:] + ring[:1]
         for tip in np.argsort(norm(flat[after] - flat[before]), kind="stable").tolist():
-            if _is_ear(flat[np.roll(ring, 1 - tip)]):
+            if _is_ear(flat[before[tip:] + before[:tip]]):
                 break
         else:
             return None
         triangles.append([before[tip], ring[tip], after[tip]])
-        ring = np.delete(ring, tip)
-    if len(flat) > 2 and _turn(*flat[ring]) <= DEGENERATE:
+        del ring[tip]
+    if _turn(*flat[ring]) <= DEGENERATE:
         return None
-    return np.array([*triangles, ring.tolist()])
+    return np.array([*triangles, ring])
 
 
 def _is_ear(points: FloatArray) -> bool:

@@ -82,6 +82,7 @@ def repair(raw: RawMesh, tolerance: float | None = None) -> tuple[Mesh, RepairRe
         The faces that are left, in their order, triangles of cut ones at the end; vertices in
         their order, separated ones at the end.
     report : RepairReport
+        What was done, in numbers of the input.
 
     Raises
     ------

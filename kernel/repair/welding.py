@@ -108,7 +108,7 @@ def _first_of_group(points: FloatArray, distance: float) -> IntArray:
     places = places.reshape(-1)
     if distance > 0 and len(firsts):
         pairs = KDTree(points[firsts]).query_pairs(distance, output_type="ndarray")
-        places = connected_parts(*pairs.T, len(firsts))[places]
+        places = connected_parts(pairs[:, 0], pairs[:, 1], len(firsts))[places]
     least = np.full(len(firsts), len(points))
     np.minimum.at(least, places, np.arange(len(points)))
     return least[places]
