@@ -217,7 +217,9 @@ def _raw_mesh(
     if isinstance(mesh, str | os.PathLike):
         content = read_content(mesh, layer)
         for remark in content.remarks:
-            warn(remark)
+            # What a repair mends its report says itself.
+            if "repair_mesh" not in remark:
+                warn(remark)
         polygons = content.polygons
         offsets = np.concatenate([np.zeros(1, np.int64), np.cumsum(polygons.degrees)])
         return raw_from_rows(polygons.vertices, polygons.corners, offsets)
