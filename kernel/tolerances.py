@@ -52,7 +52,7 @@ WIDEST_WELD: Final = 1e-3
 """Vertices farther apart, in mean edges, are not one, however few digits a file has."""
 ROUNDED_PLACES: Final = 4.0
 """Places differ by rounding if closer than this many spacings of their numbers."""
-FARTHEST: Final = 1e100
+FARTHEST_PLACE: Final = 1e100
 """Coordinates beyond this are no places: their squares have no float64 to spare."""
 WELL_KNOWN_DIGITS: Final = 15
 """Decimal digits that a float64 always keeps: numbers with fewer were rounded."""

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..arrays import BoolArray, IntArray
-from ..solvers.weighted_graphs import connected_parts, weighted_graph
+from ..solvers.weighted_graphs import piece_labels, weighted_graph
 
 
 def faces_to_flip(
@@ -55,7 +55,7 @@ def _sides(n_faces: int, links: IntArray, is_aligned: BoolArray) -> tuple[IntArr
     other = np.where(is_aligned, n_faces, 0)
     rows = np.concatenate([left, left + n_faces])
     columns = np.concatenate([right + other, right + n_faces - other])
-    labels = connected_parts(rows, columns, 2 * n_faces)
+    labels = piece_labels(rows, columns, 2 * n_faces)
     return labels[:n_faces], labels[n_faces:]
 
 

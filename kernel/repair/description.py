@@ -12,7 +12,7 @@ from ..meshes.curvature import principal_curvatures
 from ..meshes.mesh import Mesh, face_normals, mean_edge_length, shortest_edge
 from ..meshes.triangulation import triangulate
 from ..reports import Report
-from ..solvers.weighted_graphs import connected_parts
+from ..solvers.weighted_graphs import piece_labels
 from ..sphere_meshes.planarity_circularity import circularity, planarity
 from ..tolerances import CIRCULAR, CREASE, PLANAR
 from .faces import usable_faces
@@ -251,7 +251,7 @@ def _facts(mesh: Mesh) -> _Facts:
 
 
 def _n_components(size: int, links: IntArray) -> int:
-    return int(connected_parts(links[:, 0], links[:, 1], size).max(initial=-1)) + 1
+    return int(piece_labels(links[:, 0], links[:, 1], size).max(initial=-1)) + 1
 
 
 def _distances(values: FloatArray, edge: float) -> dict[str, float] | None:

@@ -3,14 +3,14 @@
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, batches_by_count, norm
-from ..tolerances import FARTHEST
+from ..tolerances import FARTHEST_PLACE
 from .raw_mesh import RawMesh, keep_corners, keep_faces
 
 
 def usable_faces(raw: RawMesh) -> BoolArray:
     """Faces (F,) with three corners or more, all of them on places that there are."""
     is_bad = (raw.corners < 0) | (raw.corners >= len(raw.vertices))
-    no_places = np.flatnonzero(~(np.abs(raw.vertices) <= FARTHEST).all(axis=1))
+    no_places = np.flatnonzero(~(np.abs(raw.vertices) <= FARTHEST_PLACE).all(axis=1))
     is_bad |= np.isin(raw.corners, no_places)
     bad = np.bincount(raw.corner_faces[is_bad], minlength=raw.n_faces)
     return (bad == 0) & (raw.degrees > 2)

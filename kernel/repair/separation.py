@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import BoolArray, IntArray
 from ..meshes.orientation import faces_to_flip
-from ..solvers.weighted_graphs import connected_parts
+from ..solvers.weighted_graphs import piece_labels
 from .raw_mesh import RawMesh
 from .sides import find_sides, paired_sides
 
@@ -58,7 +58,7 @@ def _separated(raw: RawMesh, pairs: IntArray, is_aligned: BoolArray) -> RawMesh:
     far = np.where(is_aligned, right, heads[right])
     near = np.where(is_aligned, heads[right], right)
     rows, columns = np.concatenate([left, heads[left]]), np.concatenate([far, near])
-    labels = connected_parts(rows, columns, len(raw.corners))
+    labels = piece_labels(rows, columns, len(raw.corners))
     _, firsts, fans = np.unique(labels, return_index=True, return_inverse=True)
     owners = raw.corners[firsts]
     # The fan of the first corner keeps the vertex, the others follow in the order of corners.

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, norm
-from ..solvers.weighted_graphs import connected_parts
+from ..solvers.weighted_graphs import piece_labels
 from ..tolerances import (
     EPSILON,
     ROUNDED_PLACES,
@@ -108,7 +108,7 @@ def _first_of_group(points: FloatArray, distance: float) -> IntArray:
     places = places.reshape(-1)
     if distance > 0 and len(firsts):
         pairs = KDTree(points[firsts]).query_pairs(distance, output_type="ndarray")
-        places = connected_parts(pairs[:, 0], pairs[:, 1], len(firsts))[places]
+        places = piece_labels(pairs[:, 0], pairs[:, 1], len(firsts))[places]
     least = np.full(len(firsts), len(points))
     np.minimum.at(least, places, np.arange(len(points)))
     return least[places]
