@@ -44,6 +44,19 @@ SAME_LENGTH: Final = 1e-6
 CREASE: Final = 0.6981317007977318
 """Triangles that meet at a larger angle (40 degrees) make a crease, not a curved surface."""
 
+# Repair
+
+SAME_PLACE: Final = 1e-6
+"""Vertices closer than this, in mean edges, are one (1 µm per m)."""
+WIDEST_WELD: Final = 1e-3
+"""Vertices farther apart, in mean edges, are not one, however few digits a file has."""
+ROUNDED_PLACES: Final = 4.0
+"""Places differ by rounding if closer than this many spacings of their numbers."""
+FARTHEST_PLACE: Final = 1e100
+"""Coordinates beyond this are no places: their squares have no float64 to spare."""
+WELL_KNOWN_DIGITS: Final = 15
+"""Decimal digits that a float64 always keeps: numbers with fewer were rounded."""
+
 # Spheres
 
 CROSSING: Final = 1e-9

@@ -88,7 +88,7 @@ def content_mesh(content: FileContent, path: str | os.PathLike[str]) -> Mesh:
         If it is no orientable manifold mesh.
     """
     try:
-        return to_mesh(content.polygons)
+        return to_mesh(content.polygons, content.sources)
     except InputError as error:
         raise InputError(f"cannot read {path}: {error}") from error
 

@@ -150,7 +150,7 @@ TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
         (TRIANGLE + f"f 1 2 {'9' * 6000}\n", ["line 4", f"'{'9' * 40}' is not"]),
         (TRIANGLE + "f 1 2 99999999999999999999\n", ["line 4", "not a usable number"]),
         (TRIANGLE, ["no faces", "polygon mesh"]),
-        (TRIANGLE + "v 1 1 0\nf 1 2 3\nf 1 2 4\n", ["faces [0, 1]", "same direction"]),
+        (TRIANGLE + "v 1 1 0\nf 1 2 3\nf 1 2 4\n", ["(line 5), 1 (line 6)", "same direction"]),
         (TRIANGLE + "v 1 1 0\nv 2 2 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n", ["non-manifold"]),
         (b"\x00\xff\x80\x13binary\n", ["no faces"]),
     ],
