@@ -30,6 +30,10 @@ class PanelOptions:
         Mesh file; the demo roof if None.
     layer : str
         Layer or group of the file to use.
+    edge_length : float or None
+        Length of the edges of faces on surfaces, in model units.
+    rows : (int, int) or None
+        Rows of faces along u and v of each surface; neither: as `read_mesh` has it.
     units : str
         Model units.
     moulds : int or None
@@ -59,6 +63,8 @@ class PanelOptions:
 
     mesh: Path | None = None
     layer: str = ""
+    edge_length: float | None = None
+    rows: tuple[int, int] | None = None
     units: str = "m"
     moulds: int | None = None
     thickness: float = 0.0
@@ -103,7 +109,9 @@ def panel_graph(options: PanelOptions) -> Graph:
         mesh = graph.add("roof_mesh", "mesh")
     else:
         path = str(options.mesh.resolve())
-        mesh = graph.add("read_mesh", "mesh", path=path, layer=options.layer)
+        mesh = graph.add(
+            "read_mesh", "mesh", path=path, layer=options.layer, **_fineness(options)
+        )
     optimum = _optimum(graph, options, mesh)
     spheres, labels, clusters, blanks = optimum.sphere_mesh, None, None, None
     landing = None
@@ -148,6 +156,13 @@ def panel_graph(options: PanelOptions) -> Graph:
     graph.add("write_schedule", "list", **made, path="schedule.json")
     graph.add("render", "picture", panels=panels.panels, path="preview.png")
     return graph
+
+
+def _fineness(options: PanelOptions) -> dict[str, Any]:
+    """How finely surfaces are divided."""
+    if options.edge_length is not None:
+        return {"edge_length": options.edge_length}
+    return dict(zip(("n_u", "n_v"), options.rows or (), strict=False))
 
 
 def _optimum(graph: Graph, options: PanelOptions, mesh: Step) -> Step:

@@ -5,5 +5,6 @@ off     Object File Format (OFF): polygons of any degree, vertices counted from 
 ply     Polygon File Format (PLY): ascii or binary of either byte order, polygons of any degree.
 reader  Reads a file of any of these formats, or a Rhino .3dm.
 stl     STL: separate triangles, ascii or binary; coordinates of binary files are float32.
+surface_files  Surfaces of a .3dm with their exact normals and curvatures.
 writer  Writes them.
 """

@@ -5,6 +5,7 @@ The parsers are ours because a face is a panel: trimesh cuts polygons into trian
 in PLY, and leaves the program when it cannot read a file.
 """
 
+import math
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -30,7 +31,11 @@ SUFFIXES: Final = (".obj", *_READERS, ".3dm")
 
 
 def read_mesh(
-    path: str | os.PathLike[str], layer: str = "", n_u: int = 24, n_v: int = 24
+    path: str | os.PathLike[str],
+    layer: str = "",
+    n_u: int = 24,
+    n_v: int = 24,
+    edge_length: float | None = None,
 ) -> Mesh:
     """Read a mesh with faces of mixed degree from an OBJ, OFF, PLY, STL or Rhino .3dm file.
 
@@ -45,9 +50,10 @@ def read_mesh(
         the layer of this full path (``Roof::Panels``) with its sublayers. The other formats
         have no layers. Empty reads all.
     n_u, n_v : int
-        Quads along u and v of each face where a .3dm holds surfaces or polysurfaces and no
-        meshes. Faces trimmed by other than four edges take even numbers; faces of a
-        polysurface meet where the numbers along their common edge agree.
+        Rows of quads along u and v of each face of surfaces and polysurfaces in a .3dm. Faces
+        meet: where their numbers along a common edge differ, the larger holds.
+    edge_length : float, optional
+        Length of the edges there, instead of numbers of rows; in model units.
 
     Returns
     -------
@@ -62,7 +68,7 @@ def read_mesh(
         If the file cannot be read or is no orientable manifold mesh; the message names the
         file, the line (of text files) or the faces, and what to do. Faces are never flipped.
     """
-    content = read_content(path, layer, n_u, n_v)
+    content = read_content(path, layer, n_u, n_v, edge_length)
     try:
         return to_mesh(content.polygons)
     except InputError as error:
@@ -70,7 +76,11 @@ def read_mesh(
 
 
 def read_content(
-    path: str | os.PathLike[str], layer: str = "", n_u: int = 24, n_v: int = 24
+    path: str | os.PathLike[str],
+    layer: str = "",
+    n_u: int = 24,
+    n_v: int = 24,
+    edge_length: float | None = None,
 ) -> FileContent:
     """What a mesh file holds, whether or not it is a mesh; see `read_mesh`.
 
@@ -85,10 +95,12 @@ def read_content(
         raise InputError(f"cannot read {source}: {suffix} files have no layers; drop {layer!r}")
     if min(n_u, n_v) < 1:
         raise InputError(f"a grid of {n_u} by {n_v} quads has no faces; ask for at least 1")
+    if edge_length is not None and not 0 < edge_length < math.inf:
+        raise InputError(f"the edge length must be positive, not {edge_length}")
     data = _read_bytes(source)
     try:
         if suffix == ".3dm":
-            return read_3dm(data, layer, GridSize(n_u, n_v))
+            return read_3dm(data, layer, GridSize(n_u, n_v, edge_length))
         if suffix == ".obj":
             return FileContent(read_obj(data, layer))
         return FileContent(_READERS[suffix](data))

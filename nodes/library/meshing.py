@@ -1,20 +1,32 @@
 """Other meshes of the same shape: triangulated, subdivided, remeshed."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
 from ...kernel.meshes import remeshing, subdivision, triangulation
 from ...kernel.meshes.mesh import Mesh
+from ...kernel.surfaces.surface import Surface
 from ...kernel.tolerances import MOSTLY_EVEN
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
+from .arrays import VertexCurvatures, VertexDirections, VertexMarks, VertexNormals
 
 SCHEMES = {
     "loop": subdivision.subdivide_loop,
     "catmull-clark": subdivision.subdivide_catmull_clark,
     "midpoint": subdivision.subdivide_midpoint,
 }
+
+
+class SurfaceFields(NamedTuple):
+    """A mesh on a surface, and the shape of the surface at its vertices."""
+
+    mesh: Mesh
+    normals: VertexNormals
+    curvatures: VertexCurvatures
+    directions: VertexDirections
+    is_smooth: VertexMarks
 
 
 @node
@@ -118,3 +130,45 @@ def remesh_triangles(
             "edges or a larger crease angle"
         )
     return result
+
+
+@node
+def surface_fields(surface: Surface) -> SurfaceFields:
+    """The mesh of a surface and what is known at its vertices, one by one.
+
+    Parameters
+    ----------
+    surface : Surface
+        A surface, as read by `read_surface`.
+
+    Returns
+    -------
+    mesh : Mesh
+        The mesh on the surface.
+    normals : (V, 3) float array
+        Unit normals.
+    curvatures : (V, 2) float array
+        The larger and the smaller principal curvature, positive towards the normal.
+    directions : (V, 2, 3) float array
+        Principal directions of the two.
+    is_smooth : (V,) bool array
+        False on creases and at apexes.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from spheremesh import Mesh, Surface
+    >>> from spheremesh.nodes import surface_fields
+    >>> square = Mesh(np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), [[0, 1, 2, 3]])
+    >>> axes = np.tile(np.eye(3), (4, 1, 1))
+    >>> flat = Surface(square, axes[:, 2], np.zeros((4, 2)), axes[:, :2], np.ones(4, bool))
+    >>> surface_fields(flat).curvatures.tolist()
+    [[0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]]
+    """
+    return SurfaceFields(
+        surface.mesh,
+        surface.normals,
+        surface.curvatures,
+        surface.directions,
+        surface.is_smooth,
+    )

@@ -1,0 +1,163 @@
+"""Faces of polysurfaces: pieces of NURBS surfaces between trims, joined along edges."""
+
+from collections.abc import Callable
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+
+from ..arrays import FloatArray, norm
+from ..tolerances import CLOSED
+from .nurbs import NurbsSurface, evaluate_nurbs
+from .poles import find_poles, surface_size
+
+ShareCurve: TypeAlias = Callable[[FloatArray], FloatArray]
+"""Points (n, 2) or (n, 3) of a curve at shares (n,) of its parameters, from 0 to 1."""
+
+
+class Trim(NamedTuple):
+    """A piece of the boundary of a face.
+
+    Attributes
+    ----------
+    edge : int
+        The edge on which it lies; -1 at a pole.
+    is_reversed : bool
+        Whether it runs against its edge.
+    ends : (int, int)
+        Vertices where it begins and ends.
+    curve : ShareCurve
+        Its points in (u, v), (n, 2).
+    """
+
+    edge: int
+    is_reversed: bool
+    ends: tuple[int, int]
+    curve: ShareCurve
+
+
+class TrimmedFace(NamedTuple):
+    """A piece of a surface.
+
+    Attributes
+    ----------
+    surface : NurbsSurface
+    loops : list of list of Trim
+        Closed boundaries: the outer one, counter-clockwise in (u, v), then the holes.
+    is_reversed : bool
+        Whether the face looks against the normal ``x_u × x_v`` of its surface.
+    """
+
+    surface: NurbsSurface
+    loops: list[list[Trim]]
+    is_reversed: bool
+
+
+class Polysurface(NamedTuple):
+    """Faces with common edges, which are curves in space."""
+
+    faces: list[TrimmedFace]
+    edges: list[ShareCurve]
+
+
+def transformed_surface(surface: NurbsSurface, transform: FloatArray) -> NurbsSurface:
+    """The image of a surface under an affine map, which is exact.
+
+    Parameters
+    ----------
+    transform : (4, 4) float array
+        The map, for columns of homogeneous coordinates.
+
+    Returns
+    -------
+    NurbsSurface
+        With the same knots.
+    """
+    if np.array_equal(transform, np.eye(4)):
+        return surface
+    return NurbsSurface(surface.knots_u, surface.knots_v, surface.points @ transform.T)
+
+
+def turned_left(face: TrimmedFace) -> TrimmedFace:
+    """The face with its outer loop first and counter-clockwise.
+
+    Returns
+    -------
+    TrimmedFace
+        The outer loop is the one with the largest area in (u, v).
+    """
+    areas = [_loop_area(loop) for loop in face.loops]
+    order = np.argsort(-np.abs(areas), kind="stable")
+    loops = [face.loops[i] for i in order]
+    if areas[order[0]] < 0:
+        loops = [[_backwards(trim) for trim in reversed(loop)] for loop in loops]
+    return face._replace(loops=loops)
+
+
+def _loop_area(loop: list[Trim]) -> float:
+    share = np.linspace(0, 1, 17)
+    x, y = np.concatenate([trim.curve(share) for trim in loop]).T
+    x, y = x - x[0], y - y[0]
+    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
+
+
+def _backwards(trim: Trim) -> Trim:
+    return Trim(
+        trim.edge, not trim.is_reversed, trim.ends[::-1], lambda share: trim.curve(1 - share)
+    )
+
+
+def whole_surface(surface: NurbsSurface) -> Polysurface:
+    """A surface as one face over its whole domain.
+
+    Returns
+    -------
+    Polysurface
+        Opposite sides that coincide are one edge, a seam; sides that are a point have none.
+    """
+    (low_u, high_u), (low_v, high_v) = surface.domain
+    corners = np.array([(low_u, low_v), (high_u, low_v), (high_u, high_v), (low_u, high_v)])
+    ends = list(zip(corners, np.roll(corners, -1, 0), strict=True))
+    vertices = np.arange(4)
+    edge_ids = list(range(4))
+    for pole in find_poles(surface):
+        # The sides are those of v low, u high, v high and u low.
+        side = (3, 1)[pole.end] if pole.axis == 0 else (0, 2)[pole.end]
+        edge_ids[side] = -1
+        vertices = _merged(vertices, side, (side + 1) % 4)
+    is_reversed = [False] * 4
+    for side in (0, 1):
+        opposite = side + 2
+        if -1 in (edge_ids[side], edge_ids[opposite]) or not _coincide(surface, ends, side):
+            continue
+        edge_ids[opposite], is_reversed[opposite] = side, True
+        vertices = _merged(vertices, side, (opposite + 1) % 4)
+        vertices = _merged(vertices, (side + 1) % 4, opposite)
+    curves = [_segment(*each) for each in ends]
+    trims = [
+        Trim(edge, flag, (int(vertices[i]), int(vertices[(i + 1) % 4])), curve)
+        for i, (edge, flag, curve) in enumerate(zip(edge_ids, is_reversed, curves, strict=True))
+    ]
+    edges: list[ShareCurve] = [_on_surface(surface, curve) for curve in curves]
+    return Polysurface([TrimmedFace(surface, [trims], is_reversed=False)], edges)
+
+
+def _merged(vertices: np.ndarray, a: int, b: int) -> np.ndarray:
+    return np.where(vertices == vertices[b], vertices[a], vertices)
+
+
+def _coincide(
+    surface: NurbsSurface, ends: list[tuple[FloatArray, FloatArray]], side: int
+) -> bool:
+    share = np.linspace(0, 1, 17)
+    here = _on_surface(surface, _segment(*ends[side]))(share)
+    there = _on_surface(surface, _segment(*ends[side + 2]))(1 - share)
+    return bool(norm(here - there).max() <= CLOSED * surface_size(surface))
+
+
+def _segment(start: FloatArray, end: FloatArray) -> ShareCurve:
+    # Both ends are exact: a domain must not be left by rounding.
+    return lambda share: (1 - share)[:, None] * start + share[:, None] * end
+
+
+def _on_surface(surface: NurbsSurface, curve: ShareCurve) -> ShareCurve:
+    return lambda share: evaluate_nurbs(surface, *curve(share).T).points
