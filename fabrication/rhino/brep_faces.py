@@ -151,25 +151,35 @@ def _trim(tables: _Tables, index: int, surface: RhinoObject) -> Trim:
 
 
 def _space_curve(curve: RhinoObject) -> ShareCurve:
-    first, last = float(curve.Domain.T0), float(curve.Domain.T1)
+    return _evaluator(curve, (float(curve.Domain.T0), float(curve.Domain.T1)))
+
+
+def _evaluator(curve: RhinoObject, domain: tuple[float, float]) -> ShareCurve:
+    first, last = domain
 
     def _points(share: FloatArray) -> FloatArray:
         places = map(curve.PointAt, ((1 - share) * first + share * last).tolist())
         return np.array([(p.X, p.Y, p.Z) for p in places]).reshape(-1, 3)
 
-    return _points
+    kind = type(curve).__name__
+    is_line = kind == "LineCurve" or (
+        kind == "NurbsCurve" and len(curve.Points) == 2 and not curve.IsRational
+    )
+    if not is_line:
+        return _points
+    start, end = _points(np.array([0.0, 1.0]))
+    return lambda share: (1 - share)[:, None] * start + share[:, None] * end
 
 
 def _plane_curve(
     curve: RhinoObject, domain: tuple[float, float], surface: RhinoObject
 ) -> ShareCurve:
     """A trim in the parameters of the NURBS form of its surface."""
-    first, last = domain
+    places = _evaluator(curve, domain)
     is_same = type(surface).__name__ in _SAME_PARAMETERS
 
     def _points(share: FloatArray) -> FloatArray:
-        places = map(curve.PointAt, ((1 - share) * first + share * last).tolist())
-        uv = np.array([(p.X, p.Y) for p in places]).reshape(-1, 2)
+        uv = places(share)[:, :2]
         if is_same:
             return uv
         pairs = [surface.GetNurbsFormParameterFromSurfaceParameter(*p) for p in uv.tolist()]
@@ -214,11 +224,13 @@ def _read_curves(reader: StreamReader, encoded: dict[str, object]) -> list[Rhino
     with reader.table() as count:
         for _ in range(count):
             if not reader.ints(1)[0]:
-                curves.append(None)
-                continue
+                raise UnreadableError("a trim has no curve")
             start = _skip_chunk(reader)
             data = base64.b64encode(reader.data[start : reader.position]).decode()
-            curves.append(decode({**encoded, "data": data}))
+            curve = decode({**encoded, "data": data})
+            if curve is None or not hasattr(curve, "PointAt"):
+                raise UnreadableError("a trim is no curve")
+            curves.append(curve)
     return curves
 
 

@@ -1,21 +1,20 @@
 """Meshes on polysurfaces: vertices on the surfaces, faces that meet along common edges."""
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray, dot, norm
+from ..arrays import BoolArray, FloatArray, IntArray, dot, norm
 from ..errors import InputError
 from ..tolerances import EDGE_MISS, ON_EDGE
-from .face_plans import FacePlan, plan_face
+from .face_plans import FacePlan, RimSamples, plan_face, sample_rim
 from .nurbs import NurbsSurface, evaluate_nurbs, nearest_parameters
 from .planar_grids import PlanarMesh, disc_on_boundary, fan_on_sides, grid_on_sides
 from .planar_triangles import triangulate_region
 from .poles import surface_size
 from .row_counts import GridSize, count_rows, edge_lengths_along
 from .trimmed_faces import Polysurface, Trim, TrimmedFace, turned_left
-
-_SAMPLES = 65
 
 
 class FaceMesh(NamedTuple):
@@ -67,15 +66,18 @@ def mesh_polysurface(polysurface: Polysurface, size: GridSize) -> PolysurfaceMes
     faces = [turned_left(face) for face in polysurface.faces]
     polysurface = polysurface._replace(faces=faces)
     by_length = size.edge_length is not None
-    plans = [plan_face(face, is_even=by_length) for face in faces]
+    rims = [sample_rim(face) for face in faces]
+    plans = [
+        plan_face(face, rim, is_even=by_length) for face, rim in zip(faces, rims, strict=True)
+    ]
     along = edge_lengths_along(polysurface)
     lengths = np.array([each[-1] for each in along])
     rows = count_rows(polysurface, plans, lengths, size)
     samples = _Samples(polysurface, along, by_length=by_length)
     found: list[FaceMesh] = []
-    for i, (face, plan, counts) in enumerate(zip(faces, rows.plans, rows.trims, strict=True)):
+    for i, (face, rim) in enumerate(zip(faces, rims, strict=True)):
         try:
-            found.append(_mesh_face(face, plan, counts, samples, size))
+            found.append(_mesh_face(face, rows.plans[i], rows.trims[i], (rim, samples), size))
         except InputError as error:
             raise InputError(f"face {i} {error}") from error
     return PolysurfaceMesh(samples.points(), found)
@@ -134,27 +136,22 @@ def _mesh_face(
     face: TrimmedFace,
     plan: FacePlan,
     counts: list[IntArray],
-    samples: _Samples,
+    known: tuple[RimSamples, _Samples],
     size: GridSize,
 ) -> FaceMesh:
-    sides, ids = [], []
-    for loop, numbers in zip(face.loops, counts, strict=True):
-        uvs = [
-            _trim_parameters(face.surface, trim, int(n), samples)
-            for trim, n in zip(loop, numbers, strict=True)
-        ]
-        sides.append(uvs)
-        ids.append([
-            samples.trim_vertices(trim, evaluate_nurbs(face.surface, *uv.T).points)
-            for trim, uv in zip(loop, uvs, strict=True)
-        ])  # fmt: skip
-    flat = _grid(plan, sides[0])
+    samples = known[1]
+    trims = [trim for loop in face.loops for trim in loop]
+    uvs, places = _rim_parameters(face.surface, trims, np.concatenate(counts), known)
+    ids = [
+        samples.trim_vertices(trim, points) for trim, points in zip(trims, places, strict=True)
+    ]
+    flat = _grid(plan, uvs)
     if flat is None:
-        rim = [each for loop in ids for each in loop]
-        flat = _triangles(face.surface, sides, size)
+        bounds = np.cumsum([0, *map(len, face.loops)])
+        flat = _triangles(face.surface, [uvs[a:b] for a, b in pairwise(bounds)], size)
+        boundary = np.concatenate(ids)
     else:
-        rim = [ids[0][i] for side in plan.sides for i in side]
-    boundary = np.concatenate(rim)
+        boundary = np.concatenate([ids[i] for side in plan.sides for i in side])
     uv = np.clip(flat.points, *face.surface.domain.T)
     inside = evaluate_nurbs(face.surface, *uv[len(boundary) :].T).points
     vertices = np.concatenate([boundary, samples.add(inside)])
@@ -196,35 +193,64 @@ def _triangles(
     return PlanarMesh(np.concatenate([*loops, inside]), found.faces)
 
 
-def _trim_parameters(
-    surface: NurbsSurface, trim: Trim, count: int, samples: _Samples
-) -> FloatArray:
-    """Points (count + 1, 2) of a trim, where the mesh vertices of its edge are."""
-    if trim.edge < 0:
-        return np.clip(trim.curve(np.linspace(0, 1, count + 1)), *surface.domain.T)
-    shares = samples.shares(trim.edge, count)
-    points = samples.edges[trim.edge](shares)
-    if trim.is_reversed:
-        points, shares = points[::-1], 1 - shares[::-1]
-    low, high = surface.domain.T
-    seeds = np.clip(trim.curve(shares), low, high)
-    dense = np.clip(trim.curve(np.linspace(0, 1, _SAMPLES)), low, high)
-    near = evaluate_nurbs(surface, *dense.T).points
-    tolerance = ON_EDGE * surface_size(surface)
-    miss = norm(evaluate_nurbs(surface, *seeds.T).points - points)
-    if miss.max() > tolerance:
-        away = norm(near[None] - points[:, None])
-        best = away.argmin(1)
-        is_better = away.min(1) < miss
-        is_better[[0, -1]] = False
-        seeds = np.where(is_better[:, None], dense[best], seeds)
-        miss = norm(evaluate_nurbs(surface, *seeds.T).points - points)
-        moved, distances = nearest_parameters(surface, points, seeds)
-        is_better = (distances < miss) & (miss > tolerance)
-        is_better[[0, -1]] = False
-        seeds = np.where(is_better[:, None], moved, seeds)
-        miss = np.where(is_better, distances, miss)
-    length = samples.along[trim.edge][-1]
-    if not miss.max() <= EDGE_MISS * length:
-        raise InputError(f"lies {miss.max():.3g} off one of its edges")
-    return seeds
+def _rim_parameters(
+    surface: NurbsSurface,
+    trims: list[Trim],
+    counts: IntArray,
+    known: tuple[RimSamples, _Samples],
+) -> tuple[list[FloatArray], list[FloatArray]]:
+    """Points in (u, v) and in space of all trims, where the mesh vertices of edges are."""
+    rim, samples = known
+    seeds, points, is_end, lengths = [], [], [], []
+    for trim, count in zip(trims, counts.tolist(), strict=True):
+        shares = np.linspace(0, 1, count + 1)
+        if trim.edge >= 0:
+            shares = samples.shares(trim.edge, count)
+            along = samples.edges[trim.edge](shares)
+            if trim.is_reversed:
+                along, shares = along[::-1], 1 - shares[::-1]
+        else:
+            along = np.full((count + 1, 3), np.nan)
+        seeds.append(trim.curve(shares))
+        points.append(along)
+        is_end.append(np.isin(np.arange(count + 1), (0, count)) | (trim.edge < 0))
+        length = samples.along[trim.edge][-1] if trim.edge >= 0 else 0.0
+        lengths.append(np.full(count + 1, length))
+    uv, miss, found = _nearest_of_seeds(
+        surface,
+        rim,
+        np.clip(np.concatenate(seeds), *surface.domain.T),
+        np.concatenate(points),
+        np.concatenate(is_end),
+    )
+    if (miss > EDGE_MISS * np.concatenate(lengths)).any():
+        raise InputError(f"lies {np.nanmax(miss):.3g} off one of its edges")
+    bounds = np.cumsum(counts + 1)[:-1]
+    return np.split(uv, bounds), np.split(found, bounds)
+
+
+def _nearest_of_seeds(
+    surface: NurbsSurface,
+    rim: RimSamples,
+    seeds: FloatArray,
+    points: FloatArray,
+    is_end: BoolArray,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Parameters of points on edges, their distances from the edges, and their places.
+
+    The curves of an edge and of its trims are the same, but not always their parameters.
+    """
+    places = evaluate_nurbs(surface, *seeds.T).points
+    miss = norm(places - points)
+    is_off = (miss > ON_EDGE * surface_size(surface)) & ~is_end
+    if not is_off.any():
+        return seeds, miss, places
+    dense = rim.uv.reshape(-1, 2)
+    away = norm(rim.points.reshape(-1, 3) - points[is_off, None])
+    is_nearer = away.min(1) < miss[is_off]
+    starts = np.where(is_nearer[:, None], dense[away.argmin(1)], seeds[is_off])
+    moved, distances = nearest_parameters(surface, points[is_off], starts)
+    is_better = distances < miss[is_off]
+    seeds[is_off] = np.where(is_better[:, None], moved, seeds[is_off])
+    places = evaluate_nurbs(surface, *seeds.T).points
+    return seeds, norm(places - points), places

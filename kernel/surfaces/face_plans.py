@@ -9,7 +9,7 @@ from ..tolerances import POLE, SURFACE_CORNER
 from .nurbs import evaluate_nurbs
 from .planar_grids import disc_on_boundary, fan_on_sides, grid_on_sides
 from .poles import surface_size
-from .trimmed_faces import Trim, TrimmedFace
+from .trimmed_faces import TrimmedFace
 
 _SHARES = np.linspace(0, 1, 33)
 _TRIAL = 16
@@ -39,11 +39,37 @@ class FacePlan(NamedTuple):
     is_first_u: bool = True
 
 
-def plan_face(face: TrimmedFace, *, is_even: bool) -> FacePlan:
+class RimSamples(NamedTuple):
+    """Points along all trims of a face, 33 each: (t, 33, 2) in (u, v), (t, 33, 3) in space."""
+
+    uv: FloatArray
+    points: FloatArray
+
+
+def sample_rim(face: TrimmedFace) -> RimSamples:
+    """Points along the trims of all loops of a face, in their order.
+
+    Returns
+    -------
+    RimSamples
+        At equal steps of the parameters of the trims.
+    """
+    trims = [trim for loop in face.loops for trim in loop]
+    uv = np.concatenate([trim.curve(_SHARES) for trim in trims])
+    uv = np.clip(uv, *face.surface.domain.T)
+    points = evaluate_nurbs(face.surface, *uv.T).points
+    return RimSamples(
+        uv.reshape(len(trims), len(_SHARES), 2), points.reshape(len(trims), len(_SHARES), 3)
+    )
+
+
+def plan_face(face: TrimmedFace, rim: RimSamples, *, is_even: bool) -> FacePlan:
     """The best way to divide a face.
 
     Parameters
     ----------
+    rim : RimSamples
+        Of this face.
     is_even : bool
         Whether edges of one length are wanted; numbers of rows otherwise.
 
@@ -55,7 +81,7 @@ def plan_face(face: TrimmedFace, *, is_even: bool) -> FacePlan:
     outer = face.loops[0]
     each = [[i] for i in range(len(outer))]
     if len(face.loops) == 1:
-        lines = [_Line.of(face, trim) for trim in outer]
+        lines = _lines(face, rim)
         corners = _corners(lines)
         merged = _groups(corners, len(outer))
         for sides in (each, merged):
@@ -84,14 +110,17 @@ class _Line(NamedTuple):
     lengths: FloatArray
     length: float
 
-    @classmethod
-    def of(cls, face: TrimmedFace, trim: Trim) -> "_Line":
-        uv = trim.curve(_SHARES)
-        points = evaluate_nurbs(face.surface, *np.clip(uv, *face.surface.domain.T).T).points
+
+def _lines(face: TrimmedFace, rim: RimSamples) -> list[_Line]:
+    least = POLE * surface_size(face.surface)
+    lines: list[_Line] = []
+    for trim, uv, points in zip(face.loops[0], *rim, strict=False):
         lengths = np.concatenate([[0.0], np.cumsum(norm(np.diff(points, axis=0)))])
-        if trim.edge < 0 or lengths[-1] <= POLE * surface_size(face.surface):
-            return cls(uv, points, _SHARES, 0.0)
-        return cls(uv, points, lengths, float(lengths[-1]))
+        if trim.edge < 0 or lengths[-1] <= least:
+            lines.append(_Line(uv, points, _SHARES, 0.0))
+        else:
+            lines.append(_Line(uv, points, lengths, float(lengths[-1])))
+    return lines
 
 
 def _corners(lines: list[_Line]) -> list[int]:

@@ -9,7 +9,7 @@ from ..errors import InputError
 from .face_plans import FacePlan
 from .trimmed_faces import Polysurface
 
-_SHARES = np.linspace(0, 1, 129)
+_SHARES = np.linspace(0, 1, 65)
 _SWEEPS = 12
 _MOST_FACES = 1_000_000
 
@@ -46,11 +46,11 @@ class RowCounts(NamedTuple):
 
 
 def edge_lengths_along(polysurface: Polysurface) -> list[FloatArray]:
-    """Lengths of the edges up to each of 129 shares of their parameters.
+    """Lengths of the edges up to each of 65 shares of their parameters.
 
     Returns
     -------
-    list of (129,) float array
+    list of (65,) float array
         From 0 to the length of the edge, in model units.
     """
     return [

@@ -115,6 +115,6 @@ def test_boundaries_that_cross_or_touch_are_refused() -> None:
         triangulate_region([eight], 0.5)
     square = np.array([[0.0, 0], [2, 0], [2, 2], [0, 2]])
     with pytest.raises(InputError, match="touches itself"):
-        triangulate_region([square, square + (0.5, 0)], 0.5)
+        triangulate_region([square, np.add(square, (0.5, 0))], 0.5)
     with pytest.raises(InputError, match="no area"):
         triangulate_region([np.array([[0.0, 0], [1, 0], [2, 0], [1, 0]])], 5.0)
