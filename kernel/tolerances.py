@@ -50,8 +50,8 @@ PARAMETER_SLACK: Final = 1e-9
 """Parameters outside of a domain by less, relative to its size or its ends, are at its end."""
 POLE: Final = 1e-9
 """A side of a surface shorter than this share of the surface's size is a point."""
-SMOOTH_JOINT: Final = 1e-3
-"""Faces whose normals differ by less (radians) where they meet are one smooth surface."""
+SMOOTH_JOINT: Final = 0.017453292519943295
+"""Faces whose normals differ by less (1 degree, as in Rhino) where they meet join smoothly."""
 SURFACE_CORNER: Final = 0.4363323129985824
 """A boundary of a face that turns by more (25 degrees) from edge to edge has a corner there."""
 FLAT_TRIANGLE: Final = 1e-9

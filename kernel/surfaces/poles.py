@@ -14,7 +14,7 @@ from .nurbs import (
     principal_values,
 )
 
-_MERIDIANS = 17
+_MERIDIANS = 16
 _INWARDS = 1e-3
 
 
@@ -49,9 +49,9 @@ def find_poles(surface: NurbsSurface) -> list[Pole]:
     found: list[Pole] = []
     for axis in (0, 1):
         for end in (0, 1):
-            uv = np.tile(surface.domain.mean(1), (_MERIDIANS, 1))
+            uv = np.tile(surface.domain.mean(1), (_MERIDIANS + 1, 1))
             uv[:, axis] = surface.domain[axis, end]
-            uv[:, 1 - axis] = np.linspace(*surface.domain[1 - axis], _MERIDIANS)
+            uv[:, 1 - axis] = np.linspace(*surface.domain[1 - axis], _MERIDIANS + 1)
             points = evaluate_nurbs(surface, *uv.T).points
             if norm(points - points[0]).max() <= POLE * size:
                 found.append(Pole(axis, end))
@@ -84,7 +84,8 @@ def shape_at(surface: NurbsSurface, uv: FloatArray) -> tuple[SurfaceCurvature, B
     shape = nurbs_curvatures(surface, *uv.T)
     jet = evaluate_nurbs(surface, *uv.T)
     area, sides = norm(np.cross(jet.u, jet.v)), norm(jet.u) * norm(jet.v)
-    is_smooth = np.isfinite(shape.first) & (area > POLE * sides)
+    is_regular = np.isfinite(shape.first) & (area > POLE * sides)
+    is_smooth = is_regular.copy()
     result = SurfaceCurvature(*(each.copy() for each in shape))
     for pole in find_poles(surface):
         is_here = uv[:, pole.axis] == surface.domain[pole.axis, pole.end]
@@ -92,7 +93,8 @@ def shape_at(surface: NurbsSurface, uv: FloatArray) -> tuple[SurfaceCurvature, B
             limit, smooth = _limit(surface, pole)
             _put(result, is_here, limit)
             is_smooth[is_here] = smooth
-    rest = ~(np.isfinite(result.first) & (is_smooth | (area > POLE * sides)))
+            is_regular[is_here] = bool(np.isfinite(limit.first[0]))
+    rest = ~is_regular
     if rest.any():
         inside = uv[rest] + _INWARDS * (surface.domain.mean(1) - uv[rest])
         _put(result, rest, nurbs_curvatures(surface, *inside.T))
@@ -113,7 +115,8 @@ def _limit(surface: NurbsSurface, pole: Pole) -> tuple[SurfaceCurvature, bool]:
     low, high = surface.domain[1 - pole.axis]
     uv = np.empty((_MERIDIANS, 2))
     uv[:, pole.axis] = surface.domain[pole.axis, pole.end]
-    uv[:, 1 - pole.axis] = np.linspace(low, high, _MERIDIANS)
+    # Midpoints: the ends of a closed surface would count twice.
+    uv[:, 1 - pole.axis] = low + (np.arange(_MERIDIANS) + 0.5) / _MERIDIANS * (high - low)
     jet = evaluate_nurbs(surface, *uv.T)
     along, bend = (jet.u, jet.uu) if pole.axis == 0 else (jet.v, jet.vv)
     # Near the pole the other derivative is the mixed one times the way into the domain.

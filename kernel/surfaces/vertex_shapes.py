@@ -85,8 +85,17 @@ def merge_shapes(rows: VertexShapes, ids: IntArray, count: int) -> VertexShapes:
     found = VertexShapes(*(each[firsts] for each in rows))
     agrees = dot(found.normals[ids], rows.normals) > np.cos(SMOOTH_JOINT)
     np.logical_and.at(found.is_smooth, ids, rows.is_smooth & agrees)
-    sums = np.zeros((count, 3))
-    np.add.at(sums, ids, rows.normals)
-    is_rough = ~found.is_smooth & (np.abs(sums).max(1, initial=0) > SMOOTH_JOINT)
-    found.normals[is_rough] = unit(sums[is_rough])
+    _use_mean_normals(found, rows, ids)
     return found
+
+
+def _use_mean_normals(found: VertexShapes, rows: VertexShapes, ids: IntArray) -> None:
+    """Mean normals at vertices that are not smooth; equal ones, as of a seam, count once."""
+    rough = np.flatnonzero(~found.is_smooth[ids])
+    sides = np.round(rows.normals[rough] / SMOOTH_JOINT)
+    _, firsts = np.unique(np.c_[ids[rough], sides], axis=0, return_index=True)
+    sums = np.zeros_like(found.normals)
+    np.add.at(sums, ids[rough[firsts]], rows.normals[rough[firsts]])
+    # Faces that turn back on one another have no mean: there the first normal stays.
+    has_mean = np.abs(sums).max(1, initial=0) > SMOOTH_JOINT
+    found.normals[has_mean] = unit(sums[has_mean])

@@ -191,7 +191,7 @@ def test_vertices_lie_on_the_surfaces_of_all_faces(
 
 
 @given(SEEDS, st.floats(1e-3, 1e3))
-@settings(max_examples=60)
+@settings(max_examples=60, deadline=None)
 def test_trapezoids_trimmed_from_planes_are_read(seed: int, scale: float) -> None:
     rng = np.random.default_rng(seed)
     flat = np.array([[0.0, 0], [4, 0], [4, 3], [0, 3]]) + rng.uniform(-1, 1, (4, 2))
