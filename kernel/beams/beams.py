@@ -21,7 +21,7 @@ from ..support.annuli import Annuli
 
 @dataclass(frozen=True)
 class DrillMarks:
-    """Holes at the ends of beams (`kernel.drilling`).
+    """Holes at the ends of beams (`kernel.beams.drilling`).
 
     Attributes
     ----------

@@ -2,7 +2,7 @@
 
 A panel is its sphere, one cutting plane per edge, and the corners where the sphere meets two
 consecutive planes. All geometry is local to the panel (its origin is the centroid of the mesh
-face), so the site's coordinates cost no digits. `kernel.cutting` makes panels.
+face), so the site's coordinates cost no digits. `kernel.panels.cutting` makes panels.
 """
 
 from dataclasses import dataclass, field, replace

@@ -13,7 +13,7 @@ from ..sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from .field.conjugate_directions import ConjugateDirections
 from .field.relax import Relaxation
 from .pipeline import Remeshing
-from .planar.nodes import Nodes, measure_nodes, node_axis_angles
+from .planar.node_planarity import Nodes, measure_nodes, node_axis_angles
 from .planar.planarize import Planarization
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray, dot, sum_by, unit
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_centroids, local_corners, mean_edge_length
+from ..solvers.weighted_graphs import weighted_graph
 from ..spheres.circles import (
     Circles,
     circle_pencils,
@@ -273,7 +274,7 @@ def _direction_labels(mesh: Mesh) -> IntArray:
 
     topology, count = mesh.topology, mesh.n_faces
     pairs, edges = np.unique(np.sort(topology.edge_faces, axis=1), axis=0, return_index=True)
-    graph = csr_array((edges + 1.0, (pairs[:, 0], pairs[:, 1])), shape=(count, count))
+    graph = weighted_graph(edges + 1.0, *pairs.T, count)
     tree = minimum_spanning_tree(graph).data.astype(np.int64) - 1
     sides = np.arange(len(mesh.corners)) - mesh.offsets[topology.corner_faces]
     first = topology.edge_corners[tree]

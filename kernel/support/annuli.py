@@ -2,7 +2,8 @@
 
 Each annulus has its own origin, near the middle of its edge and in its plane. A circle is kept
 as the unit row of the sphere that has it as a great circle, so that straight beams are planes
-and nothing divides by A. `kernel.annulus_support` finds the annuli of a sphere mesh.
+and nothing divides by A. `kernel.support.annulus_construction` finds the annuli of a sphere
+mesh.
 """
 
 from dataclasses import dataclass

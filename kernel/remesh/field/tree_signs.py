@@ -4,6 +4,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...solvers.factorization import SparseArray
+from ...solvers.weighted_graphs import weighted_graph
 
 
 def tree_signs(likeness: SparseArray) -> FloatArray:
@@ -21,9 +22,9 @@ def tree_signs(likeness: SparseArray) -> FloatArray:
     """
     from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 
-    costs, signs = likeness.copy(), likeness.copy()
-    costs.data = 2 - np.minimum(np.abs(likeness.data), 1)
+    edges, signs = likeness.tocoo(), likeness.copy()
     signs.data = np.sign(likeness.data)
+    costs = weighted_graph(2 - np.minimum(np.abs(edges.data), 1), *edges.coords, signs.shape[0])
     order, parents = breadth_first_order(minimum_spanning_tree(costs), 0, directed=False)
     parents = np.where(parents < 0, 0, parents)
     children = np.arange(len(parents))

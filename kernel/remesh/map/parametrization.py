@@ -20,7 +20,7 @@ from .coordinate import Coordinate, eliminate, solve_coordinate
 from .injectivity import ChartGradients, untangle
 from .integer_rounding import ContradictionError, IntegerSolutions, integer_solutions
 from .seams import Seams
-from .separation import singular_differences
+from .singularity_separation import singular_differences
 
 FOLDED = 0.3
 """A map with more of its faces folded has no room for the steps asked for."""
