@@ -12,13 +12,13 @@ import numpy as np
 from ...kernel.arrays import FloatArray
 from ...kernel.errors import InputError
 from ...kernel.surfaces.nurbs import NurbsSurface
+from ...kernel.surfaces.smooth_pieces import kink_shares, split_edges, whole_surface
 from ...kernel.surfaces.trimmed_faces import (
     Polysurface,
     ShareCurve,
     Trim,
     TrimmedFace,
     transformed_surface,
-    whole_surface,
 )
 from ..opennurbs import stream_codes as codes
 from ..opennurbs.stream_reader import StreamReader, UnreadableError
@@ -55,7 +55,11 @@ def read_polysurface(geometry: RhinoObject, transform: FloatArray) -> Polysurfac
         if brep is None:
             raise InputError("the extrusion has no faces; mesh it in Rhino and save")
         geometry, kind = brep, "Brep"
-    if kind == "Brep":
+    if kind == "Brep" and geometry.IsSurface:
+        face = geometry.Faces[0]
+        form = nurbs_surface(face.UnderlyingSurface())
+        polysurface = whole_surface(form, is_reversed=bool(face.OrientationIsReversed))
+    elif kind == "Brep":
         polysurface = _read_brep(geometry)
     else:
         polysurface = whole_surface(nurbs_surface(geometry))
@@ -127,6 +131,7 @@ def _read_brep(brep: RhinoObject) -> Polysurface:
     encoded = brep.Encode()
     try:
         tables = _read_tables(encoded)
+        _check_tables(tables, len(brep.Edges))
         surfaces = [brep.Faces[i].UnderlyingSurface() for i in range(len(tables.faces))]
         edges = [_space_curve(brep.Edges[i]) for i in range(len(brep.Edges))]
         polysurface = Polysurface([], edges)
@@ -139,9 +144,33 @@ def _read_brep(brep: RhinoObject) -> Polysurface:
             polysurface.faces.append(TrimmedFace(form, trims, is_reversed))
     except (UnreadableError, IndexError, ValueError) as error:
         raise InputError(f"the polysurface is damaged ({error}); repair it in Rhino") from error
-    if any(t.edge >= len(edges) for f in polysurface.faces for loop in f.loops for t in loop):
-        raise InputError("the polysurface is damaged: an edge is missing; repair it in Rhino")
-    return polysurface
+    kinks = [
+        kink_shares(edge, _knot_shares(curve))
+        for edge, curve in zip(edges, brep.Edges, strict=True)
+    ]
+    return split_edges(polysurface, kinks)
+
+
+def _check_tables(tables: _Tables, n_edges: int) -> None:
+    for i, trim in enumerate(tables.trims):
+        is_there = 0 <= trim.curve < len(tables.curves) and -1 <= trim.edge < n_edges
+        if not is_there or min(trim.ends) < 0 or not trim.domain[0] < trim.domain[1]:
+            raise UnreadableError(f"trim {i} has no curve, edge or vertex")
+    for i, (trims, _) in enumerate(tables.loops):
+        if not trims or any(not 0 <= each < len(tables.trims) for each in trims):
+            raise UnreadableError(f"loop {i} has no trims")
+
+
+def _knot_shares(curve: RhinoObject) -> FloatArray:
+    """Shares of an edge where a kink may be: at knots as often repeated as the degree."""
+    form = curve.ToNurbsCurve()
+    if form is None:
+        return np.empty(0)
+    knots, counts = np.unique(np.array(form.Knots.ToList()), return_counts=True)
+    first, last = float(curve.Domain.T0), float(curve.Domain.T1)
+    inner = knots[(counts >= form.Degree) & (knots > knots[0]) & (knots < knots[-1])]
+    found = [curve.GetCurveParameterFromNurbsFormParameter(t)[-1] for t in inner.tolist()]
+    return (np.array(found, np.float64) - first) / (last - first)
 
 
 def _trim(tables: _Tables, index: int, surface: RhinoObject) -> Trim:

@@ -11,6 +11,7 @@ planar_grids      Quads on a region of the plane: grids, fans and discs.
 planar_triangles  Triangles on any region of the plane, holes included.
 poles             The shape of a surface also at poles and apexes.
 row_counts        How many edges of a mesh stand on each edge of a polysurface.
+smooth_pieces     Polysurfaces divided where surfaces and edges have kinks.
 surface           A mesh on a smooth surface, with the exact shape of the surface.
 triangulated      Triangulated sample surfaces with exact normals, to remesh and measure with.
 trimmed_faces     Faces of polysurfaces: pieces of surfaces between trims, joined along edges.

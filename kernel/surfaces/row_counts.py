@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray, norm
 from ..errors import InputError
+from ..solvers.weighted_graphs import weighted_graph
 from .face_plans import FacePlan
 from .trimmed_faces import Polysurface
 
@@ -149,7 +150,6 @@ class _Book:
         self._refuse_too_many()
 
     def _classes(self, count: int) -> IntArray:
-        from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components
 
         pairs: list[tuple[int, int]] = []
@@ -162,7 +162,7 @@ class _Book:
                 if len(sides[a]) == len(sides[b]) == 1
             ]
         a, b = np.array(pairs, np.int64).reshape(-1, 2).T
-        graph = coo_array((np.ones(len(a)), (a, b)), (count, count))
+        graph = weighted_graph(np.ones(len(a)), a, b, count)
         return np.asarray(connected_components(graph, directed=False)[1], np.int64)
 
     def _sides(self, index: int) -> list[IntArray]:

@@ -5,10 +5,8 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from ..arrays import FloatArray, norm
-from ..tolerances import CLOSED
-from .nurbs import NurbsSurface, evaluate_nurbs
-from .poles import find_poles, surface_size
+from ..arrays import FloatArray
+from .nurbs import NurbsSurface
 
 ShareCurve: TypeAlias = Callable[[FloatArray], FloatArray]
 """Points (n, 2) or (n, 3) of a curve at shares (n,) of its parameters, from 0 to 1."""
@@ -104,60 +102,3 @@ def _backwards(trim: Trim) -> Trim:
     return Trim(
         trim.edge, not trim.is_reversed, trim.ends[::-1], lambda share: trim.curve(1 - share)
     )
-
-
-def whole_surface(surface: NurbsSurface) -> Polysurface:
-    """A surface as one face over its whole domain.
-
-    Returns
-    -------
-    Polysurface
-        Opposite sides that coincide are one edge, a seam; sides that are a point have none.
-    """
-    (low_u, high_u), (low_v, high_v) = surface.domain
-    corners = np.array([(low_u, low_v), (high_u, low_v), (high_u, high_v), (low_u, high_v)])
-    ends = list(zip(corners, np.roll(corners, -1, 0), strict=True))
-    vertices = np.arange(4)
-    edge_ids = list(range(4))
-    for pole in find_poles(surface):
-        # The sides are those of v low, u high, v high and u low.
-        side = (3, 1)[pole.end] if pole.axis == 0 else (0, 2)[pole.end]
-        edge_ids[side] = -1
-        vertices = _merged(vertices, side, (side + 1) % 4)
-    is_reversed = [False] * 4
-    for side in (0, 1):
-        opposite = side + 2
-        if -1 in (edge_ids[side], edge_ids[opposite]) or not _coincide(surface, ends, side):
-            continue
-        edge_ids[opposite], is_reversed[opposite] = side, True
-        vertices = _merged(vertices, side, (opposite + 1) % 4)
-        vertices = _merged(vertices, (side + 1) % 4, opposite)
-    curves = [_segment(*each) for each in ends]
-    trims = [
-        Trim(edge, flag, (int(vertices[i]), int(vertices[(i + 1) % 4])), curve)
-        for i, (edge, flag, curve) in enumerate(zip(edge_ids, is_reversed, curves, strict=True))
-    ]
-    edges: list[ShareCurve] = [_on_surface(surface, curve) for curve in curves]
-    return Polysurface([TrimmedFace(surface, [trims], is_reversed=False)], edges)
-
-
-def _merged(vertices: np.ndarray, a: int, b: int) -> np.ndarray:
-    return np.where(vertices == vertices[b], vertices[a], vertices)
-
-
-def _coincide(
-    surface: NurbsSurface, ends: list[tuple[FloatArray, FloatArray]], side: int
-) -> bool:
-    share = np.linspace(0, 1, 17)
-    here = _on_surface(surface, _segment(*ends[side]))(share)
-    there = _on_surface(surface, _segment(*ends[side + 2]))(1 - share)
-    return bool(norm(here - there).max() <= CLOSED * surface_size(surface))
-
-
-def _segment(start: FloatArray, end: FloatArray) -> ShareCurve:
-    # Both ends are exact: a domain must not be left by rounding.
-    return lambda share: (1 - share)[:, None] * start + share[:, None] * end
-
-
-def _on_surface(surface: NurbsSurface, curve: ShareCurve) -> ShareCurve:
-    return lambda share: evaluate_nurbs(surface, *curve(share).T).points

@@ -250,3 +250,31 @@ def test_a_hole_that_leaves_its_face_is_refused(tmp_path: Path) -> None:
     solid = extruded(circle(0, 0, 3), circle(0, 0.2, 1))
     with pytest.raises(InputError, match=r"face \d .*(edges|itself); mesh it in Rhino"):
         read_mesh(saved(tmp_path / "a.3dm", solid))
+
+
+L_SHAPE = [(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)]
+
+
+@pytest.mark.parametrize("edge_length", [None, 0.7, 0.4])
+def test_vertices_stand_on_kinks(tmp_path: Path, edge_length: float | None) -> None:
+    """One edge around a face, one surface around a corner: nothing is cut off."""
+    loop = polyline(L_SHAPE).ToNurbsCurve()
+    face = rhino3dm.Brep.CreateTrimmedPlane(rhino3dm.Plane.WorldXY(), loop)
+    assert len(face.Edges) == 1
+    wall = rhino3dm.Extrusion.Create(polyline(L_SHAPE), 1.0, False).ToNurbsSurface()  # noqa: FBT003
+    as_brep = rhino3dm.Brep.CreateFromSurface(wall)
+    for geometry, area in ((face, 5.0), (wall, 12.0), (as_brep, 12.0)):
+        mesh = read_mesh(saved(tmp_path / "a.3dm", geometry), edge_length=edge_length)
+        assert norm(face_vector_areas(mesh)).sum() == pytest.approx(area)
+        corners = np.array([(*corner, 0.0) for corner in L_SHAPE])
+        away = norm(mesh.vertices - corners[:, None]).min(1)
+        assert away.max() < 1e-9
+
+
+def test_a_kinked_prism_whose_cap_has_one_edge_is_closed(tmp_path: Path) -> None:
+    """A Brep with faces that are not split where their edges break."""
+    solid = rhino3dm.Extrusion.Create(polyline(L_SHAPE).ToNurbsCurve(), 1.0, True)  # noqa: FBT003
+    for brep in (solid.ToBrep(False), solid.ToBrep(True)):  # noqa: FBT003
+        mesh = read_mesh(saved(tmp_path / "a.3dm", brep), edge_length=0.5)
+        assert n_boundary(mesh) == 0
+        assert norm(face_vector_areas(mesh)).sum() == pytest.approx(22.0)
