@@ -248,7 +248,7 @@ def _skip_chunk(reader: StreamReader) -> int:
 def _read_curves(reader: StreamReader, encoded: dict[str, object]) -> list[RhinoObject]:
     import rhino3dm
 
-    decode: RhinoObject = rhino3dm.CommonObject.Decode
+    rhino: RhinoObject = rhino3dm
     curves: list[RhinoObject] = []
     with reader.table() as count:
         for _ in range(count):
@@ -256,7 +256,7 @@ def _read_curves(reader: StreamReader, encoded: dict[str, object]) -> list[Rhino
                 raise UnreadableError("a trim has no curve")
             start = _skip_chunk(reader)
             data = base64.b64encode(reader.data[start : reader.position]).decode()
-            curve = decode({**encoded, "data": data})
+            curve: RhinoObject = rhino.CommonObject.Decode({**encoded, "data": data})
             if curve is None or not hasattr(curve, "PointAt"):
                 raise UnreadableError("a trim is no curve")
             curves.append(curve)

@@ -76,6 +76,8 @@ def face_polygons(faces: IntArray) -> tuple[IntArray, IntArray]:
     Returns
     -------
     corners : (m k,) int array
+        Face after face.
     degrees : (m,) int array
+        All k.
     """
     return faces.ravel(), np.full(len(faces), faces.shape[1])

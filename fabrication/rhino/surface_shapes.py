@@ -131,4 +131,10 @@ def _join(parts: list[_Part]) -> Surface:
     mesh = to_mesh(
         Polygons(points[is_used], (np.cumsum(is_used) - 1)[faces.corners], faces.degrees)
     )
-    return Surface(mesh, *(each[is_used] for each in shapes))
+    return Surface(
+        mesh,
+        shapes.normals[is_used],
+        shapes.curvatures[is_used],
+        shapes.directions[is_used],
+        shapes.is_smooth[is_used],
+    )

@@ -107,11 +107,12 @@ class _Samples:
 
     def shares(self, edge: int, count: int) -> FloatArray:
         """Shares of the parameters of an edge where its mesh vertices are."""
-        even = np.linspace(0, 1, count + 1)
         lengths = self.along[edge]
         if not self.by_length or lengths[-1] == 0:
-            return even
-        return np.interp(even * lengths[-1], lengths, np.linspace(0, 1, len(lengths)))
+            return np.linspace(0, 1, count + 1)
+        targets = np.linspace(0, float(lengths[-1]), count + 1)
+        steps = np.linspace(0, 1, len(lengths))
+        return np.asarray(np.interp(targets, lengths, steps), np.float64)
 
     def trim_vertices(self, trim: Trim, points: FloatArray) -> IntArray:
         """Ids of the vertices along a trim, its first end included, its last not."""
@@ -201,7 +202,10 @@ def _rim_parameters(
 ) -> tuple[list[FloatArray], list[FloatArray]]:
     """Points in (u, v) and in space of all trims, where the mesh vertices of edges are."""
     rim, samples = known
-    seeds, points, is_end, lengths = [], [], [], []
+    seeds: list[FloatArray] = []
+    points: list[FloatArray] = []
+    is_end: list[BoolArray] = []
+    lengths: list[FloatArray] = []
     for trim, count in zip(trims, counts.tolist(), strict=True):
         shares = np.linspace(0, 1, count + 1)
         if trim.edge >= 0:

@@ -160,8 +160,11 @@ def _resampled(sides: list[list[int]], lines: list[_Line], count: int) -> list[F
         starts = np.cumsum([0.0, *(part.lengths[-1] for part in parts)])
         lengths = np.concatenate([p.lengths + s for p, s in zip(parts, starts, strict=False)])
         uv = np.concatenate([part.uv for part in parts])
-        targets = np.linspace(0, lengths[-1], count + 1)
-        found.append(np.stack([np.interp(targets, lengths, each) for each in uv.T], 1))
+        targets = np.linspace(0, float(lengths[-1]), count + 1)
+        places = np.empty((count + 1, 2))
+        for axis in (0, 1):
+            places[:, axis] = np.interp(targets, lengths, uv[:, axis])
+        found.append(places)
     return found
 
 

@@ -138,9 +138,9 @@ class _Builder:
         self.count += len(points)
         return ids
 
-    def line(self, start: IntArray | FloatArray, end: FloatArray, steps: int) -> IntArray:
-        """Add the points between a point, given by its id or itself, and another."""
-        first = self.place(start[None])[0] if start.ndim == 0 else start
+    def line(self, start: IntArray, end: FloatArray, steps: int) -> IntArray:
+        """Add the points between a point, given by its id, and a place."""
+        first = self.place(start)
         share = np.linspace(0, 1, steps + 1)[1:-1, None]
         return self.add(first + share * (end - first))
 

@@ -105,7 +105,8 @@ def _lattice(loops: list[FloatArray], spacing: float) -> FloatArray:
     low, high = outer.min(0), outer.max(0)
     height = spacing * np.sqrt(0.75)
     counts = np.ceil((high - low) / (spacing, height)).astype(int) + 1
-    x, y = np.meshgrid(np.arange(counts[0]), np.arange(counts[1]), indexing="ij")
+    n, m = counts.tolist()
+    x, y = np.meshgrid(np.arange(float(n)), np.arange(float(m)), indexing="ij")
     # Centred, so that a symmetric region gets a symmetric lattice.
     start = (low + high - (counts - 1) * (spacing, height)) / 2
     grid = start + np.stack([(x + (y % 2) / 2) * spacing, y * height], -1).reshape(-1, 2)
@@ -121,8 +122,8 @@ def _lattice(loops: list[FloatArray], spacing: float) -> FloatArray:
 
 
 def _segments(loops: list[FloatArray]) -> IntArray:
-    starts = np.cumsum([0, *(len(loop) for loop in loops)])
-    rings = [np.arange(a, b) for a, b in pairwise(starts)]
+    starts = np.cumsum([0, *(len(loop) for loop in loops)]).tolist()
+    rings: list[IntArray] = [np.arange(a, b) for a, b in pairwise(starts)]
     return np.concatenate([np.stack([ring, np.roll(ring, -1)], 1) for ring in rings])
 
 

@@ -48,10 +48,11 @@ def find_poles(surface: NurbsSurface) -> list[Pole]:
     size = surface_size(surface)
     found: list[Pole] = []
     for axis in (0, 1):
+        low, high = surface.domain[1 - axis]
         for end in (0, 1):
             uv = np.tile(surface.domain.mean(1), (_MERIDIANS + 1, 1))
             uv[:, axis] = surface.domain[axis, end]
-            uv[:, 1 - axis] = np.linspace(*surface.domain[1 - axis], _MERIDIANS + 1)
+            uv[:, 1 - axis] = np.linspace(low, high, _MERIDIANS + 1)
             points = evaluate_nurbs(surface, *uv.T).points
             if norm(points - points[0]).max() <= POLE * size:
                 found.append(Pole(axis, end))
@@ -134,7 +135,7 @@ def _limit(surface: NurbsSurface, pole: Pole) -> tuple[SurfaceCurvature, bool]:
     if not np.isfinite(values).all() or not norm(normal):
         nothing = np.full((1, 3), np.nan)
         return principal_values(nothing, nothing, nothing), False
-    form, _, _, _ = np.linalg.lstsq(terms, values, rcond=None)
+    form = np.asarray(np.linalg.lstsq(terms, values, rcond=None)[0], np.float64)
     miss = np.abs(terms @ form - values).max()
     is_smooth = bool(
         leaning <= SMOOTH_JOINT

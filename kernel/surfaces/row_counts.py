@@ -136,7 +136,7 @@ class _Book:
         wishes: list[list[float]] = [[] for _ in range(count)]
         for i in range(len(plans)):
             for edge, wish in self._wishes(i):
-                wishes[self.classes[edge]].append(wish)
+                wishes[int(self.classes[edge])].append(wish)
         self.values = np.ones(count, np.int64)
         for i, each in enumerate(wishes):
             if each:
@@ -179,17 +179,17 @@ class _Book:
                 wish = rows[d % 2] if length is None else plan.extents[d % 2] / length
                 total = self.lengths[side].sum()
                 parts = self.lengths[side] / total if total else np.ones(len(side))
-                found += [(int(e), wish * part) for e, part in zip(side, parts, strict=True)]
+                found += [(int(e), float(wish * p)) for e, p in zip(side, parts, strict=True)]
             return found
         edges = np.concatenate(loops)
         if length is not None:
-            return [(int(e), self.lengths[e] / length) for e in edges if self.lengths[e]]
+            return [(int(e), float(self.lengths[e]) / length) for e in edges if self.lengths[e]]
         most = max(size.n_u, size.n_v)
         if plan.kind == "fan":
             return [(int(e), most + most % 2) for e in edges]
         around = most if plan.kind == "disc" else 2 * (size.n_u + size.n_v)
-        total = self.lengths[loops[0]].sum() or 1.0
-        return [(int(e), around * self.lengths[e] / total) for e in edges]
+        total = float(self.lengths[loops[0]].sum()) or 1.0
+        return [(int(e), around * float(self.lengths[e]) / total) for e in edges]
 
     def _raise(self, edges: IntArray, least: int) -> bool:
         """Raise the numbers on a side, on its longest edge, until there are as many."""

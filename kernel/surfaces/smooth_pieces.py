@@ -44,10 +44,10 @@ def whole_surface(surface: NurbsSurface, *, is_reversed: bool = False) -> Polysu
     if _is_closed(surface, 1):
         vertices[:, -1], along_u[:, -1] = vertices[:, 0], along_u[:, 0]
     for pole in find_poles(surface):
-        line, edges = (vertices, along_v) if pole.axis == 0 else (vertices.T, along_u.T)
+        line, ids = (vertices, along_v) if pole.axis == 0 else (vertices.T, along_u.T)
         # The pole of a closed surface is one vertex, and so is what was merged with it.
         line[np.isin(line, line[-pole.end])] = line[-pole.end, 0]
-        edges[-pole.end] = -1
+        ids[-pole.end] = -1
     edges: list[ShareCurve] = [
         _on_surface(surface, _segment((a, w), (b, w))) for a, b in pairwise(u) for w in v
     ]
@@ -83,12 +83,12 @@ def _divisions(surface: NurbsSurface, axis: int) -> list[float]:
 
 
 def _has_kink(surface: NurbsSurface, axis: int, parameter: float) -> bool:
-    low, high = surface.domain[axis]
+    (low, high), (start, stop) = surface.domain[axis], surface.domain[1 - axis]
     sides: list[FloatArray] = []
     for step in (-_BESIDE, _BESIDE):
         uv = np.empty((_SAMPLES, 2))
         uv[:, axis] = parameter + step * (high - low)
-        uv[:, 1 - axis] = np.linspace(*surface.domain[1 - axis], _SAMPLES)
+        uv[:, 1 - axis] = np.linspace(start, stop, _SAMPLES)
         jet = evaluate_nurbs(surface, *uv.T)
         sides.append(jet.u if axis == 0 else jet.v)
     # At a pole there is no direction that could break.
@@ -99,11 +99,12 @@ def _has_kink(surface: NurbsSurface, axis: int, parameter: float) -> bool:
 
 
 def _is_closed(surface: NurbsSurface, axis: int) -> bool:
+    start, stop = surface.domain[1 - axis]
     ends: list[FloatArray] = []
     for end in surface.domain[axis]:
         uv = np.empty((_SAMPLES, 2))
         uv[:, axis] = end
-        uv[:, 1 - axis] = np.linspace(*surface.domain[1 - axis], _SAMPLES)
+        uv[:, 1 - axis] = np.linspace(start, stop, _SAMPLES)
         ends.append(evaluate_nurbs(surface, *uv.T).points)
     return bool(norm(ends[0] - ends[1]).max() <= CLOSED * surface_size(surface))
 
@@ -182,20 +183,20 @@ def _split_trim(
 
 
 def _shares_of(face: TrimmedFace, trim: Trim, places: FloatArray) -> list[float]:
-    """Shares of a trim nearest to points on its edge: the best sample, and halvings of steps."""
+    """Shares of a trim nearest to points on its edge: a sample, then halvings of steps."""
 
-    def _miss(shares: FloatArray) -> FloatArray:
+    def _places(shares: FloatArray) -> FloatArray:
         uv = np.clip(trim.curve(shares), *face.surface.domain.T)
         return evaluate_nurbs(face.surface, *uv.T).points
 
     samples = np.linspace(0, 1, _SEARCH)
-    points = _miss(samples)
+    points = _places(samples)
     nearest = norm(points[None, 1:-1] - places[:, None]).argmin(1) + 1
     best, step = samples[nearest], 1 / (_SEARCH - 1)
     for _ in range(_HALVINGS):
         step /= 2
         tries = np.clip(best + step * np.array([[-1.0], [0.0], [1.0]]), 0, 1)
-        away = norm(_miss(tries.ravel()).reshape(3, -1, 3) - places)
+        away = norm(_places(tries.ravel()).reshape(3, -1, 3) - places)
         best = tries[away.argmin(0), np.arange(len(best))]
     return np.sort(best).tolist()
 

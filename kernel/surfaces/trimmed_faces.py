@@ -84,7 +84,7 @@ def turned_left(face: TrimmedFace) -> TrimmedFace:
         The outer loop is the one with the largest area in (u, v).
     """
     areas = [_loop_area(loop) for loop in face.loops]
-    order = np.argsort(-np.abs(areas), kind="stable")
+    order = sorted(range(len(areas)), key=lambda i: -abs(areas[i]))
     loops = [face.loops[i] for i in order]
     if areas[order[0]] < 0:
         loops = [[_backwards(trim) for trim in reversed(loop)] for loop in loops]
@@ -99,6 +99,7 @@ def _loop_area(loop: list[Trim]) -> float:
 
 
 def _backwards(trim: Trim) -> Trim:
-    return Trim(
-        trim.edge, not trim.is_reversed, trim.ends[::-1], lambda share: trim.curve(1 - share)
-    )
+    def _curve(share: FloatArray) -> FloatArray:
+        return trim.curve(1 - share)
+
+    return Trim(trim.edge, not trim.is_reversed, (trim.ends[1], trim.ends[0]), _curve)

@@ -82,7 +82,10 @@ def merge_shapes(rows: VertexShapes, ids: IntArray, count: int) -> VertexShapes:
     """
     firsts = np.full(count, len(ids))
     np.minimum.at(firsts, ids, np.arange(len(ids)))
-    found = VertexShapes(*(each[firsts] for each in rows))
+    found = VertexShapes(
+        rows.normals[firsts], rows.curvatures[firsts], rows.directions[firsts],
+        rows.is_smooth[firsts],
+    )  # fmt: skip
     agrees = dot(found.normals[ids], rows.normals) > np.cos(SMOOTH_JOINT)
     np.logical_and.at(found.is_smooth, ids, rows.is_smooth & agrees)
     _use_mean_normals(found, rows, ids)
