@@ -217,7 +217,9 @@ def _rim_parameters(
             along = np.full((count + 1, 3), np.nan)
         seeds.append(trim.curve(shares))
         points.append(along)
-        is_end.append(np.isin(np.arange(count + 1), (0, count)) | (trim.edge < 0))
+        ends = np.full(count + 1, trim.edge < 0)
+        ends[[0, -1]] = True
+        is_end.append(ends)
         length = samples.along[trim.edge][-1] if trim.edge >= 0 else 0.0
         lengths.append(np.full(count + 1, length))
     uv, miss, found = _nearest_of_seeds(

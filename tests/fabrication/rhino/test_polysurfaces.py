@@ -143,7 +143,7 @@ SOLIDS: dict[str, tuple[Callable[[], Any], float]] = {
         2 * (12 - 0.02) + 1.5 * (4 + 2.8 + np.hypot(0.2, 0.2) + 3.8 + 3),
     ),
 }
-SIZES = [{}, {"n_u": 5, "n_v": 9}, {"edge_length": 0.5}, {"edge_length": 0.21}]
+SIZES = [{"n_u": 5, "n_v": 9}, {"edge_length": 0.5}, {"edge_length": 0.21}]
 
 
 def n_boundary(mesh: Mesh) -> int:
