@@ -138,7 +138,7 @@ def trace_curves(
     is_end = names >= len(vertices)
     starts = np.flatnonzero(is_end)[np.unique(labels[is_end], return_index=True)[1]]
     lengths = norm(np.diff(vertices[lines], axis=1)[:, 0])
-    links = weighted_graph(lengths, *nodes.T, count)
+    links = weighted_graph(lengths, nodes[:, 0], nodes[:, 1], count)
     arcs = np.asarray(dijkstra(links, directed=False, indices=starts, min_only=True))
     spans = np.zeros(labels.max() + 1)
     np.maximum.at(spans, labels, arcs)

@@ -274,7 +274,7 @@ def _direction_labels(mesh: Mesh) -> IntArray:
 
     topology, count = mesh.topology, mesh.n_faces
     pairs, edges = np.unique(np.sort(topology.edge_faces, axis=1), axis=0, return_index=True)
-    graph = weighted_graph(edges + 1.0, *pairs.T, count)
+    graph = weighted_graph(1.0 + edges.astype(np.float64), pairs[:, 0], pairs[:, 1], count)
     tree = minimum_spanning_tree(graph).data.astype(np.int64) - 1
     sides = np.arange(len(mesh.corners)) - mesh.offsets[topology.corner_faces]
     first = topology.edge_corners[tree]

@@ -24,7 +24,9 @@ def tree_signs(likeness: SparseArray) -> FloatArray:
 
     edges, signs = likeness.tocoo(), likeness.copy()
     signs.data = np.sign(likeness.data)
-    costs = weighted_graph(2 - np.minimum(np.abs(edges.data), 1), *edges.coords, signs.shape[0])
+    tails, heads = edges.coords
+    clarity = np.minimum(np.abs(edges.data), 1.0)
+    costs = weighted_graph(2.0 - clarity, tails, heads, signs.shape[0])
     order, parents = breadth_first_order(minimum_spanning_tree(costs), 0, directed=False)
     parents = np.where(parents < 0, 0, parents)
     children = np.arange(len(parents))
