@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from ...kernel.arrays import IntArray
+from ...kernel.arrays import FloatArray, IntArray
 from ...kernel.errors import InputError
 from ...kernel.surfaces.face_meshes import mesh_polysurface
 from ...kernel.surfaces.row_counts import GridSize
@@ -22,13 +22,17 @@ SURFACES: Final = ("Surface", "NurbsSurface", "PlaneSurface", "RevSurface", "Bre
 """Classes of rhino3dm that can be sampled."""
 
 
-def sample_object(geometry: RhinoObject, size: GridSize) -> list[Polygons]:
+def sample_object(
+    geometry: RhinoObject, size: GridSize, transform: FloatArray | None = None
+) -> list[Polygons]:
     """Quads and triangles on a surface, polysurface or extrusion.
 
     Parameters
     ----------
     geometry : rhino3dm.GeometryBase
         An object of one of the classes `SURFACES`.
+    transform : (4, 4) float array, optional
+        Takes the object to its place, where the edge length holds.
 
     Returns
     -------
@@ -40,7 +44,7 @@ def sample_object(geometry: RhinoObject, size: GridSize) -> list[Polygons]:
     InputError
         If a face cannot be meshed; the message names it and says why.
     """
-    polysurface = read_polysurface(geometry, np.eye(4))
+    polysurface = read_polysurface(geometry, np.eye(4) if transform is None else transform)
     with mesh_advice():
         mesh = mesh_polysurface(polysurface, size)
     found: list[Polygons] = []

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm
 from ..errors import InputError
-from ..tolerances import EDGE_MISS, ON_EDGE
+from ..tolerances import EDGE_MISS, EPSILON, ON_EDGE
 from .face_plans import FacePlan, RimSamples, plan_face, sample_rim
 from .nurbs import NurbsSurface, evaluate_nurbs, nearest_parameters
 from .planar_grids import PlanarMesh, disc_on_boundary, fan_on_sides, grid_on_sides
@@ -225,6 +225,7 @@ def _rim_parameters(
     uv, miss, found = _nearest_of_seeds(
         surface,
         rim,
+        counts,
         np.clip(np.concatenate(seeds), *surface.domain.T),
         np.concatenate(points),
         np.concatenate(is_end),
@@ -238,6 +239,7 @@ def _rim_parameters(
 def _nearest_of_seeds(
     surface: NurbsSurface,
     rim: RimSamples,
+    counts: IntArray,
     seeds: FloatArray,
     points: FloatArray,
     is_end: BoolArray,
@@ -248,13 +250,15 @@ def _nearest_of_seeds(
     """
     places = evaluate_nurbs(surface, *seeds.T).points
     miss = norm(places - points)
-    is_off = (miss > ON_EDGE * surface_size(surface)) & ~is_end
+    tolerance = ON_EDGE * surface_size(surface) + 16 * EPSILON * np.abs(places).max()
+    is_off = (miss > tolerance) & ~is_end
     if not is_off.any():
         return seeds, miss, places
-    dense = rim.uv.reshape(-1, 2)
-    away = norm(rim.points.reshape(-1, 3) - points[is_off, None])
+    # Only its own trim: the other side of a seam is as near.
+    owners = np.repeat(np.arange(len(counts)), counts + 1)[is_off]
+    away = norm(rim.points[owners] - points[is_off, None])
     is_nearer = away.min(1) < miss[is_off]
-    starts = np.where(is_nearer[:, None], dense[away.argmin(1)], seeds[is_off])
+    starts = np.where(is_nearer[:, None], rim.uv[owners, away.argmin(1)], seeds[is_off])
     moved, distances = nearest_parameters(surface, points[is_off], starts)
     is_better = distances < miss[is_off]
     seeds[is_off] = np.where(is_better[:, None], moved, seeds[is_off])

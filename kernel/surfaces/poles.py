@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, dot, norm, unit
-from ..tolerances import POLE, SMOOTH_JOINT
+from ..tolerances import EPSILON, POLE, SMOOTH_JOINT
 from .nurbs import (
     NurbsSurface,
     SurfaceCurvature,
@@ -45,7 +45,9 @@ def find_poles(surface: NurbsSurface) -> list[Pole]:
     list of Pole
         At most four.
     """
-    size = surface_size(surface)
+    places = np.abs(surface.points[..., :3] / surface.points[..., 3:]).max()
+    # Far from the origin a pole is only as round as the digits of its place.
+    least = POLE * surface_size(surface) + 16 * EPSILON * places
     found: list[Pole] = []
     for axis in (0, 1):
         low, high = surface.domain[1 - axis]
@@ -54,7 +56,7 @@ def find_poles(surface: NurbsSurface) -> list[Pole]:
             uv[:, axis] = surface.domain[axis, end]
             uv[:, 1 - axis] = np.linspace(low, high, _MERIDIANS + 1)
             points = evaluate_nurbs(surface, *uv.T).points
-            if norm(points - points[0]).max() <= POLE * size:
+            if norm(points - points[0]).max() <= least:
                 found.append(Pole(axis, end))
     return found
 

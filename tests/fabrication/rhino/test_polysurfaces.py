@@ -210,6 +210,35 @@ def test_trapezoids_trimmed_from_planes_are_read(seed: int, scale: float) -> Non
         assert total == pytest.approx((x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2)
 
 
+@pytest.mark.parametrize(
+    "name", ["blob", "cylinder with caps", "box with a round hole", "torus"]
+)
+def test_solids_far_from_the_origin_are_closed(tmp_path: Path, name: str) -> None:
+    """A seam has two sides at one place; far away only the digits of that place are known."""
+    solid = SOLIDS[name][0]()
+    if isinstance(solid, rhino3dm.Extrusion):
+        solid = solid.ToBrep(True)  # noqa: FBT003
+    solid.Rotate(1.0, rhino3dm.Vector3d(1, 2, 3), Point(0, 0, 0))
+    solid.Translate(rhino3dm.Vector3d(1e6, 2e6, -3e5))
+    for size in SIZES:
+        mesh = read_mesh(saved(tmp_path / "a.3dm", solid), **size)
+        assert n_boundary(mesh) == 0
+
+
+def test_the_edge_length_holds_where_a_block_stands(tmp_path: Path) -> None:
+    model = rhino3dm.File3dm()
+    attributes = rhino3dm.ObjectAttributes()
+    model.InstanceDefinitions.Add("block", "", "", "", Point(0, 0, 0), (box(),), (attributes,))
+    blocks: Any = model.InstanceDefinitions
+    transform = rhino3dm.Transform(3.0)
+    transform.M33 = 1.0
+    model.Objects.Add(rhino3dm.InstanceReference(blocks[0].Id, transform), None)
+    assert model.Write(str(tmp_path / "a.3dm"), 8)
+    mesh = read_mesh(tmp_path / "a.3dm", edge_length=1.0)
+    assert mesh.n_faces == 22 * 9
+    assert mean_edge_length(mesh) == pytest.approx(1.0)
+
+
 def test_neighbours_take_the_larger_number_of_rows(tmp_path: Path) -> None:
     mesh = read_mesh(saved(tmp_path / "a.3dm", box()), n_u=2, n_v=3)
     assert n_boundary(mesh) == 0
