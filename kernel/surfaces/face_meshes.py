@@ -217,11 +217,11 @@ def _rim_parameters(
             along = np.full((count + 1, 3), np.nan)
         seeds.append(trim.curve(shares))
         points.append(along)
-        ends = np.full(count + 1, trim.edge < 0)
+        ends = np.full(len(shares), trim.edge < 0, np.bool_)
         ends[[0, -1]] = True
         is_end.append(ends)
-        length = samples.along[trim.edge][-1] if trim.edge >= 0 else 0.0
-        lengths.append(np.full(count + 1, length))
+        length = float(samples.along[trim.edge][-1]) if trim.edge >= 0 else 0.0
+        lengths.append(np.full(len(shares), length, np.float64))
     uv, miss, found = _nearest_of_seeds(
         surface,
         rim,
