@@ -19,6 +19,8 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import click
 
+from .option_values import rows_option
+
 if TYPE_CHECKING:
     from ..nodes.graphs.graph import Graph
     from ..nodes.graphs.node import Node
@@ -67,6 +69,17 @@ def main() -> None:
     "unify normals; what was done is in the report.",
 )
 @click.option(
+    "--edge-length",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Length of the edges on surfaces of a .3dm, in model units.",
+)
+@click.option(
+    "--rows",
+    metavar="U,V",
+    callback=rows_option,
+    help="Rows of faces along u and v of each surface of a .3dm; 24,24 by default.",
+)
+@click.option(
     "--edges",
     type=click.Choice(["bisector", "intersection"]),
     help="Cut panels by planes that bisect the faces, or where the spheres meet (the default "
@@ -110,6 +123,8 @@ def panel(  # numpydoc ignore=PR01
     """
     from .panel import PanelOptions, panel_graph, run_job
 
+    if options["rows"] and options["edge_length"]:
+        raise click.UsageError("--rows and --edge-length exclude each other; drop one")
     _warn_of_no_beams(options)
     with _errors(), _progress() as progress:
         report, files = run_job(panel_graph(PanelOptions(**options)), out, progress)
