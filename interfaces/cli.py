@@ -19,6 +19,8 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import click
 
+from .option_values import rows_option
+
 if TYPE_CHECKING:
     from ..nodes.graphs.graph import Graph
     from ..nodes.graphs.node import Node
@@ -75,6 +77,23 @@ def _joined(_context: click.Context, _option: click.Parameter, names: tuple[str,
     help="Only this layer (.3dm) or group (OBJ); several with commas or repeated.",
 )
 @click.option(
+    "--repair",
+    is_flag=True,
+    help="Repair the mesh first: weld, drop slivers and repeated faces, split T-junctions, "
+    "unify normals; what was done is in the report.",
+)
+@click.option(
+    "--edge-length",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Length of the edges on surfaces of a .3dm, in model units.",
+)
+@click.option(
+    "--rows",
+    metavar="U,V",
+    callback=rows_option,
+    help="Rows of faces along u and v of each surface of a .3dm; 24,24 by default.",
+)
+@click.option(
     "--edges",
     type=click.Choice(["bisector", "intersection"]),
     help="Cut panels by planes that bisect the faces, or where the spheres meet (the default "
@@ -113,10 +132,13 @@ def panel(  # numpydoc ignore=PR01
 ) -> None:
     """Panel a MESH with spheres and write CAD files, schedule and report.
 
-    Reads OBJ, OFF, PLY, STL and .3dm. Without MESH, a demonstration roof is panelled.
+    Reads OBJ, OFF, PLY, STL and .3dm, and others with spheremesh[formats]. Without MESH, a
+    demonstration roof is panelled.
     """
     from .panel import PanelOptions, file_units, panel_graph, run_job
 
+    if options["rows"] and options["edge_length"]:
+        raise click.UsageError("--rows and --edge-length exclude each other; drop one")
     _warn_of_no_beams(options)
     with _errors(), _progress() as progress:
         job = PanelOptions(**options)
@@ -284,6 +306,8 @@ def _print_report(
     is_assumed: bool = False,
 ) -> None:
     """Warnings and rejected panels on standard error; the report, or what matters of it."""
+    from ..kernel.repair.description import describe_lines
+
     for text in report["warnings"]:
         click.echo(f"warning: {text}", err=True)
     refused = (*report["panels"]["rejected"], *report["beams"]["rejected"])
@@ -298,6 +322,8 @@ def _print_report(
         click.echo(json.dumps(report, indent=1))
         return
     _print_size(report["input"], is_assumed=is_assumed)
+    for line in describe_lines(report["mesh"]) if report["mesh"] else ():
+        click.echo(line)
     for name in files:
         click.echo(f"  {out / name}")
     planar, spherical = report["angles_deg"]["planar"], report["angles_deg"]["spherical"]

@@ -31,6 +31,12 @@ class PanelOptions:
         Mesh file; the demo roof if None.
     layer : str
         Layers or groups of the file to use, several with commas.
+    repair : bool
+        Whether to repair the mesh first.
+    edge_length : float or None
+        Length of the edges of faces on surfaces, in model units.
+    rows : (int, int) or None
+        Rows of faces along u and v of each surface; neither: as `read_mesh` has it.
     units : str or None
         Model units; None for those of the file, and metres if it names none.
     moulds : int or None
@@ -60,6 +66,9 @@ class PanelOptions:
 
     mesh: Path | None = None
     layer: str = ""
+    repair: bool = False
+    edge_length: float | None = None
+    rows: tuple[int, int] | None = None
     units: str | None = None
     moulds: int | None = None
     thickness: float = 0.0
@@ -86,11 +95,11 @@ def panel_graph(options: PanelOptions) -> Graph:
     Returns
     -------
     Graph
-        Its steps are named mesh, start, angles (before an optimum of more than angles),
-        optimum, panels, audit, report, step, rhino, table, list and picture; with a number of
-        moulds also moulds, blanks, mould_drawing and mould_picture, with a support landing
-        (without moulds or a tolerance), nodes, annuli, beams, drawing and beam_table. Its
-        writers write relative to the folder of the run.
+        Its steps are named mesh, description, start, angles (before an optimum of more than
+        angles), optimum, panels, audit, report, step, rhino, table, list and picture; with a
+        number of moulds also moulds, blanks, mould_drawing and mould_picture, with a support
+        landing (without moulds or a tolerance), nodes, annuli, beams, drawing and beam_table.
+        Its writers write relative to the folder of the run.
 
     Raises
     ------
@@ -103,11 +112,8 @@ def panel_graph(options: PanelOptions) -> Graph:
     graph = Graph(options.mesh.stem if options.mesh else "roof", units=_units(options))
     thickness = graph.param("thickness", options.thickness, min=0)
     joint_gap = graph.param("joint_gap", options.joint_gap, min=0)
-    if options.mesh is None:
-        mesh = graph.add("roof_mesh", "mesh")
-    else:
-        path = str(options.mesh.resolve())
-        mesh = graph.add("read_mesh", "mesh", path=path, layer=options.layer)
+    mesh = _mesh(graph, options)
+    graph.add("mesh_report", "description", mesh=mesh)
     optimum = _optimum(graph, options, mesh)
     spheres, labels, clusters, blanks = optimum.sphere_mesh, None, None, None
     landing = None
@@ -164,7 +170,8 @@ def file_units(options: PanelOptions) -> str:
     """
     if options.mesh is None or options.mesh.suffix.lower() != ".3dm":
         return ""
-    return read_content(options.mesh.resolve(), options.layer).units
+    found = read_content(options.mesh.resolve(), options.layer, **_fineness(options))
+    return found.units
 
 
 def _units(options: PanelOptions) -> str:
@@ -178,7 +185,25 @@ def _units(options: PanelOptions) -> str:
     return options.units or found or "m"
 
 
-def _optimum(graph: Graph, options: PanelOptions, mesh: Step) -> Step:
+def _mesh(graph: Graph, options: PanelOptions) -> Step | Wire:
+    """The mesh: of a file, repaired or as it is, or for a demonstration."""
+    if options.mesh is None:
+        return graph.add("roof_mesh", "mesh")
+    path = str(options.mesh.resolve())
+    rows = _fineness(options)
+    if options.repair:
+        return graph.add("repair_mesh", "mesh", mesh=path, layer=options.layer, **rows).mesh
+    return graph.add("read_mesh", "mesh", path=path, layer=options.layer, **rows)
+
+
+def _fineness(options: PanelOptions) -> dict[str, Any]:
+    """How finely surfaces are divided."""
+    if options.edge_length is not None:
+        return {"edge_length": options.edge_length}
+    return dict(zip(("n_u", "n_v"), options.rows or (), strict=False))
+
+
+def _optimum(graph: Graph, options: PanelOptions, mesh: Step | Wire) -> Step:
     """The spheres: of smallest angles alone, or of more than that."""
     start = graph.add("fit_spheres", "start", mesh=mesh)
     target = {"target_angle": options.target_angle} if options.target_angle else {}
@@ -276,11 +301,12 @@ def run_job(
         run(*graph.ends)
         graph.save(staging / "graph.json")
         source = graph.steps["mesh"]
-        path = str(source.inputs.get("path", source.node.name))
+        path = str(source.inputs.get("path") or source.inputs.get("mesh") or source.node.name)
         report: dict[str, Any] = {
             "spheremesh": __version__,
             **found,
             "input": {"path": path, **found["input"]},
+            **_mesh_reports(graph, run),
             "seconds": {
                 "total": time.perf_counter() - began,
                 "optimize": clock.seconds.get("optimum", 0.0),
@@ -298,6 +324,15 @@ def run_job(
         (staging / "report.json").write_text(text, encoding="utf-8")
         files = tuple(sorted(path.name for path in staging.iterdir()))
     return report, files
+
+
+def _mesh_reports(graph: Graph, run: Callable[..., Any]) -> dict[str, Any]:
+    """What the mesh is, and what its repair did, where a graph has these steps."""
+    is_repaired = graph.steps["mesh"].node.name == "repair_mesh"
+    return {
+        "mesh": dict(run("description")) if "description" in graph.steps else None,
+        "repair": dict(run("mesh.report")) if is_repaired else None,
+    }
 
 
 def _refuse_unfinished(optimum: Mapping[str, Any]) -> None:

@@ -190,9 +190,10 @@ def _read_object(each: PlacedObject, size: GridSize, scale: float) -> ObjectPoly
     else:
         faces = len(each.geometry.Faces) if hasattr(each.geometry, "Faces") else 1
         allow_seconds(QUIET_SECONDS + faces * (1 + size.n_u * size.n_v // 2000))
-        parts = sample_object(each.geometry, size)
+        parts = sample_object(each.geometry, size, transform)
     joined = join_polygons(parts)
-    return ObjectPolygons(each.label, is_mesh, transform_polygons(joined, transform))
+    moved = transform_polygons(joined, transform) if is_mesh else joined
+    return ObjectPolygons(each.label, is_mesh, moved)
 
 
 def _mesh_polygons(mesh: RhinoObject) -> Polygons:

@@ -2,10 +2,10 @@
 
 import os
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, TypeGuard, cast
 
 from .annotations import Value
 from .cache import Cache, Entry, digest, file_state
@@ -169,12 +169,10 @@ def _is_writer(step: Step) -> bool:
 
 
 def _beside(folder: Path, value: Value) -> Value:
-    """Paths with relative ones taken from a folder."""
-    if value is None:
-        return None
+    """Paths with relative ones taken from a folder; what is no path stays as it is."""
     if isinstance(value, list | tuple):
         return [_beside(folder, path) for path in cast("list[Value]", value)]
-    return str(folder / value)
+    return str(folder / value) if _is_path(value) else value
 
 
 def _resolve(run: Run, value: Value) -> Value:
@@ -302,12 +300,17 @@ def _is_file(port: Port) -> bool:
 
 
 def _paths(value: Value) -> list[str]:
-    """The files of a path port: none, one, or one for each item."""
-    if value is None:
+    """The files of an input that takes paths: none, one, or one for each item."""
+    if _is_path(value):
+        return [os.fspath(value)]
+    if not isinstance(value, list | tuple):
         return []
-    if isinstance(value, str | os.PathLike):
-        return [os.fspath(cast("str | os.PathLike[str]", value))]
-    return [path for item in value for path in _paths(item)]
+    return [path for item in cast("Sequence[Value]", value) for path in _paths(item)]
+
+
+def _is_path(value: Value) -> TypeGuard[str | os.PathLike[str]]:
+    """Some inputs take a path or a value of another kind."""
+    return isinstance(value, str | os.PathLike)
 
 
 def _absolute(path: str) -> str:
