@@ -8,18 +8,17 @@ Exit codes: 0 done, 1 a library of the system is missing, 2 usage, 3 bad input, 
 
 import inspect
 import json
-import math
 import sys
 import textwrap
 import warnings
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from .option_values import rows_option
+from .option_values import joined_option, plain_value, rows_option
 
 if TYPE_CHECKING:
     from ..nodes.graphs.graph import Graph
@@ -39,11 +38,6 @@ UNITS: Final = ("mm", "cm", "m", "in", "ft")
 @click.version_option(package_name="spheremesh")
 def main() -> None:
     """Turn design surfaces into spherical panels that can be built."""
-
-
-def _joined(_context: click.Context, _option: click.Parameter, names: tuple[str, ...]) -> str:
-    """An option that may be repeated, as one list with commas."""
-    return ",".join(names)
 
 
 @main.command()
@@ -73,7 +67,7 @@ def _joined(_context: click.Context, _option: click.Parameter, names: tuple[str,
 @click.option(
     "--layer",
     multiple=True,
-    callback=_joined,
+    callback=joined_option,
     help="Only this layer (.3dm) or group (OBJ); several with commas or repeated.",
 )
 @click.option(
@@ -207,7 +201,7 @@ def _run_targets(
     for messages in graph.messages.values():
         for text in messages:
             click.echo(f"warning: {text}", err=True)
-    plain = {name: _plain(value) for name, value in zip(names, values, strict=True)}
+    plain = {name: plain_value(value) for name, value in zip(names, values, strict=True)}
     if as_json:
         click.echo(json.dumps(plain, indent=1, allow_nan=False))
         return
@@ -399,21 +393,3 @@ def _port_facts(port: "Port") -> str:
     if port.default is not REQUIRED:
         facts.append(f"default {port.default!r}")
     return ", ".join(facts)
-
-
-def _plain(value: Any) -> Any:  # noqa: ANN401
-    """A JSON value of a result: no infinities; what has no JSON form is described."""
-    if hasattr(value, "_asdict"):
-        value = value._asdict()
-    if hasattr(value, "tolist"):
-        value = value.tolist()
-    if isinstance(value, Mapping):
-        items = cast("Mapping[str, Any]", value)
-        return {str(name): _plain(item) for name, item in items.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in cast("list[Any]", value)]
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if value is None or isinstance(value, bool | int | str):
-        return value
-    return type(value).__name__

@@ -1,6 +1,8 @@
 """Values of options of the command line that are more than a number or a word."""
 
-from typing import Final
+import math
+from collections.abc import Mapping
+from typing import Any, Final, cast
 
 import click
 
@@ -36,3 +38,28 @@ def rows_option(
     if not 1 <= min(n_u, n_v) <= max(n_u, n_v) <= MOST_ROWS:
         raise click.BadParameter(f"numbers of rows are from 1 to {MOST_ROWS}, not {text}")
     return n_u, n_v
+
+
+def joined_option(
+    _context: click.Context, _option: click.Parameter, names: tuple[str, ...]
+) -> str:
+    """An option that may be repeated, as one list with commas."""
+    return ",".join(names)
+
+
+def plain_value(value: Any) -> Any:  # noqa: ANN401
+    """A JSON value of a result: no infinities; what has no JSON form is described."""
+    if hasattr(value, "_asdict"):
+        value = value._asdict()
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        items = cast("Mapping[str, Any]", value)
+        return {str(name): plain_value(item) for name, item in items.items()}
+    if isinstance(value, list | tuple):
+        return [plain_value(item) for item in cast("list[Any]", value)]
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    return type(value).__name__

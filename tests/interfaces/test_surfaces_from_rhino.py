@@ -20,6 +20,7 @@ def dome(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ]
         curves.append(rhino3dm.NurbsCurve.CreateControlPointCurve(points, 3))
     model = rhino3dm.File3dm()
+    model.Settings.ModelUnitSystem = rhino3dm.UnitSystem.Meters
     model.Objects.AddSurface(rhino3dm.NurbsSurface.CreateRuledSurface(*curves))
     path = tmp_path_factory.mktemp("dome") / "dome.3dm"
     assert model.Write(str(path), 8)
