@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import click
 
 if TYPE_CHECKING:
+    from ..fabrication.output_folder import OutputFolder
     from ..nodes.graphs.graph import Graph
     from ..nodes.graphs.node import Node
     from ..nodes.graphs.ports import Port
@@ -88,24 +89,28 @@ def main() -> None:
     default=0.0,
     help="Radius of cylinders at the nodes, before which beams end square; 0 for mitres.",
 )
+@click.option("--overwrite", is_flag=True, help="Replace files that spheremesh did not write.")
 @click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report alone.")
 def panel(  # numpydoc ignore=PR01
     out: Path,
     *,
+    overwrite: bool,
     strict: bool,
     as_json: bool,
     **options: Any,  # noqa: ANN401
 ) -> None:
     """Panel a MESH with spheres and write CAD files, schedule and report.
 
-    Reads OBJ, OFF, PLY, STL and .3dm. Without MESH, a demonstration roof is panelled.
+    Reads OBJ, OFF, PLY, STL and .3dm. Without MESH, a demonstration roof is panelled. Files in
+    the folder are replaced only if spheremesh wrote them and nobody changed them since.
     """
     from .panel import PanelOptions, panel_graph, run_job
 
     _warn_of_no_beams(options)
     with _errors(), _progress() as progress:
-        report, files = run_job(panel_graph(PanelOptions(**options)), out, progress)
+        graph = panel_graph(PanelOptions(**options))
+        report, files = run_job(graph, out, progress, overwrite=overwrite)
     _print_report(report, out, files, as_json=as_json)
     if strict and _has_errors(report):
         sys.exit(GATE_FAILED)
@@ -126,17 +131,23 @@ def _warn_of_no_beams(options: Mapping[str, Any]) -> None:
 @click.option(
     "-o", "--out", default=".", type=click.Path(path_type=Path), help="Folder for its files."
 )
+@click.option("--overwrite", is_flag=True, help="Replace files that spheremesh did not write.")
+@click.option(
+    "--allow-outside", is_flag=True, help="Let the graph write outside of the folder."
+)
 @click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
 @click.option("--json", "as_json", is_flag=True, help="Print the targets' values as JSON.")
 def run(  # numpydoc ignore=PR01
     graph_file: Path, settings: tuple[str, ...], targets: tuple[str, ...], out: Path, *,
-    strict: bool, as_json: bool,
+    strict: bool, as_json: bool, **writing: bool,
 ) -> None:  # fmt: skip
     """Run a graph: all of it, or what a target needs.
 
-    Relative paths are read from the working directory and written to the output folder. The
-    graph of a panel job writes its report and itself anew.
+    Relative paths are read from the working directory and written to the output folder, and
+    nothing is written elsewhere. The graph of a panel job writes its report and itself anew;
+    other files are replaced only if spheremesh wrote them and nobody changed them since.
     """
+    from ..fabrication.output_folder import output_folder
     from .panel import is_panel_job, run_job
 
     with _errors(), _progress() as progress:
@@ -149,27 +160,29 @@ def run(  # numpydoc ignore=PR01
             click.echo(f"warning: {warning.message}", err=True)
         graph.set(**dict(_setting(text) for text in settings))
         if targets or not is_panel_job(graph):
-            _run_targets(graph, targets, out, progress, as_json=as_json)
+            with output_folder(out, inputs=(graph_file,), **writing) as output:
+                values = _run_targets(graph, targets, output, progress)
+            _print_values(graph, values, as_json=as_json)
             return
-        report, files = run_job(graph, out, progress)
+        report, files = run_job(graph, out, progress, graph_file=graph_file, **writing)
     _print_report(report, out, files, as_json=as_json)
     if strict and _has_errors(report):
         sys.exit(GATE_FAILED)
 
 
 def _run_targets(
-    graph: "Graph", targets: tuple[str, ...], out: Path, progress: "Progress", *, as_json: bool
-) -> None:
-    from ..fabrication.files import replacing_all
-
+    graph: "Graph", targets: tuple[str, ...], out: "OutputFolder", progress: "Progress"
+) -> dict[str, Any]:
     names = targets or tuple(step.name for step in graph.ends)
-    with replacing_all(out) as staging:
-        results = graph.run(*names, on_step=progress, write_to=staging)
-    values = (results,) if len(names) == 1 else results
+    results = graph.run(*names, on_step=progress, write_to=out)
+    return dict(zip(names, (results,) if len(names) == 1 else results, strict=True))
+
+
+def _print_values(graph: "Graph", values: Mapping[str, Any], *, as_json: bool) -> None:
     for messages in graph.messages.values():
         for text in messages:
             click.echo(f"warning: {text}", err=True)
-    plain = {name: _plain(value) for name, value in zip(names, values, strict=True)}
+    plain = {name: _plain(value) for name, value in values.items()}
     if as_json:
         click.echo(json.dumps(plain, indent=1, allow_nan=False))
         return

@@ -10,10 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from ...fabrication.output_folder import OutputFolder
 from .annotations import Value
 from .cache import Cache, digest
 from .errors import GraphError, nearest
 from .file import add_content, decode_graph, encode_graph, read_graph, write_graph
+from .files import Folders
 from .mermaid import mermaid_text
 from .node import find_node, known_graph, replaced
 from .ports import UNITS, Port, check_range
@@ -217,7 +219,7 @@ class Graph:
         *targets: Target,
         on_step: OnStep | None = None,
         read_from: str | os.PathLike[str] | None = None,
-        write_to: str | os.PathLike[str] | None = None,
+        write_to: str | os.PathLike[str] | OutputFolder | None = None,
     ) -> Value:
         """The values of targets; only the steps that they need and that have changed are run.
 
@@ -230,9 +232,10 @@ class Graph:
         on_step : callable, optional
             Called with the name of each step touched and ``"running"``, ``"done"``,
             ``"cached"`` or ``"failed"``.
-        read_from, write_to : path, optional
+        read_from, write_to : path or OutputFolder, optional
             Folders of the relative paths that nodes read and write; the working directory by
-            default. A file that a step has written is read where it was written.
+            default. A file that a step has written is read where it was written. An
+            `OutputFolder` also says where steps may write.
 
         Returns
         -------
@@ -243,6 +246,8 @@ class Graph:
         ------
         NodeError
             If a step fails; ``cause`` is what its function raised.
+        GraphError, InputError
+            If a step would write over a file that a step reads, or where it must not.
         """
         if not targets:
             raise GraphError(f"run needs a target; {nearest('', self._steps)}")
@@ -252,14 +257,14 @@ class Graph:
         steps = [t.step if isinstance(t, Wire) else t for t in wanted]
         names = [step.name for step in steps if isinstance(step, Step)]
         values = own(self._values, snapshot)
-        folders = _folder(read_from), _folder(write_to)
+        output_to = write_to if isinstance(write_to, OutputFolder) else _folder(write_to)
         run = Run(
             dict(self._steps),
             values,
             self.units,
             self._cache,
             on_step or (lambda _step, _state: None),
-            *folders,
+            Folders(_folder(read_from), output_to),
         )
         text = partial(encode_graph, self.title, self.units, self.params, run.steps)
         try:
