@@ -132,9 +132,7 @@ def _warn_of_no_beams(options: Mapping[str, Any]) -> None:
     "-o", "--out", default=".", type=click.Path(path_type=Path), help="Folder for its files."
 )
 @click.option("--overwrite", is_flag=True, help="Replace files that spheremesh did not write.")
-@click.option(
-    "--allow-outside", is_flag=True, help="Let the graph write outside of the folder."
-)
+@click.option("--allow-outside", is_flag=True, help="Let steps write outside of the folder.")
 @click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
 @click.option("--json", "as_json", is_flag=True, help="Print the targets' values as JSON.")
 def run(  # numpydoc ignore=PR01
@@ -268,7 +266,7 @@ def _setting(text: str) -> tuple[str, Any]:
         raise click.UsageError(f"--set takes NAME=VALUE, not {text!r}")
     try:
         return name, json.loads(value)
-    except json.JSONDecodeError:
+    except (ValueError, RecursionError):  # a ValueError: too many digits, too
         return name, value
 
 

@@ -18,7 +18,7 @@ from .file import add_content, decode_graph, encode_graph, read_graph, write_gra
 from .files import Folders
 from .mermaid import mermaid_text
 from .node import find_node, known_graph, replaced
-from .ports import UNITS, Port, check_range
+from .ports import UNITS, Port, check_range, check_slider
 from .results import own, snapshot
 from .run import OnStep, Run, output, run_steps
 from .wires import (
@@ -31,6 +31,7 @@ from .wires import (
     check_owner,
     connect,
     connect_all,
+    output_wire,
     parents,
     sources,
 )
@@ -132,7 +133,7 @@ class Graph:
         check_name(name, "param")
         value = _plain(value)
         port = Port(name=name, min=min, max=max, choices=tuple(choices))
-        check_range(value, port, f"param {name}")
+        check_slider(value, port)
         self._values[name] = value
         self._params[name] = Param(self, name, value, port)
         return self._params[name]
@@ -297,7 +298,7 @@ class Graph:
         if step_name not in self._steps:
             raise GraphError(f"no step {step_name!r}; {nearest(step_name, self._steps)}")
         step = self._steps[step_name]
-        return getattr(step, port) if dot else step
+        return output_wire(step, port) if dot else step
 
     def slider(self, name: str) -> Param:
         """A slider by name.
