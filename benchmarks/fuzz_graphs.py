@@ -57,7 +57,7 @@ def small_graph() -> Graph:
     graph.add("cluster_radii", "few", sphere_mesh=planes, k=k)
     graph.add("vase_mesh", "vases", n_around=each([6, k]), amplitude=0.1)
     moved = graph.add("similarity", "moved", scale=2.0, translation=[1, 2, 3])
-    graph.add("apply_mobius", "there", shape=planes, transform=moved)
+    graph.add("apply_mobius", "there", geometry=planes, transform=moved)
     graph.add("write_mesh", "file", mesh=mesh, path="torus.obj")
     return graph
 

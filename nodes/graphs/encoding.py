@@ -240,28 +240,43 @@ def _integer(digits: str) -> Value:
 
 
 def _check_json(content: Value) -> None:
+    """Refuse what JSON allows and nobody means, at any depth and without recursion."""
     pending: list[tuple[str, Value, int]] = [("", content, 0)]
     while pending:
         at, value, depth = pending.pop()
         if depth > _DEEPEST:
             raise GraphError(f"{at[:60]}: nested too deeply: {_DEEPEST} levels at most")
         if isinstance(value, dict):
-            for name, item in cast("dict[Any, Value]", value).items():
-                if name is _TWICE:
-                    raise GraphError(f"{at or 'the file'}: {item[:60]!r} is given twice")
-                if len(name) > _LONGEST_NAME or not _is_text(name):
-                    raise GraphError(f"{at or 'the file'}: {name[:60]!r} can be no name")
-                pending.append((f"{at}.{name}" if at else name, item, depth + 1))
+            items = cast("dict[Any, Value]", value)
+            _check_names(at or "the file", items)
+            pending += ((f"{at}.{n}" if at else n, x, depth + 1) for n, x in items.items())
         elif isinstance(value, list):
-            items = cast("list[Value]", value)
-            if not all(type(item) is float and math.isfinite(item) for item in items):
-                pending += ((f"{at}[{i}]", x, depth + 1) for i, x in enumerate(items))
-        elif value is _OVERLONG:
-            raise GraphError(f"{at}: a whole number has 64 bits at most")
-        elif isinstance(value, float) and not math.isfinite(value):
-            raise GraphError(f'{at}: no finite number; infinities are {{"float": "inf"}}')
-        elif isinstance(value, str) and not _is_text(value):
-            raise GraphError(f"{at}: not Unicode text: half of a character stands alone")
+            several = cast("list[Value]", value)
+            if not all(type(item) is float and math.isfinite(item) for item in several):
+                pending += ((f"{at}[{i}]", x, depth + 1) for i, x in enumerate(several))
+        else:
+            fault = _fault(value)
+            if fault:
+                raise GraphError(f"{at}: {fault}")
+
+
+def _check_names(at: str, content: dict[Any, Value]) -> None:
+    for name, item in content.items():
+        if name is _TWICE:
+            raise GraphError(f"{at}: {str(item)[:60]!r} is given twice")
+        if len(name) > _LONGEST_NAME or not _is_text(name):
+            raise GraphError(f"{at}: {name[:60]!r} can be no name")
+
+
+def _fault(value: Value) -> str:
+    """What is wrong with a number or a text."""
+    if value is _OVERLONG:
+        return "a whole number has 64 bits at most"
+    if isinstance(value, float) and not math.isfinite(value):
+        return 'no finite number; infinities are {"float": "inf"}'
+    if isinstance(value, str) and not _is_text(value):
+        return "not Unicode text: half of a character stands alone"
+    return ""
 
 
 def _is_text(text: str) -> bool:

@@ -155,12 +155,8 @@ def add_content(graph: _Graph, content: Mapping[str, Any]) -> None:
     for name, step in content["steps"].items():
         try:
             known = find_node(step["node"])
-            inputs: dict[str, Value] = {}
-            for old, value in step["inputs"].items():
-                port = _present(known, old, known.inputs)
-                if port in inputs:
-                    raise GraphError(f"{port!r} is given twice, once as {old!r}")
-                inputs[port] = decode(value, names)
+            inputs = _present_inputs(known, step["inputs"])
+            inputs = {port: decode(value, names) for port, value in inputs.items()}
             graph.add(known.name, name, **inputs)
         except GraphError as error:
             raise GraphError(f"steps.{name}: {error}") from error
@@ -170,6 +166,17 @@ def add_content(graph: _Graph, content: Mapping[str, Any]) -> None:
                 f"{known.name}, this is {known.version}: results may differ",
                 stacklevel=2,
             )
+
+
+def _present_inputs(node: Node, inputs: Mapping[str, Value]) -> dict[str, Value]:
+    """Inputs by the present names of their ports."""
+    present: dict[str, Value] = {}
+    for old, value in inputs.items():
+        port = _present(node, old, node.inputs)
+        if port in present:
+            raise GraphError(f"{port!r} is given twice, once as {old!r}")
+        present[port] = value
+    return present
 
 
 def _wire(graph: _Graph, name: str) -> Step | Wire:
