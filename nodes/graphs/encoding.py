@@ -150,7 +150,8 @@ def _array(tagged: dict[str, Value], names: Names) -> NDArray[Any]:
     if items.dtype.kind not in "biuf" and items.size:
         raise ValueError("an array holds numbers alone")
     with np.errstate(all="ignore"):
-        array = items.astype(name)
+        # Integers from the list itself: beside others, those of 64 bits would become floats.
+        array = np.array(decode(tagged["array"], names), name)
         is_exact = array.dtype.kind == "f" or bool((array == items).all())
     if not is_exact or (np.isfinite(items) & ~np.isfinite(array)).any():
         raise ValueError(f"a number does not fit into {name}")

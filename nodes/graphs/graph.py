@@ -22,6 +22,7 @@ from .ports import UNITS, Port, check_range, check_slider
 from .results import own, snapshot
 from .run import OnStep, Run, output, run_steps
 from .wires import (
+    Each,
     Param,
     Place,
     Step,
@@ -131,6 +132,8 @@ class Graph:
         if name in self._params:
             raise GraphError(f"there is a param {name!r} already; change it with set")
         check_name(name, "param")
+        if isinstance(value, Each | Param | Step | Wire):
+            raise GraphError(f"param {name}: a slider holds a value, no wire and no each(...)")
         value = _plain(value)
         port = Port(name=name, min=min, max=max, choices=tuple(choices))
         check_slider(value, port)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 import spheremesh as sm
 from spheremesh.nodes import Port, node
 from spheremesh.nodes.graphs.annotations import ArrayFacts, type_name
-from spheremesh.nodes.graphs.kinds import accepts, convert, fits
+from spheremesh.nodes.graphs.kinds import accepts, convert, fits, record_fault
 
 
 class Shape:
@@ -261,3 +261,17 @@ def test_type_statements_are_what_they_stand_for() -> None:
     assert type_name(weights) == "weights of edges (E,)"
     assert fits(weights, Weights)
     assert not fits(Spheres, weights)
+
+
+def test_a_mapping_of_its_fields_is_a_report() -> None:
+    assert accepts(CutReport | None, {"count": 3})
+    assert convert(CutReport | None, {"count": 3}) == CutReport(3)
+    faults = {
+        "": {"count": 3},
+        ": CutReport misses 'count', has no entry 'cuont'": {"cuont": 3},
+        ": CutReport has no entry 'more'": {"count": 3, "more": 1},
+        ": CutReport 'count' is none": {"count": "three"},
+    }
+    for text, given in faults.items():
+        assert record_fault(CutReport | None, given) == text
+        assert accepts(CutReport, given) == (not text)

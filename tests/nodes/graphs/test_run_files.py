@@ -8,7 +8,10 @@ from typing import NamedTuple
 import pytest
 
 import spheremesh as sm
+from spheremesh.fabrication.output_folder import output_folder
+from spheremesh.kernel.errors import InputError
 from spheremesh.nodes import (
+    GraphError,
     NodeError,
     NodeWarning,
     ReadPath,
@@ -37,6 +40,10 @@ def read_number(path: ReadPath) -> float:
     return float(Path(path).read_text())
 
 
+def tell_path(folder: str) -> str:
+    return f"{folder}/2"
+
+
 def length(text: str) -> int:
     calls["length"] += 1
     return len(text)
@@ -47,6 +54,7 @@ TOYS = (
     write_number,
     read_number,
     length,
+    tell_path,
 )
 
 
@@ -231,3 +239,64 @@ def test_a_failure_names_the_path_as_given(tmp_path: Path) -> None:
     with pytest.raises(NodeError, match=r"failed: cannot write out\.txt$") as error:
         g.run(g.add(refuse, path="out.txt"), write_to=tmp_path)
     assert error.value.reason == "cannot write out.txt"
+
+
+def test_no_step_writes_over_what_another_reads(tmp_path: Path) -> None:
+    source = tmp_path / "in.txt"
+    source.write_text("2")
+    (tmp_path / "hard.txt").hardlink_to(source)
+    (tmp_path / "soft.txt").symlink_to(source)
+    (tmp_path / "below").mkdir()
+    for name in ("in.txt", "hard.txt", "soft.txt", "below/../in.txt", str(source)):
+        g = sm.Graph()
+        path = g.param("path", name)
+        writer = g.add(write_number, "w", value=1.0, path=path)
+        reader = g.add(read_number, "r", path="in.txt")
+        with pytest.raises(GraphError, match=r"w\.path would write over .*, which r\.path rea"):
+            g.run(writer, reader, read_from=tmp_path, write_to=tmp_path)
+        assert source.read_text() == "2"
+        assert g.run(reader, read_from=tmp_path) == 2.0, "who does not write may read"
+    (tmp_path / "out").mkdir()
+    g.set(path="in.txt")
+    g.run(writer, reader, read_from=tmp_path, write_to=tmp_path / "out")
+
+
+def test_a_path_that_comes_by_wire_is_no_way_around(tmp_path: Path) -> None:
+    source = tmp_path / "2"
+    source.write_text("2")
+    g = sm.Graph()
+    path = g.add(tell_path, folder=str(tmp_path))
+    g.add(write_number, "w", value=1.0, path=path)
+    g.add(read_number, "r", path=str(source))
+    with pytest.raises(GraphError, match=r"w\.path would write over .*, which r\.path reads"):
+        g.run("w", "r")
+    out = tmp_path / "out"
+    with pytest.raises(InputError, match="outside"), output_folder(out) as output:
+        g.run("w", write_to=output)
+    assert source.read_text() == "2"
+
+
+def test_an_output_folder_is_written_to_and_read_from(tmp_path: Path) -> None:
+    g = sm.Graph()
+    written = g.add(write_number, "w", value=1.0, path="a.txt")
+    again = g.add(read_number, "r", path=written)
+    for value in (1.0, 2.0):
+        with output_folder(tmp_path) as output:
+            assert g.run(written, again, write_to=output) == ("a.txt", 1.0), value
+    (tmp_path / "a.txt").write_text("mine")
+    calls.clear()
+    with (
+        pytest.raises(InputError, match=r"a\.txt: it was changed"),
+        output_folder(tmp_path) as output,
+    ):
+        g.run("r", write_to=output)
+    assert not calls, "that is known before anything is run"
+    with output_folder(tmp_path, overwrite=True) as output:
+        g.run("r", write_to=output)
+
+
+def test_a_file_that_can_be_none_is_refused_in_one_line() -> None:
+    g = sm.Graph()
+    g.add(read_number, "r", path="a\0b")
+    with pytest.raises(NodeError, match="null"):
+        g.run("r")
