@@ -15,15 +15,24 @@ FOR_USERS := nodes/library/*.py nodes/graphs/graph.py nodes/graphs/node.py nodes
   nodes/graphs/sweep.py kernel/meshes/mesh.py kernel/sphere_meshes/sphere_mesh.py
 # The root folder is a package; pytest must not import it by the name of the clone.
 PYTEST = $(BIN)/python -m pytest -q -c pyproject.toml --rootdir tests
+# Two processes of tests keep two cores busy: a thread of OpenBLAS in each is enough.
+PARALLEL = OPENBLAS_NUM_THREADS=1 $(PYTEST) -n 2 --dist loadfile
+# Sets of instructions between which OpenBLAS chooses by the processor; sums differ in the last
+# bits. Haswell is what AMD processors get, Prescott the oldest. Ignored where there is no x86.
+CORETYPES := Haswell Prescott
 
-.PHONY: demo test lint bench install system clean
+.PHONY: demo test test-kernels lint bench install system clean
 
 demo: system
 	$(BIN)/spheremesh panel -o out/demo --moulds 8 --thickness 0.02
 
 test: lint
-	$(PYTEST) -n 2 --dist loadfile tests
+	$(PARALLEL) tests
 	$(PYTEST) -p no:cacheprovider --doctest-modules --pyargs $(addprefix spheremesh.,$(PACKAGES))
+
+test-kernels: system
+	@for each in $(CORETYPES); do echo "OPENBLAS_CORETYPE=$$each"; \
+	  OPENBLAS_CORETYPE=$$each $(PARALLEL) tests/kernel || exit 1; done
 
 lint: system
 	$(BIN)/ruff check .

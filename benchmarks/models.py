@@ -16,8 +16,8 @@ import numpy as np
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import dot, norm, unit
 from spheremesh.kernel.errors import InputError
+from spheremesh.kernel.meshes.isotropic_remeshing import even_share
 from spheremesh.kernel.meshes.mesh import mean_edge_length
-from spheremesh.kernel.meshes.remeshing import even_share
 from spheremesh.kernel.sphere_meshes.mobius import map_sphere_mesh
 from spheremesh.kernel.sphere_meshes.model_change import (
     SIGNS,

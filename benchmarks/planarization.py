@@ -18,7 +18,7 @@ from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
 from spheremesh.kernel.congruences.curvature_spheres import sphere_congruence, touching_spheres
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.remesh.field.relax import CongruenceQuality, relax_congruence
-from spheremesh.kernel.remesh.planar.nodes import measure_nodes, node_axis_angles
+from spheremesh.kernel.remesh.planar.node_planarity import measure_nodes, node_axis_angles
 from spheremesh.kernel.remesh.planar.planarize import planarize
 from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
 

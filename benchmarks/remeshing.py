@@ -22,7 +22,7 @@ from spheremesh.kernel.panels.tessellation import tessellate
 from spheremesh.kernel.remesh.field.conjugate_directions import conjugate_directions
 from spheremesh.kernel.remesh.field.conjugate_form import form_roots, split_form
 from spheremesh.kernel.remesh.pipeline import Remeshing, remesh
-from spheremesh.kernel.remesh.planar.nodes import measure_nodes, node_axis_angles
+from spheremesh.kernel.remesh.planar.node_planarity import measure_nodes, node_axis_angles
 from spheremesh.kernel.remesh.planar.planarize import planarize_held
 from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
 from spheremesh.kernel.surfaces.triangulated import (

@@ -53,7 +53,7 @@ from spheremesh.kernel.spheres.arcs import (
     sphere_arcs,
 )
 from spheremesh.kernel.spheres.rows import center_radius
-from spheremesh.kernel.support.annulus_support import annulus_support
+from spheremesh.kernel.support.annulus_construction import annulus_support
 from spheremesh.nodes import roof_mesh, torus_mesh, vase_mesh
 
 MILLIMETERS = 1000.0

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm
+from ..solvers.weighted_graphs import weighted_graph
 
 
 @dataclass(frozen=True)
@@ -121,7 +122,6 @@ def trace_curves(
     arcs : (n, 2) float array
         Places of the ends of the edges.
     """
-    from scipy.sparse import csr_array
     from scipy.sparse.csgraph import dijkstra
 
     if not len(lines):
@@ -138,7 +138,7 @@ def trace_curves(
     is_end = names >= len(vertices)
     starts = np.flatnonzero(is_end)[np.unique(labels[is_end], return_index=True)[1]]
     lengths = norm(np.diff(vertices[lines], axis=1)[:, 0])
-    links = csr_array((lengths, nodes.T), shape=(count, count))
+    links = weighted_graph(lengths, nodes[:, 0], nodes[:, 1], count)
     arcs = np.asarray(dijkstra(links, directed=False, indices=starts, min_only=True))
     spans = np.zeros(labels.max() + 1)
     np.maximum.at(spans, labels, arcs)

@@ -15,7 +15,7 @@ Levenberg-Marquardt on the terms in `energies`.
 
 angle_minimization  Angles in the pencils of the faces' circles, vertices fixed.
 strips              Rows of faces whose spheres join smoothly along the row, and only there.
-clustering          Few moulds: the radii of a sphere mesh gathered into clusters.
+radius_clustering   Few moulds: the radii of a sphere mesh gathered into clusters.
 whole_energy        Energy (6): smooth spheres, upright planes between them, nodes with axes.
 energies            The terms of energy (6), their table, and how their sum falls.
 """

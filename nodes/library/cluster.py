@@ -6,7 +6,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from ...kernel.analysis import angle_summary
-from ...kernel.optimization import clustering
+from ...kernel.optimization import radius_clustering
 from ...kernel.panels import congruent
 from ...kernel.panels import mould_blanks as blanks
 from ...kernel.panels.panels import Panels
@@ -102,10 +102,10 @@ def cluster_radii(
     >>> moulds.report["panels_per_mould"], moulds.radii.round(2)
     ([24, 24, 24], array([1.24, 1.85, 8.07]))
     """
-    clustered, clusters = clustering.cluster_radii(sphere_mesh, k, seed)
+    clustered, clusters = radius_clustering.cluster_radii(sphere_mesh, k, seed)
     result, move = clustered, 0.0
     if relax and tolerance > 0:
-        relaxed, run = clustering.relax_moulds(
+        relaxed, run = radius_clustering.relax_moulds(
             clustered, clusters, tolerance, regularity=regularity, support=support
         )
         if run.vertex_miss <= COMMON_VERTEX:

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from ...kernel.meshes import remeshing, subdivision, triangulation
+from ...kernel.meshes import isotropic_remeshing, subdivision, triangulation
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.tolerances import MOSTLY_EVEN
 from ..graphs.node import node, warn
@@ -107,10 +107,10 @@ def remesh_triangles(
     >>> set(mesh.degrees.tolist())
     {3}
     """
-    result = remeshing.remesh_triangles(
+    result = isotropic_remeshing.remesh_triangles(
         mesh, edge_length, iterations, float(np.radians(crease_angle))
     )
-    share = remeshing.even_share(result, edge_length)
+    share = isotropic_remeshing.even_share(result, edge_length)
     if iterations and share < MOSTLY_EVEN:
         warn(
             f"only {100 * share:.0f} % of the edges are between 0.5 and 1.6 times as long as "

@@ -80,11 +80,18 @@ class EnergyReport(OptimumReport):
     vertex_error: dict[str, float]
 
 
-class Optimum(NamedTuple):
-    """An optimised sphere mesh and how it was reached."""
+class AnglesOptimum(NamedTuple):
+    """Spheres of smallest angles and how they were reached."""
 
     sphere_mesh: SphereMesh
-    report: OptimumReport
+    report: AnglesReport
+
+
+class EnergyOptimum(NamedTuple):
+    """A sphere mesh of least energy and how it was reached."""
+
+    sphere_mesh: SphereMesh
+    report: EnergyReport
 
 
 @node
@@ -93,7 +100,7 @@ def minimize_angles(
     target_angle: Annotated[float, Port(unit="deg", min=0, max=90)] = 0.0,
     edge_weights: EdgeWeights | None = None,
     max_miss: Annotated[float | None, Port(min=0)] = None,
-) -> Optimum:
+) -> AnglesOptimum:
     """Choose the spheres through the faces' circles that meet their neighbours most smoothly.
 
     Parameters
@@ -154,7 +161,7 @@ def minimize_angles(
         **outcome,
         circle_miss=run.circle_miss,
     )
-    return Optimum(result, report)
+    return AnglesOptimum(result, report)
 
 
 @node
@@ -173,7 +180,7 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     interior: Literal["free", "glide"] = "free",
     boundary: Literal["free", "glide", "fixed"] = "free",
     max_iterations: Annotated[int, Port(min=1)] = 100,
-) -> Optimum:
+) -> EnergyOptimum:
     """Minimise a weighted sum of what a sphere mesh should fulfil.
 
     Parameters
@@ -254,7 +261,7 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
         _warn_of_little_gain(outcome)
     stages = [_stage(stage) for stage in run.stages]
     report = EnergyReport(run.converged, stages, run.corners, run.vertex_move, **outcome)
-    return Optimum(result, report)
+    return EnergyOptimum(result, report)
 
 
 @node

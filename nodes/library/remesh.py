@@ -13,7 +13,7 @@ from ...kernel.remesh.field import relax
 from ...kernel.remesh.field.relax import CongruenceQuality
 from ...kernel.remesh.field.smooth_surface import SmoothSurface
 from ...kernel.remesh.planar.conditions import node_distances
-from ...kernel.remesh.planar.nodes import measure_nodes
+from ...kernel.remesh.planar.node_planarity import measure_nodes
 from ...kernel.remesh.planar.planarize import (
     SHORT_EDGE,
     Planarization,
@@ -356,10 +356,6 @@ def relax_congruence(
     """
     target = CongruenceQuality(max_complex, float(np.radians(max_axis_angle)))
     result = relax.relax_congruence(
-        mesh,
-        spheres,
-        lambda rows: directions.complex_share(mesh, rows),
-        target,
-        radius,
+        mesh, spheres, lambda rows: directions.complex_share(mesh, rows), target, radius
     )
     return Relaxed(result.spheres, reports.relaxation_report(result))

@@ -15,7 +15,7 @@ from ...kernel.parts.records import RejectedPart
 from ...kernel.remesh.planar.landing import planarize_near
 from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
-from ...kernel.support import annulus_support as annulus
+from ...kernel.support import annulus_construction as annulus
 from ...kernel.support import node_axes as support
 from ...kernel.support.annuli import Annuli, corner_mismatch, mean_end_depth
 from ..graphs.node import node, warn

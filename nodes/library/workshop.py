@@ -19,7 +19,7 @@ from ...kernel.panels.panels import Panels
 from ...kernel.parts.findings import Finding, findings_report
 from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
-from ...kernel.support.annulus_support import AnnuliReport
+from ...kernel.support.annulus_construction import AnnuliReport
 from ...kernel.support.node_axes import NodesReport
 from ...kernel.tolerances import SAME_PANEL
 from ..graphs.node import node

@@ -8,7 +8,7 @@ import pytest
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray
 from spheremesh.kernel.optimization.angle_minimization import minimize_angles
-from spheremesh.kernel.optimization.clustering import cluster_radii
+from spheremesh.kernel.optimization.radius_clustering import cluster_radii
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.panels import Panels
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres

@@ -30,7 +30,7 @@ from spheremesh.kernel.panels.panels import Panels
 from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
-from spheremesh.kernel.support.annulus_support import annulus_support
+from spheremesh.kernel.support.annulus_construction import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
 
 Writer = Callable[[Model, Path], Written]

@@ -23,8 +23,8 @@ from spheremesh.kernel.beams.beams import Beams
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.optimization.angle_minimization import minimize_angles
-from spheremesh.kernel.optimization.clustering import cluster_radii
 from spheremesh.kernel.optimization.energies.table import EnergyWeights
+from spheremesh.kernel.optimization.radius_clustering import cluster_radii
 from spheremesh.kernel.optimization.whole_energy import Conditions, optimize_spheres
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.panels import Panels
@@ -32,7 +32,7 @@ from spheremesh.kernel.remesh.planar.landing import planarize_near
 from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import fit_spheres
 from spheremesh.kernel.spheres.rows import rescale
-from spheremesh.kernel.support.annulus_support import annulus_support
+from spheremesh.kernel.support.annulus_construction import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import roof_net
 
 PRECISION = 1e-9

@@ -4,26 +4,22 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...solvers.factorization import SparseArray
+from ...solvers.weighted_graphs import weighted_graph
 
 
 def tree_signs(likeness: SparseArray) -> FloatArray:
-    """Choose signs along a spanning tree of a graph.
+    """Choose signs (n,), 1 or -1, along a spanning tree of a graph.
 
-    Parameters
-    ----------
-    likeness : (n, n) sparse array
-        How alike neighbours are, between -1 and 1; stored for all edges, one way or both.
-
-    Returns
-    -------
-    (n,) float array
-        1 or -1; of the tree that prefers the edges on which the sign is clearest.
+    `likeness` (n, n) says how alike neighbours are, between -1 and 1, stored for all edges, one
+    way or both. The tree prefers the edges on which the sign is clearest.
     """
     from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 
-    costs, signs = likeness.copy(), likeness.copy()
-    costs.data = 2 - np.minimum(np.abs(likeness.data), 1)
+    edges, signs = likeness.tocoo(), likeness.copy()
     signs.data = np.sign(likeness.data)
+    tails, heads = edges.coords
+    clarity = np.minimum(np.abs(edges.data), 1.0)
+    costs = weighted_graph(2.0 - clarity, tails, heads, signs.shape[0])
     order, parents = breadth_first_order(minimum_spanning_tree(costs), 0, directed=False)
     parents = np.where(parents < 0, 0, parents)
     children = np.arange(len(parents))

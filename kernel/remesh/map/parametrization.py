@@ -20,7 +20,7 @@ from .coordinate import Coordinate, eliminate, solve_coordinate
 from .injectivity import ChartGradients, untangle
 from .integer_rounding import ContradictionError, IntegerSolutions, integer_solutions
 from .seams import Seams
-from .separation import singular_differences
+from .singularity_separation import singular_differences
 
 FOLDED = 0.3
 """A map with more of its faces folded has no room for the steps asked for."""
@@ -58,17 +58,9 @@ def parametrize(
     seams: Seams,
     edge_length: float,
 ) -> Parametrization:
-    """Map the cut mesh so that unit steps follow the directions with a given length.
+    """Map the cut mesh so that unit steps, in mean edges, follow the directions.
 
-    Parameters
-    ----------
-    edge_length : float
-        Length of a unit step, in mean edges.
-
-    Returns
-    -------
-    Parametrization
-        Singular vertices lie at whole numbers, aligned boundaries half-way between.
+    Singular vertices lie at whole numbers, aligned boundaries half-way between.
 
     Raises
     ------

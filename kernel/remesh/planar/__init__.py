@@ -25,9 +25,9 @@ conditions: planes that pass for spheres of a billion edges fulfil them.
 
 Read in this order:
 
-conditions  The conditions: unknowns, residuals and derivatives, and where nodes may lie.
-steps       Gauss-Newton steps: the norm of the damping, and the elimination of the nodes.
-planarize   The descent: `planarize`, and `planarize_held` on a surface.
-landing     `planarize_near` for optimised supports: the least move, alike neighbours apart.
-nodes       Measures of nodes: planarity in P⁴, node axes, real common points.
+conditions      The conditions: unknowns, residuals and derivatives, and where nodes may lie.
+steps           Gauss-Newton steps: the norm of the damping, and the elimination of the nodes.
+planarize       The descent: `planarize`, and `planarize_held` on a surface.
+landing         `planarize_near` for optimised supports: the least move, alike neighbours apart.
+node_planarity  Measures of nodes: planarity in P⁴, node axes, real common points.
 """

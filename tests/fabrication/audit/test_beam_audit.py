@@ -20,7 +20,7 @@ from spheremesh.kernel.parts.findings import Finding, findings_report, rejected_
 from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
-from spheremesh.kernel.support.annulus_support import annulus_support
+from spheremesh.kernel.support.annulus_construction import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
 
 NET = torus_net(12, 8, 10.0, 4.0)

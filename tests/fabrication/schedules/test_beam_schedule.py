@@ -21,7 +21,7 @@ from spheremesh.kernel.panels.panels import Panels
 from spheremesh.kernel.parts.records import part_ids, select_parts
 from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
-from spheremesh.kernel.support.annulus_support import annulus_support
+from spheremesh.kernel.support.annulus_construction import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import vase_net
 
 VASE = central_spheres(vase_net(10, 6, 2.0, 5.0, 0.3))

@@ -14,7 +14,7 @@ from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.rhino.writer import write_3dm
 from spheremesh.fabrication.schedules.panels import panel_tables
 from spheremesh.fabrication.step.writer import write_step
-from spheremesh.kernel.optimization.clustering import cluster_radii
+from spheremesh.kernel.optimization.radius_clustering import cluster_radii
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.panels import Panels
 from spheremesh.kernel.panels.thickness import ThicknessRule, ThicknessSide

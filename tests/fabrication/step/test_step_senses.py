@@ -18,7 +18,7 @@ from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
-from spheremesh.kernel.support.annulus_support import annulus_support
+from spheremesh.kernel.support.annulus_construction import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
 
 NET = torus_net(7, 5, 3.0, 1.0)

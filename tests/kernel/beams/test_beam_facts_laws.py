@@ -26,7 +26,7 @@ from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.arcs import Arcs, arc_points, arc_reaches
-from spheremesh.kernel.support.annulus_support import annulus_support
+from spheremesh.kernel.support.annulus_construction import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net, vase_net
 from spheremesh.kernel.tolerances import MITRE_LIMIT
 

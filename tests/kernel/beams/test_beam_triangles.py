@@ -15,7 +15,7 @@ from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.arcs import arc_lengths, segment_areas
 from spheremesh.kernel.spheres.incidence import evaluate
-from spheremesh.kernel.support.annulus_support import annulus_support
+from spheremesh.kernel.support.annulus_construction import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
 
 

@@ -31,7 +31,7 @@ from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.spheres.arcs import Arcs, arc_circles, arc_points, segment_areas
 from spheremesh.kernel.spheres.incidence import evaluate
 from spheremesh.kernel.support.annuli import Annuli
-from spheremesh.kernel.support.annulus_support import annulus_support
+from spheremesh.kernel.support.annulus_construction import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import torus_net
 
 

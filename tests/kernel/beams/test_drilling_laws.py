@@ -15,7 +15,7 @@ from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.spheres.arcs import arc_points
-from spheremesh.kernel.support.annulus_support import annulus_support
+from spheremesh.kernel.support.annulus_construction import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import torus_net
 
 TORUS = central_spheres(torus_net(9, 6, 3.0, 1.0))

@@ -13,7 +13,7 @@ from spheremesh.kernel.beams.node_cylinders import node_cylinders
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
-from spheremesh.kernel.support.annulus_support import annulus_support
+from spheremesh.kernel.support.annulus_construction import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import torus_net, vase_net
 
 TORUS = central_spheres(torus_net(9, 6, 3.0, 1.0))

@@ -9,8 +9,8 @@ from spheremesh.kernel.arrays import norm
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.optimization.angle_minimization import minimize_angles
-from spheremesh.kernel.optimization.clustering import cluster_radii, relax_moulds
 from spheremesh.kernel.optimization.energies.table import EnergyWeights
+from spheremesh.kernel.optimization.radius_clustering import cluster_radii, relax_moulds
 from spheremesh.kernel.optimization.whole_energy import (
     Conditions,
     Optimization,

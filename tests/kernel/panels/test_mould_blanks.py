@@ -7,7 +7,7 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.optimization.angle_minimization import minimize_angles
-from spheremesh.kernel.optimization.clustering import cluster_radii
+from spheremesh.kernel.optimization.radius_clustering import cluster_radii
 from spheremesh.kernel.panels.congruent import congruent_panels
 from spheremesh.kernel.panels.cutting import EdgeMode, cut_panels
 from spheremesh.kernel.panels.mould_blanks import mould_blanks, panel_caps

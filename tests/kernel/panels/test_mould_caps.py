@@ -7,7 +7,7 @@ import pytest
 
 from spheremesh.kernel.arrays import dot, norm, unit
 from spheremesh.kernel.meshes.mesh import Mesh
-from spheremesh.kernel.optimization.clustering import cluster_radii
+from spheremesh.kernel.optimization.radius_clustering import cluster_radii
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.mould_blanks import panel_caps
 from spheremesh.kernel.panels.mould_caps import mould_caps

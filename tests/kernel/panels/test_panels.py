@@ -15,7 +15,7 @@ from spheremesh.kernel.meshes.mesh import (
     mean_edge_length,
 )
 from spheremesh.kernel.optimization.angle_minimization import minimize_angles
-from spheremesh.kernel.optimization.clustering import cluster_radii
+from spheremesh.kernel.optimization.radius_clustering import cluster_radii
 from spheremesh.kernel.panels.cutting import (
     EdgeMode,
     cut_panels,

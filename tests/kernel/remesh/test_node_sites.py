@@ -12,7 +12,7 @@ from spheremesh.kernel.remesh.field.jets import fit_jets
 from spheremesh.kernel.remesh.field.smooth_surface import SmoothSurface, surface_heights
 from spheremesh.kernel.remesh.pipeline import Remeshing, remesh
 from spheremesh.kernel.remesh.planar.conditions import anywhere, node_distances, on_surface
-from spheremesh.kernel.remesh.planar.nodes import measure_nodes
+from spheremesh.kernel.remesh.planar.node_planarity import measure_nodes
 from spheremesh.kernel.remesh.planar.planarize import planarize, planarize_held
 from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
 from spheremesh.kernel.surfaces.triangulated import SampleShape, triangulated_surface

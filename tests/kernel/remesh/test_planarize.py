@@ -21,7 +21,7 @@ from spheremesh.kernel.remesh.planar.conditions import (
     planar_residuals,
     planar_system,
 )
-from spheremesh.kernel.remesh.planar.nodes import measure_nodes, node_axis_angles
+from spheremesh.kernel.remesh.planar.node_planarity import measure_nodes, node_axis_angles
 from spheremesh.kernel.remesh.planar.planarize import planarize
 from spheremesh.kernel.remesh.planar.steps import linearize, step_norm
 from spheremesh.kernel.remesh.reports import planarization_report

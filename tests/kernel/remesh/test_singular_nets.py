@@ -14,7 +14,7 @@ from spheremesh.kernel.meshes.mesh import face_centroids
 from spheremesh.kernel.remesh.net.extraction import Net
 from spheremesh.kernel.remesh.net.net_mesh import net_mesh
 from spheremesh.kernel.remesh.pipeline import remesh
-from spheremesh.kernel.remesh.planar.nodes import measure_nodes
+from spheremesh.kernel.remesh.planar.node_planarity import measure_nodes
 from spheremesh.kernel.remesh.planar.planarize import Planarization, planarize
 from spheremesh.kernel.remesh.reports import planarization_report
 from spheremesh.kernel.spheres.rows import recenter

@@ -19,7 +19,7 @@ from spheremesh.kernel.spheres.arcs import Arcs, arc_points, sphere_arcs
 from spheremesh.kernel.spheres.incidence import evaluate, normals, signed_distance
 from spheremesh.kernel.spheres.rows import center_radius, from_center_radius, normalize, rescale
 from spheremesh.kernel.support.annuli import Annuli, corner_mismatch
-from spheremesh.kernel.support.annulus_support import annulus_report, annulus_support
+from spheremesh.kernel.support.annulus_construction import annulus_report, annulus_support
 from spheremesh.kernel.support.node_axes import support_structure
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
 

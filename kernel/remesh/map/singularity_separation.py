@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 from ...arrays import FloatArray, IntArray, norm
+from ...solvers.weighted_graphs import weighted_graph
 from ..field.congruence_mesh import CongruenceMesh
 from .seams import Seams
 
@@ -17,17 +18,9 @@ def singular_differences(
 ) -> FloatArray:
     """Differences of the coordinates of singular vertices along shortest paths between them.
 
-    Parameters
-    ----------
-    edge_length : float
-        Length of a unit step, in mean edges.
-
-    Returns
-    -------
-    (p, m) float array
-        By the integers of the seams, a row for each pair of neighbours.
+    (p, m) by the integers of the seams, a row for each pair of neighbours; a unit step is
+    `edge_length` mean edges long.
     """
-    from scipy.sparse import csr_array
     from scipy.sparse.csgraph import dijkstra
 
     singular, count = seams.singular, len(surface.points)
@@ -35,7 +28,7 @@ def singular_differences(
         return np.zeros((0, seams.shifts.shape[1]))
     tails, heads = surface.triangles.ravel(), np.roll(surface.triangles, -1, axis=1).ravel()
     lengths = norm(surface.points[heads] - surface.points[tails])
-    graph = csr_array((lengths, (tails, heads)), shape=(count, count))
+    graph = weighted_graph(lengths, tails, heads, count)
     distances, parents = dijkstra(
         graph, directed=False, indices=singular, limit=REACH * edge_length,
         return_predecessors=True,

@@ -9,7 +9,7 @@ from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.optimization.angle_minimization import minimize_angles, pencil_angles
-from spheremesh.kernel.optimization.clustering import cluster_radii
+from spheremesh.kernel.optimization.radius_clustering import cluster_radii
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres

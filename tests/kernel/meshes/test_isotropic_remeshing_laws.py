@@ -8,8 +8,8 @@ import pytest
 from spheremesh import Mesh
 from spheremesh.kernel.arrays import BoolArray, FloatArray, IntArray, dot, norm
 from spheremesh.kernel.errors import InputError
+from spheremesh.kernel.meshes.isotropic_remeshing import even_share, remesh_triangles
 from spheremesh.kernel.meshes.mesh import face_normals, face_vector_areas, mean_edge_length
-from spheremesh.kernel.meshes.remeshing import even_share, remesh_triangles
 from spheremesh.kernel.meshes.subdivision import subdivide_midpoint
 from spheremesh.kernel.meshes.surface_lines import loop_starts, trace_curves
 from spheremesh.kernel.meshes.triangle_edges import (
