@@ -139,7 +139,7 @@ class OutputFolder:
             The same with ``files``: the digest of each file of the job. That of the report is
             taken with nothing in its own place.
         """
-        whole = {**report, "files": {**self._staged(), REPORT: ""}}
+        whole = {**report, "files": {**_digests(self.staging), REPORT: ""}}
         digest = hashlib.sha256(_text(whole).encode()).hexdigest()
         whole["files"][REPORT] = digest
         (self.staging / REPORT).write_text(_text(whole), encoding="utf-8", newline="\n")
@@ -182,33 +182,6 @@ class OutputFolder:
         root = self.folder.resolve()
         return target.relative_to(root).as_posix() if target.is_relative_to(root) else None
 
-    def _staged(self) -> dict[str, str]:
-        files = (path for path in self.staging.rglob("*") if not path.is_dir())
-        return {path.relative_to(self.staging).as_posix(): _digest(path) for path in files}
-
-    def _finish(self) -> None:
-        """Check what was written, and keep a record of what no report lists."""
-        staged = self._staged()
-        for name in staged:
-            self.check(name)
-        outside = {str(path): _digest(path) for path in self.outside if path.is_file()}
-        if not staged and not outside:
-            return
-        kept = {
-            name: digest
-            for name, digest in self.known.items()
-            if name not in staged and os.path.lexists(self.folder / name)
-        }
-        if REPORT in staged:
-            record = {**kept, **outside}
-        else:
-            listed = _listed(self.folder / REPORT)
-            kept = {name: d for name, d in kept.items() if listed.get(name) != d}
-            record = {**kept, **staged, **outside}
-        if record or os.path.lexists(self.folder / RECORD):
-            text = _text({"files": dict(sorted(record.items()))})
-            (self.staging / RECORD).write_text(text, encoding="utf-8", newline="\n")
-
 
 @contextmanager
 def output_folder(
@@ -225,7 +198,9 @@ def output_folder(
     ----------
     folder : path
         Made if it does not exist.
-    inputs, renewed, overwrite, allow_outside
+    inputs : tuple of Path
+    renewed : str
+    overwrite, allow_outside : bool
         As in `OutputFolder`.
 
     Yields
@@ -249,7 +224,37 @@ def output_folder(
             allow_outside,
         )
         yield output
-        output._finish()  # noqa: SLF001 - the end of what began here
+        _finish(output)
+
+
+def _finish(output: OutputFolder) -> None:
+    """Check what was written, and keep a record of what no report lists."""
+    staged = _digests(output.staging)
+    for name in staged:
+        output.check(name)
+    outside = {str(path): _digest(path) for path in output.outside if path.is_file()}
+    if not staged and not outside:
+        return
+    kept = {
+        name: digest
+        for name, digest in output.known.items()
+        if name not in staged and os.path.lexists(output.folder / name)
+    }
+    if REPORT in staged:
+        record = {**kept, **outside}
+    else:
+        listed = _listed(output.folder / REPORT)
+        kept = {name: digest for name, digest in kept.items() if listed.get(name) != digest}
+        record = {**kept, **staged, **outside}
+    if record or os.path.lexists(output.folder / RECORD):
+        text = _text({"files": dict(sorted(record.items()))})
+        (output.staging / RECORD).write_text(text, encoding="utf-8", newline="\n")
+
+
+def _digests(folder: Path) -> dict[str, str]:
+    """Digests of all files below a folder, by their paths in it."""
+    files = (path for path in folder.rglob("*") if not path.is_dir())
+    return {path.relative_to(folder).as_posix(): _digest(path) for path in files}
 
 
 def _listed(path: Path) -> dict[str, str]:

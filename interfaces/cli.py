@@ -137,7 +137,7 @@ def _warn_of_no_beams(options: Mapping[str, Any]) -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print the targets' values as JSON.")
 def run(  # numpydoc ignore=PR01
     graph_file: Path, settings: tuple[str, ...], targets: tuple[str, ...], out: Path, *,
-    strict: bool, as_json: bool, **writing: bool,
+    overwrite: bool, allow_outside: bool, strict: bool, as_json: bool,
 ) -> None:  # fmt: skip
     """Run a graph: all of it, or what a target needs.
 
@@ -158,11 +158,16 @@ def run(  # numpydoc ignore=PR01
             click.echo(f"warning: {warning.message}", err=True)
         graph.set(**dict(_setting(text) for text in settings))
         if targets or not is_panel_job(graph):
-            with output_folder(out, inputs=(graph_file,), **writing) as output:
+            with output_folder(
+                out, inputs=(graph_file,), overwrite=overwrite, allow_outside=allow_outside
+            ) as output:
                 values = _run_targets(graph, targets, output, progress)
             _print_values(graph, values, as_json=as_json)
             return
-        report, files = run_job(graph, out, progress, graph_file=graph_file, **writing)
+        report, files = run_job(
+            graph, out, progress, graph_file=graph_file, overwrite=overwrite,
+            allow_outside=allow_outside,
+        )  # fmt: skip
     _print_report(report, out, files, as_json=as_json)
     if strict and _has_errors(report):
         sys.exit(GATE_FAILED)
