@@ -253,7 +253,7 @@ def _check_json(content: Value) -> None:
             pending += ((f"{at}.{n}" if at else n, x, depth + 1) for n, x in items.items())
         elif isinstance(value, list):
             several = cast("list[Value]", value)
-            if not all(type(item) is float and math.isfinite(item) for item in several):
+            if not all(type(x) in {int, float} and math.isfinite(x) for x in several):
                 pending += ((f"{at}[{i}]", x, depth + 1) for i, x in enumerate(several))
         else:
             fault = _fault(value)
