@@ -186,7 +186,7 @@ _DECODERS: dict[str, Callable[[dict[str, Value], Names], Value]] = {
 
 
 MOST_BYTES: Final = 2**26
-_MOST_VALUES: Final = 2_000_000
+_MOST_VALUES: Final = 1_000_000
 _DEEPEST: Final = 64
 _LONGEST_NAME: Final = 200
 _LONGEST_INTEGER: Final = 20
