@@ -6,7 +6,7 @@ never half, and what it leaves besides is removed after a day by the next that w
 Facts of parts are measured once, in the kernel; schedule, audit, user text and drawings read
 them.
 
-mesh_files  OBJ, OFF, PLY and STL, written and read; Rhino files as meshes.
+mesh_files  OBJ, OFF, PLY and STL, written and read; Rhino files and others as meshes.
 rhino       Rhino .3dm files: a model written, meshes and surfaces read.
 opennurbs   The byte stream of .3dm files: exact Breps and render meshes.
 step        STEP files as text, and a check of that text.

@@ -1,6 +1,7 @@
 """Text files of numbers: lines, words, and errors that name the line."""
 
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -57,20 +58,60 @@ def to_floats(words: Sequence[str], lines: Sequence[int], per_line: int) -> Floa
     Raises InputError if a word is not a number; the message names its line.
     """
     try:
-        return np.array(list(map(float, words)), np.float64).reshape(-1, per_line)
+        if _are_plain(words):
+            return np.array(list(map(float, words)), np.float64).reshape(-1, per_line)
     except ValueError:
-        index = next(i for i, word in enumerate(words) if not _is_number(word, float))
+        pass  # perhaps Fortran's numbers: they take longer
+    try:
+        return np.array(list(map(_float, words)), np.float64).reshape(-1, per_line)
+    except ValueError:
+        index = next(i for i, word in enumerate(words) if not _can_read(word, _float))
         raise InputError(_not_a_number(lines[index // per_line], words[index])) from None
 
 
 def _to_integers(words: Sequence[str], lines: Sequence[int], counts: Sequence[int]) -> IntArray:
     """Words as integers, so many from each line."""
     try:
-        return np.array(list(map(int, words)), np.int64)
+        read = int if _are_plain(words) else _integer
+        return np.array(list(map(read, words)), np.int64)
     except (ValueError, OverflowError):
-        index = next(i for i, word in enumerate(words) if not _is_number(word, np.int64))
+        index = next(i for i, word in enumerate(words) if not _can_read(word, _integer))
         line = int(np.repeat(lines, counts)[index])
         raise InputError(_not_a_number(line, words[index])) from None
+
+
+def significant_digits(words: Sequence[str], enough: int = 8) -> int:
+    """Most digits that a number is written with, without leading zeros and exponents.
+
+    Parameters
+    ----------
+    words : sequence of str
+        Numbers as written.
+    enough : int
+        Counting ends at a number of so many.
+
+    Returns
+    -------
+    int
+        The most, at least `enough` if counting ended.
+
+    Examples
+    --------
+    >>> significant_digits(["0.0150", "-5.4e+06", "120"])
+    3
+    """
+    most = 0
+    for word in words:
+        mantissa = word.lower().replace("d", "e").partition("e")[0]
+        most = max(most, len(mantissa.lstrip("+-").replace(".", "").lstrip("0")))
+        if most >= enough:
+            break
+    return most
+
+
+def unended(data: bytes) -> bool:
+    """Whether the last line of a text has no end, as where a file was cut off."""
+    return not data.endswith((b"\n", b"\r"))
 
 
 @dataclass
@@ -114,9 +155,32 @@ class TextPolygons:
         )
 
 
-def _is_number(word: str, kind: type[float | np.int64]) -> bool:
+_FORTRAN = re.compile(r"([+-]?[0-9.]+)[dD]([+-]?[0-9]+)")
+
+
+def _are_plain(words: Sequence[str]) -> bool:
+    """Whether no word has what Python reads as a number and files do not mean: 1_000, ١٢."""
+    text = "".join(words)
+    return text.isascii() and "_" not in text
+
+
+def _float(word: str) -> float:
+    """A number as it is written, in Fortran with D before the exponent."""
+    if not _are_plain([word]):
+        raise ValueError(word)
+    fortran = _FORTRAN.fullmatch(word)
+    return float(f"{fortran[1]}e{fortran[2]}" if fortran else word)
+
+
+def _integer(word: str) -> int:
+    if not _are_plain([word]):
+        raise ValueError(word)
+    return int(np.int64(word))
+
+
+def _can_read(word: str, read: Callable[[str], float]) -> bool:
     try:
-        kind(word)
+        read(word)
     except (ValueError, OverflowError):
         return False
     return True

@@ -62,6 +62,12 @@ def main() -> None:
 @click.option("--units", type=click.Choice(UNITS), default="m", help="Model units.")
 @click.option("--layer", default="", help="Only this layer (.3dm) or group (OBJ).")
 @click.option(
+    "--repair",
+    is_flag=True,
+    help="Repair the mesh first: weld, drop slivers and repeated faces, split T-junctions, "
+    "unify normals; what was done is in the report.",
+)
+@click.option(
     "--edges",
     type=click.Choice(["bisector", "intersection"]),
     help="Cut panels by planes that bisect the faces, or where the spheres meet (the default "
@@ -102,8 +108,9 @@ def panel(  # numpydoc ignore=PR01
 ) -> None:
     """Panel a MESH with spheres and write CAD files, schedule and report.
 
-    Reads OBJ, OFF, PLY, STL and .3dm. Without MESH, a demonstration roof is panelled. Files in
-    the folder are replaced only if spheremesh wrote them and nobody changed them since.
+    Reads OBJ, OFF, PLY, STL and .3dm, and others with spheremesh[formats]. Without MESH, a
+    demonstration roof is panelled. Files in the folder are replaced only if spheremesh wrote
+    them and nobody changed them since.
     """
     from .panel import PanelOptions, panel_graph, run_job
 
@@ -279,6 +286,8 @@ def _print_report(
     report: dict[str, Any], out: Path, files: tuple[str, ...], *, as_json: bool
 ) -> None:
     """Warnings and rejected panels on standard error; the report, or what matters of it."""
+    from ..kernel.repair.description import describe_lines
+
     for text in report["warnings"]:
         click.echo(f"warning: {text}", err=True)
     refused = (*report["panels"]["rejected"], *report["beams"]["rejected"])
@@ -292,6 +301,8 @@ def _print_report(
     if as_json:
         click.echo(json.dumps(report, indent=1))
         return
+    for line in describe_lines(report["mesh"]) if report["mesh"] else ():
+        click.echo(line)
     for name in files:
         click.echo(f"  {out / name}")
     planar, spherical = report["angles_deg"]["planar"], report["angles_deg"]["spherical"]

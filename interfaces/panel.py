@@ -33,6 +33,8 @@ class PanelOptions:
         Mesh file; the demo roof if None.
     layer : str
         Layer or group of the file to use.
+    repair : bool
+        Whether to repair the mesh first.
     units : str
         Model units.
     moulds : int or None
@@ -62,6 +64,7 @@ class PanelOptions:
 
     mesh: Path | None = None
     layer: str = ""
+    repair: bool = False
     units: str = "m"
     moulds: int | None = None
     thickness: float = 0.0
@@ -88,11 +91,11 @@ def panel_graph(options: PanelOptions) -> Graph:
     Returns
     -------
     Graph
-        Its steps are named mesh, start, angles (before an optimum of more than angles),
-        optimum, panels, audit, report, step, rhino, table, list and picture; with a number of
-        moulds also moulds, blanks, mould_drawing and mould_picture, with a support landing
-        (without moulds or a tolerance), nodes, annuli, beams, drawing and beam_table. Its
-        writers write relative to the folder of the run.
+        Its steps are named mesh, description, start, angles (before an optimum of more than
+        angles), optimum, panels, audit, report, step, rhino, table, list and picture; with a
+        number of moulds also moulds, blanks, mould_drawing and mould_picture, with a support
+        landing (without moulds or a tolerance), nodes, annuli, beams, drawing and beam_table.
+        Its writers write relative to the folder of the run.
 
     Raises
     ------
@@ -102,11 +105,8 @@ def panel_graph(options: PanelOptions) -> Graph:
     graph = Graph(options.mesh.stem if options.mesh else "roof", units=options.units)
     thickness = graph.param("thickness", options.thickness, min=0)
     joint_gap = graph.param("joint_gap", options.joint_gap, min=0)
-    if options.mesh is None:
-        mesh = graph.add("roof_mesh", "mesh")
-    else:
-        path = str(options.mesh.resolve())
-        mesh = graph.add("read_mesh", "mesh", path=path, layer=options.layer)
+    mesh = _mesh(graph, options)
+    graph.add("mesh_report", "description", mesh=mesh)
     optimum = _optimum(graph, options, mesh)
     spheres, labels, clusters, blanks = optimum.sphere_mesh, None, None, None
     landing = None
@@ -153,7 +153,17 @@ def panel_graph(options: PanelOptions) -> Graph:
     return graph
 
 
-def _optimum(graph: Graph, options: PanelOptions, mesh: Step) -> Step:
+def _mesh(graph: Graph, options: PanelOptions) -> Step | Wire:
+    """The mesh: of a file, repaired or as it is, or for a demonstration."""
+    if options.mesh is None:
+        return graph.add("roof_mesh", "mesh")
+    path = str(options.mesh.resolve())
+    if options.repair:
+        return graph.add("repair_mesh", "mesh", mesh=path, layer=options.layer).mesh
+    return graph.add("read_mesh", "mesh", path=path, layer=options.layer)
+
+
+def _optimum(graph: Graph, options: PanelOptions, mesh: Step | Wire) -> Step:
     """The spheres: of smallest angles alone, or of more than that."""
     start = graph.add("fit_spheres", "start", mesh=mesh)
     target = {"target_angle": options.target_angle} if options.target_angle else {}
@@ -270,11 +280,12 @@ def run_job(
         run(*graph.ends)
         graph.save(output.staging / GRAPH)
         source = graph.steps["mesh"]
-        path = str(source.inputs.get("path", source.node.name))
+        path = str(source.inputs.get("path") or source.inputs.get("mesh") or source.node.name)
         report: dict[str, Any] = {
             "spheremesh": __version__,
             **found,
             "input": {"path": path, **found["input"]},
+            **_mesh_reports(graph, run),
             "seconds": {
                 "total": time.perf_counter() - began,
                 "optimize": clock.seconds.get("optimum", 0.0),
@@ -299,6 +310,15 @@ def _check_files(graph: Graph, output: OutputFolder) -> None:
     note_known_files(uses, graph.steps.values(), values)
     for name in (GRAPH, REPORT):
         output.check(name)
+
+
+def _mesh_reports(graph: Graph, run: Callable[..., Any]) -> dict[str, Any]:
+    """What the mesh is, and what its repair did, where a graph has these steps."""
+    is_repaired = graph.steps["mesh"].node.name == "repair_mesh"
+    return {
+        "mesh": dict(run("description")) if "description" in graph.steps else None,
+        "repair": dict(run("mesh.report")) if is_repaired else None,
+    }
 
 
 def _refuse_unfinished(optimum: Mapping[str, Any]) -> None:

@@ -44,6 +44,19 @@ SAME_LENGTH: Final = 1e-6
 CREASE: Final = 0.6981317007977318
 """Triangles that meet at a larger angle (40 degrees) make a crease, not a curved surface."""
 
+# Repair
+
+SAME_PLACE: Final = 1e-6
+"""Vertices closer than this, in mean edges, are one (1 µm per m)."""
+WIDEST_WELD: Final = 1e-3
+"""Vertices farther apart, in mean edges, are not one, however few digits a file has."""
+ROUNDED_PLACES: Final = 4.0
+"""Places differ by rounding if closer than this many spacings of their numbers."""
+FARTHEST_PLACE: Final = 1e100
+"""Coordinates beyond this are no places: their squares have no float64 to spare."""
+WELL_KNOWN_DIGITS: Final = 15
+"""Decimal digits that a float64 always keeps: numbers with fewer were rounded."""
+
 # Spheres
 
 CROSSING: Final = 1e-9
@@ -179,6 +192,8 @@ COINCIDENT: Final = 1e-6
 """Vertices of separate meshes closer than this, in mean edges, are one (1 µm per m)."""
 EXACT_BREP: Final = 1e-12
 """How far the parts of a Brep may lie apart, relative to the radius of its sphere."""
+ROUNDED_FILE: Final = 0.01
+"""Coordinates of a file rounded by more, in mean edges, are worth a remark (1 cm per m)."""
 SINGLE_EPSILON: Final = 1.1920928955078125e-07
 """Spacing of float32 at 1."""
 EDGE_MISS: Final = 0.01

@@ -251,6 +251,9 @@ def _direction_labels(mesh: Mesh) -> IntArray:
     left, right = topology.edge_faces[tree].T
     starts = np.concatenate([left, left + count])
     ends = np.concatenate([right + swaps * count, right + (1 - swaps) * count])
-    sets, pieces = piece_labels(starts, ends, 2 * count), piece_labels(*pairs.T, count)
+    sets, pieces = (
+        piece_labels(starts, ends, 2 * count),
+        piece_labels(pairs[:, 0], pairs[:, 1], count),
+    )
     _, roots, piece = np.unique(pieces, return_index=True, return_inverse=True)
     return (sets[:count] != sets[roots[piece]]).astype(np.int64)

@@ -1,11 +1,11 @@
 """The files of a run: where paths lead, and that no step writes over what another reads."""
 
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeAlias, cast
+from typing import Any, TypeAlias, TypeGuard, cast
 
 from ...fabrication.output_folder import OutputFolder
 from .annotations import Value
@@ -50,7 +50,7 @@ class Folders:
         """Where a file that is written will be when the run is over."""
         if isinstance(self.write_to, OutputFolder):
             return self.write_to.located(path)
-        return Path(cast("str", _beside(self.write_to, path)))
+        return Path(_beside(self.write_to, path))
 
     def check(self, path: str) -> None:
         """Refuse a file that would be where it must not."""
@@ -166,12 +166,17 @@ def is_written(given: Value) -> bool:
 
 
 def paths_of(value: Value) -> list[str]:
-    """The files of a path: none, one, or one for each item."""
-    if value is None:
+    """The files of an input that takes paths: none, one, or one for each item."""
+    if _is_path(value):
+        return [os.fspath(value)]
+    if not isinstance(value, list | tuple):
         return []
-    if isinstance(value, str | os.PathLike):
-        return [os.fspath(cast("str | os.PathLike[str]", value))]
-    return [path for item in value for path in paths_of(item)]
+    return [path for item in cast("Sequence[Value]", value) for path in paths_of(item)]
+
+
+def _is_path(value: Value) -> TypeGuard[str | os.PathLike[str]]:
+    """Some inputs take a path or a value of another kind."""
+    return isinstance(value, str | os.PathLike)
 
 
 def _literal(given: Value, values: Mapping[str, Any]) -> Value:
@@ -184,15 +189,14 @@ def _literal(given: Value, values: Mapping[str, Any]) -> Value:
     return given
 
 
-def _each_path(value: Value, change: Callable[[Value], Value]) -> Value:
-    if value is None:
-        return None
+def _each_path(value: Value, change: Callable[[str], Value]) -> Value:
+    """Paths changed; what is no path stays as it is."""
     if isinstance(value, list | tuple):
         return [_each_path(path, change) for path in cast("list[Value]", value)]
-    return change(value)
+    return change(os.fspath(value)) if _is_path(value) else value
 
 
-def _beside(folder: Path | None, path: Value) -> Value:
+def _beside(folder: Path | None, path: str) -> str:
     return path if folder is None else str(folder / path)
 
 

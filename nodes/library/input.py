@@ -9,7 +9,7 @@ from ...kernel.meshes.mesh import Mesh
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.surfaces import circular_nets as surfaces
 from ...kernel.surfaces import triangulated
-from ..graphs.node import node
+from ..graphs.node import node, warn
 from ..graphs.ports import Length, Port, ReadPath, WritePath
 from .arrays import VertexNormals
 
@@ -30,9 +30,12 @@ def read_mesh(path: ReadPath, layer: str = "", n_u: Count = 24, n_v: Count = 24)
     Parameters
     ----------
     path : path
-        An OBJ, OFF, PLY, STL or Rhino .3dm file; polygons are kept as they are.
+        An OBJ, OFF, PLY, STL or Rhino .3dm file; with ``spheremesh[formats]`` also VTK, VTU,
+        Gmsh, Nastran, glTF and others. Polygons are kept as they are. What was mended or left
+        out is a warning.
     layer : str
-        Only what is on this layer (.3dm) or in this group (OBJ), and below.
+        Only what is on this layer (.3dm) or in this group (OBJ), and below; several with
+        commas.
     n_u, n_v : int
         Faces along u and v of each surface, where a .3dm holds surfaces and no meshes.
 
@@ -49,7 +52,10 @@ def read_mesh(path: ReadPath, layer: str = "", n_u: Count = 24, n_v: Count = 24)
     ...     read_mesh(write_mesh(vase_mesh(12, 6), f"{folder}/vase.obj")).n_faces
     72
     """
-    return reader.read_mesh(path, layer, n_u, n_v)
+    content = reader.read_content(path, layer, n_u, n_v)
+    for remark in content.remarks:
+        warn(remark)
+    return reader.content_mesh(content, path)
 
 
 @node

@@ -121,7 +121,8 @@ def _checked_areas(mesh: Mesh) -> FloatArray:
     unused = np.setdiff1d(np.arange(mesh.n_vertices), mesh.corners)
     if len(unused):
         raise InputError(f"vertices {name_ids(unused.tolist())} belong to no face: remove them")
-    count = piece_labels(*mesh.topology.edge_faces.T, mesh.n_faces).max() + 1
+    left, right = mesh.topology.edge_faces.T
+    count = piece_labels(left, right, mesh.n_faces).max() + 1
     if count > 1:
         raise InputError(f"the mesh has {count} separate pieces: remesh them one by one")
     return areas
