@@ -4,6 +4,7 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias, TypeGuard, cast
 
@@ -37,14 +38,15 @@ class Folders:
 
     def source(self, value: Value) -> Value:
         """The paths of an input that reads; paths and lists of them alike."""
-        return _each_path(value, lambda path: _beside(self.read_from, path))
+        folder = self.read_from
+        return value if folder is None else _each_path(value, partial(_beside, folder))
 
     def target(self, value: Value) -> Value:
         """The paths that an input that writes is told, for the time being."""
         folder = self.write_to
         if isinstance(folder, OutputFolder):
             return _each_path(value, lambda path: str(folder.place(path)))
-        return _each_path(value, lambda path: _beside(folder, path))
+        return value if folder is None else _each_path(value, partial(_beside, folder))
 
     def end(self, path: str) -> Path:
         """Where a file that is written will be when the run is over."""
