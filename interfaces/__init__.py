@@ -1,5 +1,6 @@
 """Ways in: the command line.
 
-cli    The commands; their docstrings are their help.
-panel  The main job as a graph that the user can open again.
+cli            The commands; their docstrings are their help.
+option_values  Values of options that are more than a number or a word.
+panel          The main job as a graph that the user can open again.
 """

@@ -19,6 +19,8 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import click
 
+from .option_values import rows_option
+
 if TYPE_CHECKING:
     from ..fabrication.output_folder import OutputFolder
     from ..nodes.graphs.graph import Graph
@@ -68,6 +70,17 @@ def main() -> None:
     "unify normals; what was done is in the report.",
 )
 @click.option(
+    "--edge-length",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Length of the edges on surfaces of a .3dm, in model units.",
+)
+@click.option(
+    "--rows",
+    metavar="U,V",
+    callback=rows_option,
+    help="Rows of faces along u and v of each surface of a .3dm; 24,24 by default.",
+)
+@click.option(
     "--edges",
     type=click.Choice(["bisector", "intersection"]),
     help="Cut panels by planes that bisect the faces, or where the spheres meet (the default "
@@ -114,6 +127,8 @@ def panel(  # numpydoc ignore=PR01
     """
     from .panel import PanelOptions, panel_graph, run_job
 
+    if options["rows"] and options["edge_length"]:
+        raise click.UsageError("--rows and --edge-length exclude each other; drop one")
     _warn_of_no_beams(options)
     with _errors(), _progress() as progress:
         graph = panel_graph(PanelOptions(**options))

@@ -35,6 +35,10 @@ class PanelOptions:
         Layer or group of the file to use.
     repair : bool
         Whether to repair the mesh first.
+    edge_length : float or None
+        Length of the edges of faces on surfaces, in model units.
+    rows : (int, int) or None
+        Rows of faces along u and v of each surface; neither: as `read_mesh` has it.
     units : str
         Model units.
     moulds : int or None
@@ -65,6 +69,8 @@ class PanelOptions:
     mesh: Path | None = None
     layer: str = ""
     repair: bool = False
+    edge_length: float | None = None
+    rows: tuple[int, int] | None = None
     units: str = "m"
     moulds: int | None = None
     thickness: float = 0.0
@@ -158,9 +164,17 @@ def _mesh(graph: Graph, options: PanelOptions) -> Step | Wire:
     if options.mesh is None:
         return graph.add("roof_mesh", "mesh")
     path = str(options.mesh.resolve())
+    rows = _fineness(options)
     if options.repair:
-        return graph.add("repair_mesh", "mesh", mesh=path, layer=options.layer).mesh
-    return graph.add("read_mesh", "mesh", path=path, layer=options.layer)
+        return graph.add("repair_mesh", "mesh", mesh=path, layer=options.layer, **rows).mesh
+    return graph.add("read_mesh", "mesh", path=path, layer=options.layer, **rows)
+
+
+def _fineness(options: PanelOptions) -> dict[str, Any]:
+    """How finely surfaces are divided."""
+    if options.edge_length is not None:
+        return {"edge_length": options.edge_length}
+    return dict(zip(("n_u", "n_v"), options.rows or (), strict=False))
 
 
 def _optimum(graph: Graph, options: PanelOptions, mesh: Step | Wire) -> Step:

@@ -57,6 +57,19 @@ FARTHEST_PLACE: Final = 1e100
 WELL_KNOWN_DIGITS: Final = 15
 """Decimal digits that a float64 always keeps: numbers with fewer were rounded."""
 
+# Surfaces
+
+PARAMETER_SLACK: Final = 1e-9
+"""Parameters outside of a domain by less, relative to its size or its ends, are at its end."""
+POLE: Final = 1e-9
+"""A side of a surface shorter than this share of the surface's size is a point."""
+SMOOTH_JOINT: Final = 0.017453292519943295
+"""Faces whose normals differ by less (1 degree, as in Rhino) where they meet join smoothly."""
+SURFACE_CORNER: Final = 0.4363323129985824
+"""A boundary of a face that turns by more (25 degrees) from edge to edge has a corner there."""
+FLAT_TRIANGLE: Final = 1e-9
+"""A triangle between points of a line has less than this share of a squared spacing as area."""
+
 # Spheres
 
 CROSSING: Final = 1e-9
@@ -200,6 +213,8 @@ EDGE_MISS: Final = 0.01
 """A trimmed face whose edges lie farther off its surface, in edge lengths, is refused."""
 CLOSED: Final = 1e-6
 """A surface whose ends lie this close, relative to its size, is closed there."""
+ON_EDGE: Final = 1e-12
+"""Points of a surface this close to an edge, relative to the surface's size, lie on it."""
 OVERLAP: Final = 1e-6
 """Beams that run into each other by less, in thicknesses, touch (rounding of mitres)."""
 SINGLE_IS_ENOUGH: Final = 0.01

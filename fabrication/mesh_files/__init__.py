@@ -10,6 +10,7 @@ other_formats    VTK, Gmsh, Nastran, glTF and others, through meshio and trimesh
 ply              Polygon File Format (PLY): ascii or binary, polygons of any degree.
 reader           Reads a file of any of these formats, or a Rhino .3dm.
 stl              STL: separate triangles, ascii or binary with float32 coordinates.
+surface_files    Surfaces of a .3dm with their exact normals and curvatures.
 writer           Writes them.
 
 A reader gives a `FileContent`: polygons as they are meant, and remarks on what was mended, left

@@ -6,6 +6,7 @@ negative OBJ numbers, fails on ``vertex_index`` in PLY, and leaves the program w
 read a file. Both serve for formats that few use.
 """
 
+import math
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -37,6 +38,7 @@ def read_mesh(
     layer: str | Sequence[str] = "",
     n_u: int = 24,
     n_v: int = 24,
+    edge_length: float | None = None,
 ) -> Mesh:
     """Read a mesh with faces of mixed degree: `read_content`, as a mesh.
 
@@ -53,9 +55,10 @@ def read_mesh(
         (``Roof::Panels``) with its sublayers. The other formats have no layers. Empty reads
         all.
     n_u, n_v : int
-        Quads along u and v of each face where a .3dm holds surfaces or polysurfaces and no
-        meshes. Faces trimmed by other than four edges take even numbers; faces of a
-        polysurface meet where the numbers along their common edge agree.
+        Rows of quads along u and v of each face of surfaces and polysurfaces in a .3dm. Faces
+        meet: where their numbers along a common edge differ, the larger holds.
+    edge_length : float, optional
+        Length of the edges there, instead of numbers of rows; in model units.
 
     Returns
     -------
@@ -71,7 +74,7 @@ def read_mesh(
         If the file cannot be read or is no orientable manifold mesh; the message names the
         file, the line (of text files) or the faces, and what to do. Faces are never flipped.
     """
-    return content_mesh(read_content(path, layer, n_u, n_v), path)
+    return content_mesh(read_content(path, layer, n_u, n_v, edge_length), path)
 
 
 def content_mesh(content: FileContent, path: str | os.PathLike[str]) -> Mesh:
@@ -98,6 +101,7 @@ def read_content(
     layer: str | Sequence[str] = "",
     n_u: int = 24,
     n_v: int = 24,
+    edge_length: float | None = None,
 ) -> FileContent:
     """What a mesh file holds, whether or not it is a mesh; see `read_mesh`.
 
@@ -114,12 +118,14 @@ def read_content(
         raise InputError(f"cannot read {source}: {suffix} files have no layers; drop {layer!r}")
     if min(n_u, n_v) < 1:
         raise InputError(f"a grid of {n_u} by {n_v} quads has no faces; ask for at least 1")
+    if edge_length is not None and not 0 < edge_length < math.inf:
+        raise InputError(f"the edge length must be positive, not {edge_length}")
     data = read_bytes(source)
     try:
         check_kind(data, suffix)
         if suffix == ".3dm":
             names = layer if isinstance(layer, str) else ",".join(layer)
-            return read_3dm(data, names, GridSize(n_u, n_v))
+            return read_3dm(data, names, GridSize(n_u, n_v, edge_length))
         if suffix == ".obj":
             return read_obj(data, layer)
         if suffix in _READERS:

@@ -68,10 +68,10 @@ def read_3dm(data: bytes, layer: str = "", size: GridSize = _GRID) -> FileConten
     if meshes:
         return FileContent(_weld(meshes))
     grids = [
-        transform_polygons(grid, each.transform)
+        grid
         for each in objects
         if type(each.geometry).__name__ in SURFACES
-        for grid in sample_object(each.geometry, size)
+        for grid in sample_object(each.geometry, size, each.transform)
     ]
     if grids:
         found = drop_repeats(_weld(grids))

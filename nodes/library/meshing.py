@@ -15,9 +15,11 @@ from ...kernel.repair import description, pipeline
 from ...kernel.repair.description import MeshReport
 from ...kernel.repair.pipeline import RepairReport
 from ...kernel.repair.raw_mesh import RawMesh, raw_from_faces, raw_from_mesh, raw_from_rows
+from ...kernel.surfaces.surface import Surface
 from ...kernel.tolerances import MOSTLY_EVEN
 from ..graphs.node import node, warn
-from ..graphs.ports import Port, ReadPath
+from ..graphs.ports import Length, Port, ReadPath
+from .arrays import VertexCurvatures, VertexDirections, VertexMarks, VertexNormals
 
 AnyMesh: TypeAlias = Mesh | ReadPath | tuple[FloatArray, Sequence[Sequence[int]]]
 """A mesh, a mesh file, or points and the vertex ids of each face."""
@@ -27,6 +29,16 @@ SCHEMES = {
     "catmull-clark": subdivision.subdivide_catmull_clark,
     "midpoint": subdivision.subdivide_midpoint,
 }
+
+
+class SurfaceFields(NamedTuple):
+    """A mesh on a surface, and the shape of the surface at its vertices."""
+
+    mesh: Mesh
+    normals: VertexNormals
+    curvatures: VertexCurvatures
+    directions: VertexDirections
+    is_smooth: VertexMarks
 
 
 @node
@@ -132,6 +144,48 @@ def remesh_triangles(
     return result
 
 
+@node
+def surface_fields(surface: Surface) -> SurfaceFields:
+    """The mesh of a surface and what is known at its vertices, one by one.
+
+    Parameters
+    ----------
+    surface : Surface
+        A surface, as read by `read_surface`.
+
+    Returns
+    -------
+    mesh : Mesh
+        The mesh on the surface.
+    normals : (V, 3) float array
+        Unit normals.
+    curvatures : (V, 2) float array
+        The larger and the smaller principal curvature, positive towards the normal.
+    directions : (V, 2, 3) float array
+        Principal directions of the two.
+    is_smooth : (V,) bool array
+        False on creases and at apexes.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from spheremesh import Mesh, Surface
+    >>> from spheremesh.nodes import surface_fields
+    >>> square = Mesh(np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), [[0, 1, 2, 3]])
+    >>> axes = np.tile(np.eye(3), (4, 1, 1))
+    >>> flat = Surface(square, axes[:, 2], np.zeros((4, 2)), axes[:, :2], np.ones(4, bool))
+    >>> surface_fields(flat).curvatures.tolist()
+    [[0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]]
+    """
+    return SurfaceFields(
+        surface.mesh,
+        surface.normals,
+        surface.curvatures,
+        surface.directions,
+        surface.is_smooth,
+    )
+
+
 class RepairedMesh(NamedTuple):
     """A mesh, and what was done to make it one."""
 
@@ -141,7 +195,12 @@ class RepairedMesh(NamedTuple):
 
 @node
 def repair_mesh(
-    mesh: AnyMesh, tolerance: Annotated[float, Port(min=0)] | None = None, layer: str = ""
+    mesh: AnyMesh,
+    tolerance: Annotated[float, Port(min=0)] | None = None,
+    layer: str = "",
+    edge_length: Length | None = None,
+    n_u: Annotated[int, Port(min=1, max=2000)] = 24,
+    n_v: Annotated[int, Port(min=1, max=2000)] = 24,
 ) -> RepairedMesh:
     """Make a mesh of faces that are none, or that do not hang together, and say what was done.
 
@@ -158,6 +217,10 @@ def repair_mesh(
         numbers that the coordinates were written with, between 1e-6 and 1e-3 mean edges.
     layer : str
         Of a file: only what is on this layer (.3dm) or in this group (OBJ).
+    edge_length : float, optional
+        Of a .3dm with surfaces: length of the edges on them, instead of numbers of rows.
+    n_u, n_v : int
+        Rows of faces along u and v of each surface.
 
     Returns
     -------
@@ -177,7 +240,7 @@ def repair_mesh(
     >>> mesh.n_faces, report.welded_vertices, report.duplicate_faces
     (2, [[1, 4]], [[2, 0]])
     """
-    repaired, report = pipeline.repair(_raw_mesh(mesh, layer), tolerance)
+    repaired, report = pipeline.repair(_raw_mesh(mesh, layer, n_u, n_v, edge_length), tolerance)
     done = pipeline.repair_words(pipeline.repair_counts(report), is_done=True)
     if done:
         warn(f"the mesh was repaired: {done} (tolerance {report.tolerance:.2g})")
@@ -211,11 +274,15 @@ def mesh_report(mesh: AnyMesh, layer: str = "") -> MeshReport:
 
 
 def _raw_mesh(
-    mesh: Mesh | str | os.PathLike[str] | tuple[FloatArray, Sequence[Sequence[int]]], layer: str
+    mesh: Mesh | str | os.PathLike[str] | tuple[FloatArray, Sequence[Sequence[int]]],
+    layer: str,
+    n_u: int = 24,
+    n_v: int = 24,
+    edge_length: float | None = None,
 ) -> RawMesh:
     """The faces of a mesh, of a file or of a pair, whatever they are."""
     if isinstance(mesh, str | os.PathLike):
-        content = read_content(mesh, layer)
+        content = read_content(mesh, layer, n_u, n_v, edge_length)
         for remark in content.remarks:
             # What a repair mends its report says itself.
             if "repair_mesh" not in remark:
