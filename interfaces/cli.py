@@ -6,11 +6,9 @@ Exit codes: 0 done, 1 a library of the system is missing, 2 usage, 3 bad input, 
 5 finished but a quality gate failed. An error is one line on standard error.
 """
 
-import inspect
 import json
 import math
 import sys
-import textwrap
 import warnings
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
@@ -24,8 +22,6 @@ from .option_values import rows_option
 if TYPE_CHECKING:
     from ..fabrication.output_folder import OutputFolder
     from ..nodes.graphs.graph import Graph
-    from ..nodes.graphs.node import Node
-    from ..nodes.graphs.ports import Port
     from .panel import Progress
 
 MISSING_LIBRARY: Final = 1
@@ -221,9 +217,10 @@ def nodes(name: str | None) -> None:  # numpydoc ignore=PR01
     """List the nodes, or explain one."""
     with _errors():
         from ..nodes.graphs.node import REGISTRY, find_node, load_library
+        from .node_help import print_node
 
         if name is not None:
-            _print_node(find_node(name))
+            print_node(find_node(name))
             return
         load_library()
         for category in sorted({node.category for node in REGISTRY.values()}):
@@ -355,36 +352,6 @@ def _print_audit(audit: Mapping[str, Any]) -> None:
             shown.add(found["code"])
             count = audit["counts"][found["code"]]
             click.echo(f"  {found['code']} ({count}): {found['id']}: {found['message']}")
-
-
-def _print_node(node: "Node") -> None:
-    from ..kernel.reports import Report
-
-    click.echo(f"{click.style(node.name, bold=True)} ({node.category})\n\n{node.summary}")
-    for title, ports in (("Inputs", node.inputs), ("Outputs", node.outputs)):
-        click.echo(f"\n{click.style(title, bold=True)}")
-        for port in ports.values():
-            click.echo(f"  {port.name} : {_port_facts(port)}")
-            if port.help:
-                click.echo(textwrap.indent(textwrap.fill(port.help, 84), "      "))
-            if isinstance(port.type, type) and issubclass(port.type, Report):
-                fields = (inspect.getdoc(port.type) or "").partition("-\n")[2]
-                click.echo(textwrap.indent(fields, "        "))
-
-
-def _port_facts(port: "Port") -> str:
-    """Type, unit, range and default of a port, in one line."""
-    from ..nodes.graphs.annotations import type_name
-    from ..nodes.graphs.ports import REQUIRED
-
-    facts = [f"{type_name(port.type)} in {port.unit}" if port.unit else type_name(port.type)]
-    if port.min is not None:
-        facts.append(f"at least {port.min:g}")
-    if port.max is not None:
-        facts.append(f"at most {port.max:g}")
-    if port.default is not REQUIRED:
-        facts.append(f"default {port.default!r}")
-    return ", ".join(facts)
 
 
 def _plain(value: Any) -> Any:  # noqa: ANN401
