@@ -15,6 +15,7 @@ schedules   Lists of parts with all that a workshop asks for.
 audit       Numbered findings before files go out.
 solids      The same parts as shapes of OpenCASCADE and CadQuery.
 model       What every writer writes, and what it gives back.
+output_folder  The folder of a job: nothing of the user's is overwritten there.
 files       Files written whole or not at all.
 units       Units of length: the only place that knows what a millimetre is.
 sizes       How large a model is in its units, and whether a building can be so.

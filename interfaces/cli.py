@@ -6,10 +6,8 @@ Exit codes: 0 done, 1 a library of the system is missing, 2 usage, 3 bad input, 
 5 finished but a quality gate failed. An error is one line on standard error.
 """
 
-import inspect
 import json
 import sys
-import textwrap
 import warnings
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
@@ -21,9 +19,8 @@ import click
 from .option_values import joined_option, plain_value, rows_option
 
 if TYPE_CHECKING:
+    from ..fabrication.output_folder import OutputFolder
     from ..nodes.graphs.graph import Graph
-    from ..nodes.graphs.node import Node
-    from ..nodes.graphs.ports import Port
     from .panel import Progress
 
 MISSING_LIBRARY: Final = 1
@@ -115,11 +112,13 @@ def main() -> None:
     default=0.0,
     help="Radius of cylinders at the nodes, before which beams end square; 0 for mitres.",
 )
+@click.option("--overwrite", is_flag=True, help="Replace files that spheremesh did not write.")
 @click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report alone.")
 def panel(  # numpydoc ignore=PR01
     out: Path,
     *,
+    overwrite: bool,
     strict: bool,
     as_json: bool,
     **options: Any,  # noqa: ANN401
@@ -127,7 +126,8 @@ def panel(  # numpydoc ignore=PR01
     """Panel a MESH with spheres and write CAD files, schedule and report.
 
     Reads OBJ, OFF, PLY, STL and .3dm, and others with spheremesh[formats]. Without MESH, a
-    demonstration roof is panelled.
+    demonstration roof is panelled. Files in the folder are replaced only if spheremesh wrote
+    them and nobody changed them since.
     """
     from .panel import PanelOptions, file_units, panel_graph, run_job
 
@@ -136,7 +136,7 @@ def panel(  # numpydoc ignore=PR01
     _warn_of_no_beams(options)
     with _errors(), _progress() as progress:
         job = PanelOptions(**options)
-        report, files = run_job(panel_graph(job), out, progress)
+        report, files = run_job(panel_graph(job), out, progress, overwrite=overwrite)
         is_assumed = job.mesh is not None and not (job.units or file_units(job))
     _print_report(report, out, files, as_json=as_json, is_assumed=is_assumed)
     if strict and _has_errors(report):
@@ -158,17 +158,21 @@ def _warn_of_no_beams(options: Mapping[str, Any]) -> None:
 @click.option(
     "-o", "--out", default=".", type=click.Path(path_type=Path), help="Folder for its files."
 )
+@click.option("--overwrite", is_flag=True, help="Replace files that spheremesh did not write.")
+@click.option("--allow-outside", is_flag=True, help="Let steps write outside of the folder.")
 @click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
 @click.option("--json", "as_json", is_flag=True, help="Print the targets' values as JSON.")
 def run(  # numpydoc ignore=PR01
     graph_file: Path, settings: tuple[str, ...], targets: tuple[str, ...], out: Path, *,
-    strict: bool, as_json: bool,
+    overwrite: bool, allow_outside: bool, strict: bool, as_json: bool,
 ) -> None:  # fmt: skip
     """Run a graph: all of it, or what a target needs.
 
-    Relative paths are read from the working directory and written to the output folder. The
-    graph of a panel job writes its report and itself anew.
+    Relative paths are read from the working directory and written to the output folder, and
+    nothing is written elsewhere. The graph of a panel job writes its report and itself anew;
+    other files are replaced only if spheremesh wrote them and nobody changed them since.
     """
+    from ..fabrication.output_folder import output_folder
     from .panel import is_panel_job, run_job
 
     with _errors(), _progress() as progress:
@@ -181,27 +185,34 @@ def run(  # numpydoc ignore=PR01
             click.echo(f"warning: {warning.message}", err=True)
         graph.set(**dict(_setting(text) for text in settings))
         if targets or not is_panel_job(graph):
-            _run_targets(graph, targets, out, progress, as_json=as_json)
+            with output_folder(
+                out, inputs=(graph_file,), overwrite=overwrite, allow_outside=allow_outside
+            ) as output:
+                values = _run_targets(graph, targets, output, progress)
+            _print_values(graph, values, as_json=as_json)
             return
-        report, files = run_job(graph, out, progress)
+        report, files = run_job(
+            graph, out, progress, graph_file=graph_file, overwrite=overwrite,
+            allow_outside=allow_outside,
+        )  # fmt: skip
     _print_report(report, out, files, as_json=as_json)
     if strict and _has_errors(report):
         sys.exit(GATE_FAILED)
 
 
 def _run_targets(
-    graph: "Graph", targets: tuple[str, ...], out: Path, progress: "Progress", *, as_json: bool
-) -> None:
-    from ..fabrication.files import replacing_all
-
+    graph: "Graph", targets: tuple[str, ...], out: "OutputFolder", progress: "Progress"
+) -> dict[str, Any]:
     names = targets or tuple(step.name for step in graph.ends)
-    with replacing_all(out) as staging:
-        results = graph.run(*names, on_step=progress, write_to=staging)
-    values = (results,) if len(names) == 1 else results
+    results = graph.run(*names, on_step=progress, write_to=out)
+    return dict(zip(names, (results,) if len(names) == 1 else results, strict=True))
+
+
+def _print_values(graph: "Graph", values: Mapping[str, Any], *, as_json: bool) -> None:
     for messages in graph.messages.values():
         for text in messages:
             click.echo(f"warning: {text}", err=True)
-    plain = {name: plain_value(value) for name, value in zip(names, values, strict=True)}
+    plain = {name: plain_value(value) for name, value in values.items()}
     if as_json:
         click.echo(json.dumps(plain, indent=1, allow_nan=False))
         return
@@ -215,9 +226,10 @@ def nodes(name: str | None) -> None:  # numpydoc ignore=PR01
     """List the nodes, or explain one."""
     with _errors():
         from ..nodes.graphs.node import REGISTRY, find_node, load_library
+        from .node_help import print_node
 
         if name is not None:
-            _print_node(find_node(name))
+            print_node(find_node(name))
             return
         load_library()
         for category in sorted({node.category for node in REGISTRY.values()}):
@@ -287,7 +299,7 @@ def _setting(text: str) -> tuple[str, Any]:
         raise click.UsageError(f"--set takes NAME=VALUE, not {text!r}")
     try:
         return name, json.loads(value)
-    except json.JSONDecodeError:
+    except (ValueError, RecursionError):  # a ValueError: too many digits, too
         return name, value
 
 
@@ -363,33 +375,3 @@ def _print_audit(audit: Mapping[str, Any]) -> None:
             shown.add(found["code"])
             count = audit["counts"][found["code"]]
             click.echo(f"  {found['code']} ({count}): {found['id']}: {found['message']}")
-
-
-def _print_node(node: "Node") -> None:
-    from ..kernel.reports import Report
-
-    click.echo(f"{click.style(node.name, bold=True)} ({node.category})\n\n{node.summary}")
-    for title, ports in (("Inputs", node.inputs), ("Outputs", node.outputs)):
-        click.echo(f"\n{click.style(title, bold=True)}")
-        for port in ports.values():
-            click.echo(f"  {port.name} : {_port_facts(port)}")
-            if port.help:
-                click.echo(textwrap.indent(textwrap.fill(port.help, 84), "      "))
-            if isinstance(port.type, type) and issubclass(port.type, Report):
-                fields = (inspect.getdoc(port.type) or "").partition("-\n")[2]
-                click.echo(textwrap.indent(fields, "        "))
-
-
-def _port_facts(port: "Port") -> str:
-    """Type, unit, range and default of a port, in one line."""
-    from ..nodes.graphs.annotations import type_name
-    from ..nodes.graphs.ports import REQUIRED
-
-    facts = [f"{type_name(port.type)} in {port.unit}" if port.unit else type_name(port.type)]
-    if port.min is not None:
-        facts.append(f"at least {port.min:g}")
-    if port.max is not None:
-        facts.append(f"at most {port.max:g}")
-    if port.default is not REQUIRED:
-        facts.append(f"default {port.default!r}")
-    return ", ".join(facts)

@@ -1,19 +1,22 @@
 """The main job: a mesh in, spherical panels out, as a graph that the user can open again."""
 
-import json
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 from .. import __version__
-from ..fabrication.files import replacing_all
 from ..fabrication.mesh_files.reader import read_content
+from ..fabrication.output_folder import REPORT, OutputFolder, output_folder
 from ..kernel.errors import ConvergenceError, InputError
+from ..nodes.graphs.files import FileUses, Folders, note_known_files
 from ..nodes.graphs.graph import Graph
 from ..nodes.graphs.wires import Step, Wire
+
+GRAPH: Final = "graph.json"
+"""Name of the graph of a job beside its files."""
 
 Progress = Callable[[str, str], None]
 
@@ -260,7 +263,13 @@ def is_panel_job(graph: Graph) -> bool:
 
 
 def run_job(
-    graph: Graph, folder: Path, progress: Progress
+    graph: Graph,
+    folder: Path,
+    progress: Progress,
+    *,
+    graph_file: Path | None = None,
+    overwrite: bool = False,
+    allow_outside: bool = False,
 ) -> tuple[dict[str, Any], tuple[str, ...]]:
     """Run the main job and write all of its files, or none.
 
@@ -272,6 +281,12 @@ def run_job(
         Where the files go; made if it does not exist.
     progress : callable
         Called with the name of a step and its state, as `Graph.run` does.
+    graph_file : Path, optional
+        Where the graph was read: it may take its own place, and no other file may.
+    overwrite : bool
+        Whether files may be replaced that the job reads or that spheremesh did not write.
+    allow_outside : bool
+        Whether steps may write outside of the folder.
 
     Returns
     -------
@@ -284,12 +299,19 @@ def run_job(
     ------
     InputError, ConvergenceError, NodeError, GraphError
         If the input cannot be used, the optimisation does not converge, or no panel can be
-        made; nothing is written then.
+        made, or a file would be replaced that must not; nothing is written then.
     """
     began = time.perf_counter()
     clock = _StepClock(progress)
-    with replacing_all(folder) as staging:
-        run = partial(graph.run, on_step=clock.note, write_to=staging)
+    with output_folder(
+        folder,
+        inputs=() if graph_file is None else (graph_file,),
+        renewed=GRAPH,
+        overwrite=overwrite,
+        allow_outside=allow_outside,
+    ) as output:
+        _check_files(graph, output)
+        run = partial(graph.run, on_step=clock.note, write_to=output)
         _refuse_nothing(run("panels.report"), "panels")
         _refuse_unfinished(run("optimum.report", on_step=None))
         if "annuli" in graph.steps:
@@ -299,7 +321,7 @@ def run_job(
         if found["support"]:
             _refuse_nothing(found["beams"], "beams")
         run(*graph.ends)
-        graph.save(staging / "graph.json")
+        graph.save(output.staging / GRAPH)
         source = graph.steps["mesh"]
         path = str(source.inputs.get("path") or source.inputs.get("mesh") or source.node.name)
         report: dict[str, Any] = {
@@ -320,10 +342,17 @@ def run_job(
                 for text in messages
             ],
         }
-        text = json.dumps(report, indent=1, allow_nan=False) + "\n"
-        (staging / "report.json").write_text(text, encoding="utf-8")
-        files = tuple(sorted(path.name for path in staging.iterdir()))
-    return report, files
+        report = output.write_report(report)
+    return report, tuple(sorted(report["files"]))
+
+
+def _check_files(graph: Graph, output: OutputFolder) -> None:
+    """Refuse at once what the job must not write; a step may still add to it."""
+    values = {name: param.value for name, param in graph.params.items()}
+    uses = FileUses(Folders(write_to=output))
+    note_known_files(uses, graph.steps.values(), values)
+    for name in (GRAPH, REPORT):
+        output.check(name)
 
 
 def _mesh_reports(graph: Graph, run: Callable[..., Any]) -> dict[str, Any]:

@@ -79,13 +79,7 @@ class Step:
     def __getattr__(self, port: str) -> Wire:
         if port.startswith("_"):
             raise AttributeError(port)
-        outputs = self.node.outputs
-        if port not in outputs:
-            raise UnknownPortError(
-                f"step {self.name!r} (node {self.node.name}) has no output {port!r}; "
-                f"{nearest(port, outputs)}"
-            )
-        return Wire(self, outputs[port])
+        return output_wire(self, port)
 
     @property
     def wires(self) -> tuple[Wire, ...]:  # numpydoc ignore=RT01
@@ -101,6 +95,23 @@ class Step:
     def is_mapped(self) -> bool:  # numpydoc ignore=RT01
         """Whether an input is a list to map over, so that the outputs are lists."""
         return any(isinstance(value, Each) for value in self.inputs.values())
+
+
+def output_wire(step: Step, port: str) -> Wire:
+    """An output of a step by name.
+
+    Raises
+    ------
+    UnknownPortError
+        If there is none; the message gives the nearest.
+    """
+    outputs = step.node.outputs
+    if port not in outputs:
+        raise UnknownPortError(
+            f"step {step.name!r} (node {step.node.name}) has no output {port!r}; "
+            f"{nearest(port, outputs)}"
+        )
+    return Wire(step, outputs[port])
 
 
 Target: TypeAlias = Step | Wire | Param | str

@@ -29,7 +29,7 @@ from .arrays import PanelLabels
 from .cluster import BlanksReport, MouldsReport
 from .fabricate import CutReport
 from .optimise import OptimumReport
-from .support import BeamsReport, LandingReport
+from .support import BeamsReport, DrillingReport, LandingReport
 
 Millimeters = Annotated[float, Port(unit="mm", min=0)]
 Degrees = Annotated[float, Port(unit="deg", min=0, max=180)]
@@ -171,7 +171,7 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     units: Units = "m",
     beams: Beams | None = None,
     annuli_report: AnnuliReport | None = None,
-    beams_report: BeamsReport | None = None,
+    beams_report: BeamsReport | DrillingReport | None = None,
     max_twist: Degrees = 1.0,
     max_length: Millimeters | None = None,
 ) -> Audit:
@@ -195,9 +195,9 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     units : str
     beams : Beams, optional
     annuli_report : AnnuliReport, optional
-    beams_report : BeamsReport, optional
+    beams_report : BeamsReport or DrillingReport, optional
         Reports of the nodes `annulus_support` and `beams`: what they rejected is among the
-        errors then.
+        errors then. That of `drilling_marks` rejects nothing.
     max_twist : float
         Largest angle between a beam and a node axis.
     max_length : float, optional
