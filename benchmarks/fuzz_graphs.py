@@ -65,7 +65,9 @@ def small_graph() -> Graph:
 def seeds() -> list[bytes]:
     """Texts of graph files."""
     roof = panel_graph(PanelOptions(moulds=3, support=True, thickness=0.02))
-    roof = Graph.from_json(roof.to_json().replace('"inputs": {}', '"inputs": {"n_span": 4}'))
+    roof = Graph.from_json(
+        roof.to_json().replace('"inputs": {}', '"inputs": {"n_span": 4, "n_length": 6}')
+    )
     texts = [small_graph().to_json(), Graph().to_json(), roof.to_json()]
     return [text.encode() for text in texts]
 

@@ -1,6 +1,6 @@
 """What a graph is made of: sliders, steps, the wires between them, and the checks of these."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeAlias, cast
 
@@ -288,11 +288,16 @@ def _connect_each(place: Place, port: Port, items: Value) -> Value:
         items = _only_output(items, list[port.type], where)
     if isinstance(items, Wire):
         check_owner(place.graph, items)
+        if not fits(items.type, Iterable[Any]):
+            raise GraphError(f"{where}: each needs a list, {items} is {type_name(items.type)}")
         _check_wire(items, element_type(items.type), port, f"each of {where}")
         return items
     values = place.values[items.name] if isinstance(items, Param) else items
-    if isinstance(values, str | bytes) or not hasattr(values, "__len__"):
+    is_list = hasattr(values, "__len__") and getattr(values, "ndim", 1) > 0
+    if isinstance(values, str | bytes) or not is_list:
         raise GraphError(f"{where}: each needs a list, not {type(values).__name__}")
+    if any(isinstance(item, Each) for item in values):
+        raise GraphError(f"{where}: each within each; give one list")
     connected = [connect(place, port, item, f"[{i}]") for i, item in enumerate(values)]
     return items if isinstance(items, Param) else connected
 

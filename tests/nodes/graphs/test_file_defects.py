@@ -138,6 +138,12 @@ DEFECTS: list[tuple[Change, str]] = [
     (lambda c: c["steps"].update({"a" * 201: 1}), "steps: 'aaa"),
     (lambda c: _mixed(c).update(a={"wire": "split.name"}), "has no output 'name'"),
     (lambda c: _mixed(c).update(a={"wire": "split.low", "dtype": 1}), "cannot read {"),
+    (lambda c: _mixed(c).update(a={"each": [1, {"each": [1]}]}), "mixed.a: each within each"),
+    (lambda c: _mixed(c).update(a={"each": {"array": 3}}), "mixed.a: each needs a list"),
+    (
+        lambda c: _mixed(c).update(a={"each": {"wire": "split.low"}}),
+        "each needs a list, split.low",
+    ),
     (lambda c: _mixed(c).update(limit={"float": "9"}), "expected inf, -inf or nan"),
     (
         lambda c: _mixed(c).update(weights={"array": [99999], "dtype": "int8"}),
