@@ -51,7 +51,8 @@ def graph() -> sm.Graph:
 def test_the_report_is_plain_and_agrees_with_its_parts(graph: sm.Graph) -> None:
     report, blanks, same = graph.run("report", "blanks", "same.report")
     assert json.loads(json.dumps(dict(report), allow_nan=False)) == report
-    assert report["input"] == {"vertices": 96, "faces": 96, "units": "ft"}
+    assert report["input"] | {"vertices": 96, "faces": 96, "units": "ft"} == report["input"]
+    assert report["input"]["size"] == pytest.approx([6, 6, 3**0.5])
     assert report["panels"] == {"written": 96, "rejected": []}
     assert report["moulds"]["count"] == 3
     assert report["moulds"]["blanks"] == blanks["blanks"]
