@@ -5,8 +5,9 @@ The node library is `spheremesh.nodes`; graphs of nodes are run by `Graph`.
 
 from .kernel.meshes.mesh import Mesh
 from .kernel.sphere_meshes.sphere_mesh import SphereMesh
+from .kernel.surfaces.surface import Surface
 from .nodes.graphs.graph import Graph
 from .nodes.graphs.sweep import each, sweep
 
 __version__ = "0.1.0"
-__all__ = ["Graph", "Mesh", "SphereMesh", "__version__", "each", "sweep"]
+__all__ = ["Graph", "Mesh", "SphereMesh", "Surface", "__version__", "each", "sweep"]

@@ -17,13 +17,13 @@ angles = smooth.report["angles_deg"]
 print(f"{net.n_faces} faces: {angles['planar']['mean']:.2f} degrees between planes,")
 print(f"{angles['spherical']['mean']:.2f} between spheres with a radius each")
 for count in (12, 6, 3, 1):
-    moulds = cluster_radii(smooth.sphere_mesh, count)
+    moulds = cluster_radii(smooth.sphere_mesh, count, tolerance=0.05)
     report = moulds.report
     print(
         f"{report['count']:2d} moulds: {report['unrelaxed_angles_deg']['mean']:.2f}, relaxed "
         f"{report['angles_deg']['mean']:.2f}; vertices move {report['vertex_move']:.3f} edges"
     )
 
-moulds = cluster_radii(smooth.sphere_mesh, 6)
+moulds = cluster_radii(smooth.sphere_mesh, 6, tolerance=0.05)
 cut = panels(moulds.sphere_mesh, labels=moulds.labels)
 print(render(cut.panels, "few_moulds.png"))

@@ -6,7 +6,7 @@ never half, and what it leaves besides is removed after a day by the next that w
 Facts of parts are measured once, in the kernel; schedule, audit, user text and drawings read
 them.
 
-mesh_files  OBJ, OFF, PLY and STL, written and read; Rhino files as meshes.
+mesh_files  OBJ, OFF, PLY and STL, written and read; Rhino files and others as meshes.
 rhino       Rhino .3dm files: a model written, meshes and surfaces read.
 opennurbs   The byte stream of .3dm files: exact Breps and render meshes.
 step        STEP files as text, and a check of that text.
@@ -15,8 +15,10 @@ schedules   Lists of parts with all that a workshop asks for.
 audit       Numbered findings before files go out.
 solids      The same parts as shapes of OpenCASCADE and CadQuery.
 model       What every writer writes, and what it gives back.
+output_folder  The folder of a job: nothing of the user's is overwritten there.
 files       Files written whole or not at all.
 units       Units of length: the only place that knows what a millimetre is.
+sizes       How large a model is in its units, and whether a building can be so.
 polygons    What a mesh file says, before it is known to be a mesh.
 triangles   Triangles for the formats that have nothing else.
 text        Text files of numbers: lines, words, and errors that name the line.

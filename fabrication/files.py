@@ -138,7 +138,8 @@ def replacing_all(folder: str | os.PathLike[str]) -> Generator[Path]:
     Yields
     ------
     Path
-        Where to write. When the block raises, nothing of it is left, nor a folder made here.
+        Where to write; what goes into a folder below stands in one of the same name. When the
+        block raises, nothing of it is left, nor a folder made here.
         The files move in the order in which they were written: whoever is killed meanwhile
         leaves whole files, and the last one is new only if all are.
 
@@ -159,11 +160,13 @@ def replacing_all(folder: str | os.PathLike[str]) -> Generator[Path]:
         ) from error
     try:
         yield temporary
-        written = sorted(temporary.iterdir(), key=lambda path: path.stat().st_mtime_ns)
-        for each in written:
-            check_target(target / each.name)
-        for each in written:
-            _move(each, target / each.name)
+        files = [path for path in temporary.rglob("*") if not path.is_dir()]
+        files.sort(key=lambda path: path.stat().st_mtime_ns)
+        targets = [target / path.relative_to(temporary) for path in files]
+        for each in targets:
+            check_target(each)
+        for path, each in zip(files, targets, strict=True):
+            _move(path, each)
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
         _remove_empty(made)

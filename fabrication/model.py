@@ -27,17 +27,7 @@ _NO_CHARACTERS: Final = frozenset("\ufffe\uffff")
 
 @dataclass(frozen=True)
 class Model:
-    """What is written: panels, beams, or both.
-
-    Attributes
-    ----------
-    panels : Panels, optional
-        P panels.
-    beams : Beams, optional
-        B beams.
-    units : str
-        Unit of both: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
-    """
+    """What is written: panels, beams, or both, in ``mm``, ``cm``, ``m``, ``in`` or ``ft``."""
 
     panels: Panels | None = None
     beams: Beams | None = None
@@ -46,16 +36,10 @@ class Model:
 
 @dataclass(frozen=True)
 class Written:
-    """What was written.
+    """What was written: the file, and the parts that it lacks with their reasons.
 
-    Attributes
-    ----------
-    rejected : tuple of RejectedPart
-        Parts that the file lacks, with their reasons.
-    notes : tuple of str
-        What else differs from what was asked for.
-    counts : mapping of str to int
-        Number of objects by kind, where the writer counts them.
+    Notes say what else differs from what was asked for; counts are numbers of objects by kind,
+    where the writer counts them.
     """
 
     path: Path
@@ -65,19 +49,10 @@ class Written:
 
 
 def check_model(model: Model, target: str | os.PathLike[str]) -> None:
-    """Refuse a model that no file can hold.
+    """Refuse a model that no file can hold; the target is named in the message.
 
-    Parameters
-    ----------
-    model : Model
-        Panels or beams; one of both may be empty.
-    target : path
-        The file, for the message.
-
-    Raises
-    ------
-    InputError
-        If there is neither a panel nor a beam, or `check_parts` refuses them.
+    Raises InputError if there is neither a panel nor a beam, or `check_parts` refuses them; one
+    of both may be empty.
     """
     panels, beams = model.panels, model.beams
     if panels is None and beams is None:
@@ -94,25 +69,10 @@ PanelsOrBeams = TypeVar("PanelsOrBeams", bound=Panels | Beams)
 def check_parts(
     parts: PanelsOrBeams | None, kind: Kind, target: str | os.PathLike[str]
 ) -> PanelsOrBeams:
-    """Refuse parts that no file can hold.
+    """Refuse parts that no file can hold; kind and target are named in the message.
 
-    Parameters
-    ----------
-    kind : {"panel", "beam"}
-        What they are, for the message.
-    target : path
-        The file, for the message.
-
-    Returns
-    -------
-    Panels or Beams
-        The parts, at least one.
-
-    Raises
-    ------
-    InputError
-        If there are none, two have the same name, a name is no line of text, or one has
-        numbers that are not finite.
+    Raises InputError if there are none, two have the same name, a name is no line of text, or
+    one has numbers that are not finite.
     """
     if parts is None or not parts.ids:
         raise InputError(f"there are no {kind}s to write to {target}")
@@ -134,18 +94,8 @@ def check_parts(
 def check_part_names(names: Iterable[str], kind: Kind) -> None:
     r"""Refuse names that some kinds of files cannot hold, or would change.
 
-    Parameters
-    ----------
-    names : iterable of str
-        Names of parts.
-    kind : {"panel", "beam"}
-        What the parts are, for the message.
-
-    Raises
-    ------
-    InputError
-        If a name is empty, begins or ends with a blank, or has a character that is no text:
-        ends of lines, tabs and other control characters, halves of characters.
+    Raises InputError if a name is empty, begins or ends with a blank, or has a character that
+    is no text: ends of lines, tabs and other control characters, halves of characters.
 
     Examples
     --------

@@ -2,12 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..kernel.arrays import FloatArray, IntArray, norm
-from ..kernel.errors import InputError
+from ..kernel.errors import InputError, MeshError
+from ..kernel.meshes.defects import CURE
 from ..kernel.meshes.mesh import Mesh
 
 
@@ -59,22 +61,58 @@ class FileContent:
     sources: tuple[tuple[str, int], ...] = ()
 
 
-def to_mesh(polygons: Polygons) -> Mesh:
+def to_mesh(polygons: Polygons, sources: Sequence[tuple[str, int]] = ()) -> Mesh:
     """The polygons as a mesh: same vertices, same faces, same order.
+
+    Parameters
+    ----------
+    sources : sequence of (str, int)
+        Objects that the faces are from, as in `FileContent`.
 
     Raises
     ------
     InputError
-        If the polygons are no orientable manifold mesh; the message names the line of the
-        file where one line is to blame, the faces otherwise.
+        If the polygons are no orientable manifold mesh, or two neighbouring corners of a face
+        coincide; the message says why and names the faces, by lines or objects where they are
+        known.
     """
     if not len(polygons.degrees):
         raise InputError("the file has no faces; export the model as a polygon mesh")
     try:
-        return Mesh(polygons.vertices, _faces(polygons))
+        mesh = Mesh(polygons.vertices, _faces(polygons))
+        _check_coincident_corners(mesh)
+    except MeshError as error:
+        raise error.naming(partial(_face_name, polygons, sources)) from error
     except InputError:
         _raise_at_line(polygons)
         raise
+    return mesh
+
+
+def _check_coincident_corners(mesh: Mesh) -> None:
+    following = mesh.corners[mesh.topology.next_corners]
+    is_point = (mesh.vertices[mesh.corners] == mesh.vertices[following]).all(axis=1)
+    if is_point.any():
+        first = int(np.flatnonzero(is_point)[0])
+        faces = np.unique(mesh.topology.corner_faces[is_point]).tolist()
+        raise MeshError(
+            f"two corners of faces {{faces}} coincide, such as vertices {mesh.corners[first]} "
+            f"and {following[first]}; leave one out, or let {CURE} do so",
+            faces,
+        )
+
+
+def _face_name(polygons: Polygons, sources: Sequence[tuple[str, int]], face: int) -> str:
+    """A face by its number from 0, and its line or object."""
+    lines = np.asarray(polygons.face_lines)
+    if face < len(lines):
+        return f"{face} (line {lines[face]})"
+    first = 0
+    for name, count in sources:
+        if face < first + count:
+            return f"{face} ({name})"
+        first += count
+    return str(face)
 
 
 def _faces(polygons: Polygons) -> IntArray | list[IntArray]:
@@ -103,10 +141,6 @@ def _raise_at_line(polygons: Polygons) -> None:
             raise InputError(
                 f"line {line}: the face refers to a vertex out of range: the file has "
                 f"{n_vertices} vertices; export the mesh again"
-            )
-        if len(np.unique(face)) < len(face):
-            raise InputError(
-                f"line {line}: the face has a repeated corner; remove the duplicate"
             )
 
 

@@ -19,24 +19,15 @@ _Untyped: TypeAlias = Any
 
 
 def finite_or_none(value: np.float64) -> float | None:
-    """A number as a plain value.
-
-    Returns
-    -------
-    float or None
-        The number, or None if it is not finite, such as the radius of a plane.
-    """
+    """A number as a plain value; None if it is not finite, such as the radius of a plane."""
     return float(value) if np.isfinite(value) else None
 
 
 def write_csv(rows: Iterable[Mapping[str, Any]], path: Path) -> None:
     """Write a table as CSV, in UTF-8 with byte order mark, as spreadsheets expect.
 
-    Parameters
-    ----------
-    rows : iterable of mapping
-        Rows of the same columns. Lists are separated by blanks, lists of lists by semicolons;
-        what is None is an empty cell, or a dash in a list.
+    All rows have the same columns. Lists are separated by blanks, lists of lists by semicolons;
+    what is None is an empty cell, or a dash in a list.
     """
     with path.open("w", encoding="utf-8-sig", newline="") as file:
         writer: csv.DictWriter[str] | None = None
@@ -48,22 +39,9 @@ def write_csv(rows: Iterable[Mapping[str, Any]], path: Path) -> None:
 
 
 def format_xlsx(sheets: Mapping[str, list[dict[str, Any]]]) -> bytes:
-    """Tables as a workbook.
+    """Tables as a workbook: rows of the same columns by the title of their sheet.
 
-    Parameters
-    ----------
-    sheets : mapping of str to list of dict
-        Rows of the same columns by the title of their sheet; lists as in CSV.
-
-    Returns
-    -------
-    bytes
-        Content of the file.
-
-    Raises
-    ------
-    MissingLibraryError
-        If openpyxl is missing.
+    Lists are written as in CSV. Raises MissingLibraryError if openpyxl is missing.
     """
     try:
         import openpyxl  # pyright: ignore[reportMissingModuleSource]

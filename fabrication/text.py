@@ -1,6 +1,7 @@
 """Text files of numbers: lines, words, and errors that name the line."""
 
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -13,36 +14,18 @@ from .polygons import Polygons
 
 
 def decode(data: bytes) -> str:
-    """The text of a file; bytes that are not UTF-8 (old comments, names) do no harm.
+    """The text of a file with plain newlines, without a byte order mark.
 
-    Parameters
-    ----------
-    data : bytes
-        Content of the file, with or without a byte order mark, with any line ends.
-
-    Returns
-    -------
-    str
-        Text with plain newlines.
+    Bytes that are not UTF-8 (old comments, names) do no harm.
     """
     text = data.decode("utf-8-sig", errors="replace")
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def numbered_words(text: str, first: int = 1) -> Iterator[tuple[int, list[str]]]:
-    """The words of each line that is not blank, without its comment.
+    """Number and words of each line that is not blank, without its comment.
 
-    Parameters
-    ----------
-    text : str
-        Lines; ``#`` at the start of a line or of a word starts a comment.
-    first : int
-        Number of the first line.
-
-    Yields
-    ------
-    tuple of int and list of str
-        Line number and words.
+    ``#`` at the start of a line or of a word starts a comment; lines count from `first`.
     """
     for number, line in enumerate(text.split("\n"), first):
         words = line.split()
@@ -53,29 +36,13 @@ def numbered_words(text: str, first: int = 1) -> Iterator[tuple[int, list[str]]]
 
 
 def face_words(mesh: Mesh, first: int) -> list[str]:
-    """The vertex numbers of each face, as words separated by blanks.
-
-    Parameters
-    ----------
-    first : int
-        Number of the first vertex.
-
-    Returns
-    -------
-    list of str
-        One text per face.
-    """
+    """The vertex numbers of each face, from `first` on, as words separated by blanks."""
     words = list(map(str, (mesh.corners + first).tolist()))
     return [" ".join(words[start:end]) for start, end in pairwise(mesh.offsets.tolist())]
 
 
 def to_count(word: str) -> int:
-    """A word of a text file as a number of elements.
-
-    Returns
-    -------
-    int
-        The number, or -1 if the word is none that a file could hold.
+    """A word of a text file as a number of elements; -1 if it is none that a file could hold.
 
     Examples
     --------
@@ -86,58 +53,73 @@ def to_count(word: str) -> int:
 
 
 def to_floats(words: Sequence[str], lines: Sequence[int], per_line: int) -> FloatArray:
-    """Words of a text file as numbers.
+    """Words of a text file as numbers (N, per_line), so many from each of the lines.
 
-    Parameters
-    ----------
-    words : sequence of str
-        Numbers as written, the same count from every line.
-    lines : sequence of int
-        Line of each group of words.
-    per_line : int
-        Words in a group.
-
-    Returns
-    -------
-    (N, per_line) float array
-        The numbers.
-
-    Raises
-    ------
-    InputError
-        If a word is not a number; the message names its line.
+    Raises InputError if a word is not a number; the message names its line.
     """
     try:
-        return np.array(list(map(float, words)), np.float64).reshape(-1, per_line)
+        if _are_plain(words):
+            return np.array(list(map(float, words)), np.float64).reshape(-1, per_line)
     except ValueError:
-        index = next(i for i, word in enumerate(words) if not _is_number(word, float))
+        pass  # perhaps Fortran's numbers: they take longer
+    try:
+        return np.array(list(map(_float, words)), np.float64).reshape(-1, per_line)
+    except ValueError:
+        index = next(i for i, word in enumerate(words) if not _can_read(word, _float))
         raise InputError(_not_a_number(lines[index // per_line], words[index])) from None
 
 
 def _to_integers(words: Sequence[str], lines: Sequence[int], counts: Sequence[int]) -> IntArray:
     """Words as integers, so many from each line."""
     try:
-        return np.array(list(map(int, words)), np.int64)
+        read = int if _are_plain(words) else _integer
+        return np.array(list(map(read, words)), np.int64)
     except (ValueError, OverflowError):
-        index = next(i for i, word in enumerate(words) if not _is_number(word, np.int64))
+        index = next(i for i, word in enumerate(words) if not _can_read(word, _integer))
         line = int(np.repeat(lines, counts)[index])
         raise InputError(_not_a_number(line, words[index])) from None
+
+
+def significant_digits(words: Sequence[str], enough: int = 8) -> int:
+    """Most digits that a number is written with, without leading zeros and exponents.
+
+    Parameters
+    ----------
+    words : sequence of str
+        Numbers as written.
+    enough : int
+        Counting ends at a number of so many.
+
+    Returns
+    -------
+    int
+        The most, at least `enough` if counting ended.
+
+    Examples
+    --------
+    >>> significant_digits(["0.0150", "-5.4e+06", "120"])
+    3
+    """
+    most = 0
+    for word in words:
+        mantissa = word.lower().replace("d", "e").partition("e")[0]
+        most = max(most, len(mantissa.lstrip("+-").replace(".", "").lstrip("0")))
+        if most >= enough:
+            break
+    return most
+
+
+def unended(data: bytes) -> bool:
+    """Whether the last line of a text has no end, as where a file was cut off."""
+    return not data.endswith((b"\n", b"\r"))
 
 
 @dataclass
 class TextPolygons:
     """Polygons as the lines of a text file give them, one after the other.
 
-    Attributes
-    ----------
-    coordinates : list of str
-        Three words for each vertex.
-    vertex_lines, face_lines : list of int
-        Lines of the file.
-    corner_words : list of str
-        Vertex numbers of all faces.
-    degrees : list of int
-        Number of corners of each face.
+    Three words of coordinates for each vertex; the vertex numbers of all faces, whose degrees
+    are their numbers of corners; the lines that they come from.
     """
 
     coordinates: list[str] = field(default_factory=list[str])
@@ -147,46 +129,22 @@ class TextPolygons:
     face_lines: list[int] = field(default_factory=list[int])
 
     def add_vertex(self, line: int, words: list[str]) -> None:
-        """Add a vertex.
-
-        Parameters
-        ----------
-        words : list of str
-            Coordinates; more than three are left out.
-
-        Raises
-        ------
-        InputError
-            If there are fewer.
-        """
+        """Add a vertex; more than three words are left out, fewer raise InputError."""
         if len(words) < 3:
             raise InputError(f"line {line}: a vertex needs three coordinates")
         self.coordinates += words[:3]
         self.vertex_lines.append(line)
 
     def add_face(self, line: int, words: list[str]) -> None:
-        """Add a face.
-
-        Parameters
-        ----------
-        words : list of str
-        """
+        """Add a face by its vertex numbers."""
         self.corner_words += words
         self.degrees.append(len(words))
         self.face_lines.append(line)
 
     def polygons(self) -> Polygons:
-        """The polygons, once all lines are read.
+        """The polygons, once all lines are read, with vertex numbers as they are written.
 
-        Returns
-        -------
-        Polygons
-            With vertex numbers as they are written.
-
-        Raises
-        ------
-        InputError
-            If a word is not a number; the message names its line.
+        Raises InputError if a word is not a number; the message names its line.
         """
         return Polygons(
             to_floats(self.coordinates, self.vertex_lines, 3),
@@ -197,9 +155,32 @@ class TextPolygons:
         )
 
 
-def _is_number(word: str, kind: type[float | np.int64]) -> bool:
+_FORTRAN = re.compile(r"([+-]?[0-9.]+)[dD]([+-]?[0-9]+)")
+
+
+def _are_plain(words: Sequence[str]) -> bool:
+    """Whether no word has what Python reads as a number and files do not mean: 1_000, ١٢."""
+    text = "".join(words)
+    return text.isascii() and "_" not in text
+
+
+def _float(word: str) -> float:
+    """A number as it is written, in Fortran with D before the exponent."""
+    if not _are_plain([word]):
+        raise ValueError(word)
+    fortran = _FORTRAN.fullmatch(word)
+    return float(f"{fortran[1]}e{fortran[2]}" if fortran else word)
+
+
+def _integer(word: str) -> int:
+    if not _are_plain([word]):
+        raise ValueError(word)
+    return int(np.int64(word))
+
+
+def _can_read(word: str, read: Callable[[str], float]) -> bool:
     try:
-        kind(word)
+        read(word)
     except (ValueError, OverflowError):
         return False
     return True

@@ -9,17 +9,10 @@ from ..kernel.meshes.mesh import Mesh, face_vector_areas, local_corners
 def fan_triangles(mesh: Mesh) -> tuple[IntArray, IntArray]:
     """Cut each face into a fan of triangles from the corner that suits its shape best.
 
-    Returns
-    -------
-    triangles : (T, 3) int array
-        Vertex ids, turning like their face; a face of degree d gives d - 2 triangles.
-    triangle_faces : (T,) int array
-        Face of each triangle, ascending.
-
-    Notes
-    -----
-    The apex is the corner whose smallest triangle, measured along the normal of the face, is
-    largest: a face with one reflex corner, or two opposite ones, is covered without overlap.
+    Vertex ids (T, 3), turning like their face, of which a degree d gives d - 2 triangles; and
+    the face (T,) of each triangle, ascending. The apex is the corner whose smallest triangle,
+    measured along the normal of the face, is largest: a face with one reflex corner, or two
+    opposite ones, is covered without overlap.
     """
     points, areas = local_corners(mesh), face_vector_areas(mesh)
     triangles: list[IntArray] = []

@@ -6,23 +6,21 @@ Exit codes: 0 done, 1 a library of the system is missing, 2 usage, 3 bad input, 
 5 finished but a quality gate failed. An error is one line on standard error.
 """
 
-import inspect
 import json
-import math
 import sys
-import textwrap
 import warnings
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from .option_values import joined_option, plain_value, rows_option
+
 if TYPE_CHECKING:
+    from ..fabrication.output_folder import OutputFolder
     from ..nodes.graphs.graph import Graph
-    from ..nodes.graphs.node import Node
-    from ..nodes.graphs.ports import Port
     from .panel import Progress
 
 MISSING_LIBRARY: Final = 1
@@ -58,8 +56,34 @@ def main() -> None:
     help="The same thickness everywhere, or the same difference of squared radii: neighbours "
     "that bulge alike then meet on both faces.",
 )
-@click.option("--units", type=click.Choice(UNITS), default="m", help="Model units.")
-@click.option("--layer", default="", help="Only this layer (.3dm) or group (OBJ).")
+@click.option(
+    "--units",
+    type=click.Choice(UNITS),
+    help="Model units; those of the file by default, and m for files that name none.",
+)
+@click.option(
+    "--layer",
+    multiple=True,
+    callback=joined_option,
+    help="Only this layer (.3dm) or group (OBJ); several with commas or repeated.",
+)
+@click.option(
+    "--repair",
+    is_flag=True,
+    help="Repair the mesh first: weld, drop slivers and repeated faces, split T-junctions, "
+    "unify normals; what was done is in the report.",
+)
+@click.option(
+    "--edge-length",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Length of the edges on surfaces of a .3dm, in model units.",
+)
+@click.option(
+    "--rows",
+    metavar="U,V",
+    callback=rows_option,
+    help="Rows of faces along u and v of each surface of a .3dm; 24,24 by default.",
+)
 @click.option(
     "--edges",
     type=click.Choice(["bisector", "intersection"]),
@@ -88,25 +112,33 @@ def main() -> None:
     default=0.0,
     help="Radius of cylinders at the nodes, before which beams end square; 0 for mitres.",
 )
+@click.option("--overwrite", is_flag=True, help="Replace files that spheremesh did not write.")
 @click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report alone.")
 def panel(  # numpydoc ignore=PR01
     out: Path,
     *,
+    overwrite: bool,
     strict: bool,
     as_json: bool,
     **options: Any,  # noqa: ANN401
 ) -> None:
     """Panel a MESH with spheres and write CAD files, schedule and report.
 
-    Reads OBJ, OFF, PLY, STL and .3dm. Without MESH, a demonstration roof is panelled.
+    Reads OBJ, OFF, PLY, STL and .3dm, and others with spheremesh[formats]. Without MESH, a
+    demonstration roof is panelled. Files in the folder are replaced only if spheremesh wrote
+    them and nobody changed them since.
     """
-    from .panel import PanelOptions, panel_graph, run_job
+    from .panel import PanelOptions, model_units, panel_graph, run_job
 
+    if options["rows"] and options["edge_length"]:
+        raise click.UsageError("--rows and --edge-length exclude each other; drop one")
     _warn_of_no_beams(options)
     with _errors(), _progress() as progress:
-        report, files = run_job(panel_graph(PanelOptions(**options)), out, progress)
-    _print_report(report, out, files, as_json=as_json)
+        options["units"], is_assumed = model_units(PanelOptions(**options))
+        graph = panel_graph(PanelOptions(**options))
+        report, files = run_job(graph, out, progress, overwrite=overwrite)
+    _print_report(report, out, files, as_json=as_json, is_assumed=is_assumed)
     if strict and _has_errors(report):
         sys.exit(GATE_FAILED)
 
@@ -126,17 +158,21 @@ def _warn_of_no_beams(options: Mapping[str, Any]) -> None:
 @click.option(
     "-o", "--out", default=".", type=click.Path(path_type=Path), help="Folder for its files."
 )
+@click.option("--overwrite", is_flag=True, help="Replace files that spheremesh did not write.")
+@click.option("--allow-outside", is_flag=True, help="Let steps write outside of the folder.")
 @click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
 @click.option("--json", "as_json", is_flag=True, help="Print the targets' values as JSON.")
 def run(  # numpydoc ignore=PR01
     graph_file: Path, settings: tuple[str, ...], targets: tuple[str, ...], out: Path, *,
-    strict: bool, as_json: bool,
+    overwrite: bool, allow_outside: bool, strict: bool, as_json: bool,
 ) -> None:  # fmt: skip
     """Run a graph: all of it, or what a target needs.
 
-    Relative paths are read from the working directory and written to the output folder. The
-    graph of a panel job writes its report and itself anew.
+    Relative paths are read from the working directory and written to the output folder, and
+    nothing is written elsewhere. The graph of a panel job writes its report and itself anew;
+    other files are replaced only if spheremesh wrote them and nobody changed them since.
     """
+    from ..fabrication.output_folder import output_folder
     from .panel import is_panel_job, run_job
 
     with _errors(), _progress() as progress:
@@ -149,27 +185,34 @@ def run(  # numpydoc ignore=PR01
             click.echo(f"warning: {warning.message}", err=True)
         graph.set(**dict(_setting(text) for text in settings))
         if targets or not is_panel_job(graph):
-            _run_targets(graph, targets, out, progress, as_json=as_json)
+            with output_folder(
+                out, inputs=(graph_file,), overwrite=overwrite, allow_outside=allow_outside
+            ) as output:
+                values = _run_targets(graph, targets, output, progress)
+            _print_values(graph, values, as_json=as_json)
             return
-        report, files = run_job(graph, out, progress)
+        report, files = run_job(
+            graph, out, progress, graph_file=graph_file, overwrite=overwrite,
+            allow_outside=allow_outside,
+        )  # fmt: skip
     _print_report(report, out, files, as_json=as_json)
     if strict and _has_errors(report):
         sys.exit(GATE_FAILED)
 
 
 def _run_targets(
-    graph: "Graph", targets: tuple[str, ...], out: Path, progress: "Progress", *, as_json: bool
-) -> None:
-    from ..fabrication.files import replacing_all
-
+    graph: "Graph", targets: tuple[str, ...], out: "OutputFolder", progress: "Progress"
+) -> dict[str, Any]:
     names = targets or tuple(step.name for step in graph.ends)
-    with replacing_all(out) as staging:
-        results = graph.run(*names, on_step=progress, write_to=staging)
-    values = (results,) if len(names) == 1 else results
+    results = graph.run(*names, on_step=progress, write_to=out)
+    return dict(zip(names, (results,) if len(names) == 1 else results, strict=True))
+
+
+def _print_values(graph: "Graph", values: Mapping[str, Any], *, as_json: bool) -> None:
     for messages in graph.messages.values():
         for text in messages:
             click.echo(f"warning: {text}", err=True)
-    plain = {name: _plain(value) for name, value in zip(names, values, strict=True)}
+    plain = {name: plain_value(value) for name, value in values.items()}
     if as_json:
         click.echo(json.dumps(plain, indent=1, allow_nan=False))
         return
@@ -183,9 +226,10 @@ def nodes(name: str | None) -> None:  # numpydoc ignore=PR01
     """List the nodes, or explain one."""
     with _errors():
         from ..nodes.graphs.node import REGISTRY, find_node, load_library
+        from .node_help import print_node
 
         if name is not None:
-            _print_node(find_node(name))
+            print_node(find_node(name))
             return
         load_library()
         for category in sorted({node.category for node in REGISTRY.values()}):
@@ -255,14 +299,21 @@ def _setting(text: str) -> tuple[str, Any]:
         raise click.UsageError(f"--set takes NAME=VALUE, not {text!r}")
     try:
         return name, json.loads(value)
-    except json.JSONDecodeError:
+    except (ValueError, RecursionError):  # a ValueError: too many digits, too
         return name, value
 
 
 def _print_report(
-    report: dict[str, Any], out: Path, files: tuple[str, ...], *, as_json: bool
+    report: dict[str, Any],
+    out: Path,
+    files: tuple[str, ...],
+    *,
+    as_json: bool,
+    is_assumed: bool = False,
 ) -> None:
     """Warnings and rejected panels on standard error; the report, or what matters of it."""
+    from ..kernel.repair.description import describe_lines
+
     for text in report["warnings"]:
         click.echo(f"warning: {text}", err=True)
     refused = (*report["panels"]["rejected"], *report["beams"]["rejected"])
@@ -276,6 +327,9 @@ def _print_report(
     if as_json:
         click.echo(json.dumps(report, indent=1))
         return
+    _print_size(report["input"], is_assumed=is_assumed)
+    for line in describe_lines(report["mesh"]) if report["mesh"] else ():
+        click.echo(line)
     for name in files:
         click.echo(f"  {out / name}")
     planar, spherical = report["angles_deg"]["planar"], report["angles_deg"]["spherical"]
@@ -298,6 +352,14 @@ def _print_report(
         _print_audit(report["audit"])
 
 
+def _print_size(model: Mapping[str, Any], *, is_assumed: bool) -> None:
+    """How large the model is, which shows whether its units are right."""
+    from ..fabrication.sizes import describe_size
+
+    hint = "; --units to change" if is_assumed else ""
+    click.echo(describe_size(model["size"], model["mean_edge"], model["units"]) + hint)
+
+
 def _has_errors(report: Mapping[str, Any]) -> bool:
     """Whether a panel or beam is rejected, or made but of no use."""
     rejected = report["panels"]["rejected"] or report["beams"]["rejected"]
@@ -313,51 +375,3 @@ def _print_audit(audit: Mapping[str, Any]) -> None:
             shown.add(found["code"])
             count = audit["counts"][found["code"]]
             click.echo(f"  {found['code']} ({count}): {found['id']}: {found['message']}")
-
-
-def _print_node(node: "Node") -> None:
-    from ..kernel.reports import Report
-
-    click.echo(f"{click.style(node.name, bold=True)} ({node.category})\n\n{node.summary}")
-    for title, ports in (("Inputs", node.inputs), ("Outputs", node.outputs)):
-        click.echo(f"\n{click.style(title, bold=True)}")
-        for port in ports.values():
-            click.echo(f"  {port.name} : {_port_facts(port)}")
-            if port.help:
-                click.echo(textwrap.indent(textwrap.fill(port.help, 84), "      "))
-            if isinstance(port.type, type) and issubclass(port.type, Report):
-                fields = (inspect.getdoc(port.type) or "").partition("-\n")[2]
-                click.echo(textwrap.indent(fields, "        "))
-
-
-def _port_facts(port: "Port") -> str:
-    """Type, unit, range and default of a port, in one line."""
-    from ..nodes.graphs.annotations import type_name
-    from ..nodes.graphs.ports import REQUIRED
-
-    facts = [f"{type_name(port.type)} in {port.unit}" if port.unit else type_name(port.type)]
-    if port.min is not None:
-        facts.append(f"at least {port.min:g}")
-    if port.max is not None:
-        facts.append(f"at most {port.max:g}")
-    if port.default is not REQUIRED:
-        facts.append(f"default {port.default!r}")
-    return ", ".join(facts)
-
-
-def _plain(value: Any) -> Any:  # noqa: ANN401
-    """A JSON value of a result: no infinities; what has no JSON form is described."""
-    if hasattr(value, "_asdict"):
-        value = value._asdict()
-    if hasattr(value, "tolist"):
-        value = value.tolist()
-    if isinstance(value, Mapping):
-        items = cast("Mapping[str, Any]", value)
-        return {str(name): _plain(item) for name, item in items.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in cast("list[Any]", value)]
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if value is None or isinstance(value, bool | int | str):
-        return value
-    return type(value).__name__

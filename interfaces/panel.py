@@ -1,18 +1,22 @@
 """The main job: a mesh in, spherical panels out, as a graph that the user can open again."""
 
-import json
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 from .. import __version__
-from ..fabrication.files import replacing_all
+from ..fabrication.mesh_files.reader import read_content
+from ..fabrication.output_folder import REPORT, OutputFolder, output_folder
 from ..kernel.errors import ConvergenceError, InputError
+from ..nodes.graphs.files import FileUses, Folders, note_known_files
 from ..nodes.graphs.graph import Graph
 from ..nodes.graphs.wires import Step, Wire
+
+GRAPH: Final = "graph.json"
+"""Name of the graph of a job beside its files."""
 
 Progress = Callable[[str, str], None]
 
@@ -29,9 +33,15 @@ class PanelOptions:
     mesh : Path or None
         Mesh file; the demo roof if None.
     layer : str
-        Layer or group of the file to use.
-    units : str
-        Model units.
+        Layers or groups of the file to use, several with commas.
+    repair : bool
+        Whether to repair the mesh first.
+    edge_length : float or None
+        Length of the edges of faces on surfaces, in model units.
+    rows : (int, int) or None
+        Rows of faces along u and v of each surface; neither: as `read_mesh` has it.
+    units : str or None
+        Model units; None for those of the file, and metres if it names none.
     moulds : int or None
         Number of moulds; None for a radius per panel.
     thickness, joint_gap : float
@@ -59,7 +69,10 @@ class PanelOptions:
 
     mesh: Path | None = None
     layer: str = ""
-    units: str = "m"
+    repair: bool = False
+    edge_length: float | None = None
+    rows: tuple[int, int] | None = None
+    units: str | None = None
     moulds: int | None = None
     thickness: float = 0.0
     joint_gap: float = 0.0
@@ -85,25 +98,27 @@ def panel_graph(options: PanelOptions) -> Graph:
     Returns
     -------
     Graph
-        Its steps are named mesh, start, angles (before an optimum of more than angles),
-        optimum, panels, audit, report, step, rhino, table, list and picture; with a number of
-        moulds also moulds, blanks, mould_drawing and mould_picture, with a support landing
-        (without moulds or a tolerance), nodes, annuli, beams, drawing and beam_table. Its
-        writers write relative to the folder of the run.
+        Its steps are named mesh, description, start, angles (before an optimum of more than
+        angles), optimum, panels, audit, report, step, rhino, table, list and picture; with a
+        number of moulds also moulds, blanks, mould_drawing and mould_picture, with a support
+        landing (without moulds or a tolerance), nodes, annuli, beams, drawing and beam_table.
+        Its writers write relative to the folder of the run.
 
     Raises
     ------
     GraphError
         If an option is out of range.
+    InputError
+        If the units of the file are to be used and it cannot be read.
     """
-    graph = Graph(options.mesh.stem if options.mesh else "roof", units=options.units)
+    graph = Graph(
+        options.mesh.stem if options.mesh else "roof",
+        units=options.units or model_units(options)[0],
+    )
     thickness = graph.param("thickness", options.thickness, min=0)
     joint_gap = graph.param("joint_gap", options.joint_gap, min=0)
-    if options.mesh is None:
-        mesh = graph.add("roof_mesh", "mesh")
-    else:
-        path = str(options.mesh.resolve())
-        mesh = graph.add("read_mesh", "mesh", path=path, layer=options.layer)
+    mesh = _mesh(graph, options)
+    graph.add("mesh_report", "description", mesh=mesh)
     moves: dict[str, Wire] = {}
     if options.tolerance:
         moves = {"tolerance": graph.param("tolerance", options.tolerance, min=0)}
@@ -154,8 +169,47 @@ def panel_graph(options: PanelOptions) -> Graph:
     return graph
 
 
+def model_units(options: PanelOptions) -> tuple[str, bool]:
+    """Model units of a job, and whether they are assumed: neither given nor in the file.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or has other units than asked for.
+    """
+    found = ""
+    if options.mesh is not None and options.mesh.suffix.lower() == ".3dm":
+        path = options.mesh.resolve()
+        found = read_content(path, options.layer, **_fineness(options)).units
+    if options.units and found not in ("", options.units):
+        raise InputError(
+            f"{options.mesh} is drawn in {found}, which contradicts --units {options.units}; "
+            "leave that out, or change the units in Rhino (Units) and save"
+        )
+    units = options.units or found
+    return units or "m", options.mesh is not None and not units
+
+
+def _mesh(graph: Graph, options: PanelOptions) -> Step | Wire:
+    """The mesh: of a file, repaired or as it is, or for a demonstration."""
+    if options.mesh is None:
+        return graph.add("roof_mesh", "mesh")
+    path = str(options.mesh.resolve())
+    rows = _fineness(options)
+    if options.repair:
+        return graph.add("repair_mesh", "mesh", mesh=path, layer=options.layer, **rows).mesh
+    return graph.add("read_mesh", "mesh", path=path, layer=options.layer, **rows)
+
+
+def _fineness(options: PanelOptions) -> dict[str, Any]:
+    """How finely surfaces are divided."""
+    if options.edge_length is not None:
+        return {"edge_length": options.edge_length}
+    return dict(zip(("n_u", "n_v"), options.rows or (), strict=False))
+
+
 def _optimum(
-    graph: Graph, options: PanelOptions, mesh: Step, moves: Mapping[str, Wire]
+    graph: Graph, options: PanelOptions, mesh: Step | Wire, moves: Mapping[str, Wire]
 ) -> Step:
     """The spheres: of smallest angles alone, or of more than that."""
     start = graph.add("fit_spheres", "start", mesh=mesh)
@@ -209,7 +263,13 @@ def is_panel_job(graph: Graph) -> bool:
 
 
 def run_job(
-    graph: Graph, folder: Path, progress: Progress
+    graph: Graph,
+    folder: Path,
+    progress: Progress,
+    *,
+    graph_file: Path | None = None,
+    overwrite: bool = False,
+    allow_outside: bool = False,
 ) -> tuple[dict[str, Any], tuple[str, ...]]:
     """Run the main job and write all of its files, or none.
 
@@ -221,6 +281,12 @@ def run_job(
         Where the files go; made if it does not exist.
     progress : callable
         Called with the name of a step and its state, as `Graph.run` does.
+    graph_file : Path, optional
+        Where the graph was read: it may take its own place, and no other file may.
+    overwrite : bool
+        Whether files may be replaced that the job reads or that spheremesh did not write.
+    allow_outside : bool
+        Whether steps may write outside of the folder.
 
     Returns
     -------
@@ -233,12 +299,19 @@ def run_job(
     ------
     InputError, ConvergenceError, NodeError, GraphError
         If the input cannot be used, the optimisation does not converge, or no panel can be
-        made; nothing is written then.
+        made, or a file would be replaced that must not; nothing is written then.
     """
     began = time.perf_counter()
     clock = _StepClock(progress)
-    with replacing_all(folder) as staging:
-        run = partial(graph.run, on_step=clock.note, write_to=staging)
+    with output_folder(
+        folder,
+        inputs=() if graph_file is None else (graph_file,),
+        renewed=GRAPH,
+        overwrite=overwrite,
+        allow_outside=allow_outside,
+    ) as output:
+        _check_files(graph, output)
+        run = partial(graph.run, on_step=clock.note, write_to=output)
         _refuse_nothing(run("panels.report"), "panels")
         _refuse_unfinished(run("optimum.report", on_step=None))
         if "annuli" in graph.steps:
@@ -248,13 +321,14 @@ def run_job(
         if found["support"]:
             _refuse_nothing(found["beams"], "beams")
         run(*graph.ends)
-        graph.save(staging / "graph.json")
+        graph.save(output.staging / GRAPH)
         source = graph.steps["mesh"]
-        path = str(source.inputs.get("path", source.node.name))
+        path = str(source.inputs.get("path") or source.inputs.get("mesh") or source.node.name)
         report: dict[str, Any] = {
             "spheremesh": __version__,
             **found,
             "input": {"path": path, **found["input"]},
+            **_mesh_reports(graph, run),
             "seconds": {
                 "total": time.perf_counter() - began,
                 "optimize": clock.seconds.get("optimum", 0.0),
@@ -268,10 +342,26 @@ def run_job(
                 for text in messages
             ],
         }
-        text = json.dumps(report, indent=1, allow_nan=False) + "\n"
-        (staging / "report.json").write_text(text, encoding="utf-8")
-        files = tuple(sorted(path.name for path in staging.iterdir()))
-    return report, files
+        report = output.write_report(report)
+    return report, tuple(sorted(report["files"]))
+
+
+def _check_files(graph: Graph, output: OutputFolder) -> None:
+    """Refuse at once what the job must not write; a step may still add to it."""
+    values = {name: param.value for name, param in graph.params.items()}
+    uses = FileUses(Folders(write_to=output))
+    note_known_files(uses, graph.steps.values(), values)
+    for name in (GRAPH, REPORT):
+        output.check(name)
+
+
+def _mesh_reports(graph: Graph, run: Callable[..., Any]) -> dict[str, Any]:
+    """What the mesh is, and what its repair did, where a graph has these steps."""
+    is_repaired = graph.steps["mesh"].node.name == "repair_mesh"
+    return {
+        "mesh": dict(run("description")) if "description" in graph.steps else None,
+        "repair": dict(run("mesh.report")) if is_repaired else None,
+    }
 
 
 def _refuse_unfinished(optimum: Mapping[str, Any]) -> None:

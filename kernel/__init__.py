@@ -9,6 +9,7 @@ hexagons       Hexagonal sphere meshes, dual to triangulations (Sec. 7).
 support        Node axes, torsion, and the flat annuli between them (Sec. 4.1).
 panels         Pieces of spheres cut out by planes, and their moulds.
 optimization   Spheres that meet smoothly, in few radii: angles, energy (6) (Sec. 3, 4, 6.3).
+repair         Meshes made of faces that are none; what a mesh is.
 congruences    Two-parameter families of spheres and their envelopes (Sec. 2.2, 2.3).
 sphere_meshes  A sphere for every face: fit, central spheres, models (Sec. 3, 5, 6.1).
 spheres        Spheres, circles and arcs as rows of numbers; the Möbius group (Sec. 2.1).

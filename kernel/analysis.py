@@ -18,13 +18,7 @@ from .spheres.incidence import project
 
 
 def angle_summary(sphere_mesh: SphereMesh) -> dict[str, float]:
-    """Angles between neighbours in two numbers.
-
-    Returns
-    -------
-    dict
-        ``mean`` and ``max`` over the interior edges, in degrees; zero if there are none.
-    """
+    """``mean`` and ``max`` angle over the interior edges, in degrees; 0 if there are none."""
     angles = np.degrees(intersection_angles(sphere_mesh))
     if len(angles) == 0:
         return {"mean": 0.0, "max": 0.0}
@@ -32,13 +26,10 @@ def angle_summary(sphere_mesh: SphereMesh) -> dict[str, float]:
 
 
 def spiky_faces(sphere_mesh: SphereMesh) -> BoolArray:
-    """Faces that bulge to the wrong side.
+    """Faces (F,) that bulge to the wrong side.
 
-    Returns
-    -------
-    (F,) bool array
-        True where the sphere bulges against the one fitted to the face's surroundings and
-        meets a neighbour at a larger angle than the planes of the two faces do.
+    The sphere bulges against the one fitted to the face's surroundings and meets a neighbour at
+    a larger angle than the planes of the two faces do.
 
     References
     ----------
@@ -74,15 +65,8 @@ class AngleHistogram:
 def angle_histogram(sphere_mesh: SphereMesh, n_bins: int = 20) -> AngleHistogram:
     """Count the angles between neighbouring spheres, and between the planes they replace.
 
-    Parameters
-    ----------
-    n_bins : int
-        Number of bins, from 0 to the largest angle of either kind.
-
-    Returns
-    -------
-    AngleHistogram
-        The counts; both sum to the number of interior edges.
+    The bins go from 0 to the largest angle of either kind; both counts sum to the number of
+    interior edges.
 
     Raises
     ------
@@ -107,18 +91,10 @@ def angle_histogram(sphere_mesh: SphereMesh, n_bins: int = 20) -> AngleHistogram
 
 
 def deviation(sphere_mesh: SphereMesh, reference: Mesh) -> FloatArray:
-    """How far the panels stand off a reference surface.
+    """How far the panels stand off a reference surface, whose polygons count as fans.
 
-    Parameters
-    ----------
-    reference : Mesh
-        The surface to compare with; its polygons count as fans of triangles.
-
-    Returns
-    -------
-    (F,) float array
-        Largest distance of a point of the panel from the reference, in model units, over its
-        corners, nine points of each edge and the crown of the panel.
+    Largest distance (F,) of a point of the panel from the reference, in model units, over its
+    corners, nine points of each edge and the crown of the panel.
     """
     from igl import (  # pyright: ignore[reportMissingTypeStubs]
         point_mesh_squared_distance,  # pyright: ignore[reportUnknownVariableType]

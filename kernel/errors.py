@@ -1,5 +1,7 @@
 """What can go wrong, as types: the interfaces turn each into an exit code and one line."""
 
+from collections.abc import Callable
+
 
 class SpheremeshError(Exception):
     """Base of every error that the library raises on purpose."""
@@ -7,6 +9,46 @@ class SpheremeshError(Exception):
 
 class InputError(SpheremeshError, ValueError):
     """An input cannot be used; the message says what, where and what to do."""
+
+
+class MeshError(InputError):
+    """Faces are no mesh; the message can name them as the user knows them.
+
+    Parameters
+    ----------
+    text : str
+        The message, with ``{0}``, ``{1}`` and so on for the faces one by one, or ``{faces}``
+        for a list of all.
+    faces : list of int
+        The faces.
+
+    Examples
+    --------
+    >>> error = MeshError("face {0} repeats face {1}", [30, 3])
+    >>> str(error), str(error.naming(lambda i: f"{i} (line {i + 50})"))
+    ('face 30 repeats face 3', 'face 30 (line 80) repeats face 3 (line 53)')
+    """
+
+    def __init__(self, text: str, faces: "list[int]") -> None:
+        super().__init__(text.format(*faces, faces=name_ids(faces)))
+        self.text, self.faces = text, faces
+
+    def naming(self, name: Callable[[int], str]) -> InputError:
+        """The same error with other names of the faces.
+
+        Parameters
+        ----------
+        name : callable
+            Gives what is to stand for a number.
+
+        Returns
+        -------
+        InputError
+            Without the list of faces.
+        """
+        names = [name(i) for i in self.faces[:8]]
+        more = f", ... {len(self.faces) - 8} more" if len(self.faces) > 8 else ""
+        return InputError(self.text.format(*names, faces=f"[{', '.join(names)}{more}]"))
 
 
 class ConvergenceError(SpheremeshError, ArithmeticError):

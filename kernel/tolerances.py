@@ -44,6 +44,32 @@ SAME_LENGTH: Final = 1e-6
 CREASE: Final = 0.6981317007977318
 """Triangles that meet at a larger angle (40 degrees) make a crease, not a curved surface."""
 
+# Repair
+
+SAME_PLACE: Final = 1e-6
+"""Vertices closer than this, in mean edges, are one (1 µm per m)."""
+WIDEST_WELD: Final = 1e-3
+"""Vertices farther apart, in mean edges, are not one, however few digits a file has."""
+ROUNDED_PLACES: Final = 4.0
+"""Places differ by rounding if closer than this many spacings of their numbers."""
+FARTHEST_PLACE: Final = 1e100
+"""Coordinates beyond this are no places: their squares have no float64 to spare."""
+WELL_KNOWN_DIGITS: Final = 15
+"""Decimal digits that a float64 always keeps: numbers with fewer were rounded."""
+
+# Surfaces
+
+PARAMETER_SLACK: Final = 1e-9
+"""Parameters outside of a domain by less, relative to its size or its ends, are at its end."""
+POLE: Final = 1e-9
+"""A side of a surface shorter than this share of the surface's size is a point."""
+SMOOTH_JOINT: Final = 0.017453292519943295
+"""Faces whose normals differ by less (1 degree, as in Rhino) where they meet join smoothly."""
+SURFACE_CORNER: Final = 0.4363323129985824
+"""A boundary of a face that turns by more (25 degrees) from edge to edge has a corner there."""
+FLAT_TRIANGLE: Final = 1e-9
+"""A triangle between points of a line has less than this share of a squared spacing as area."""
+
 # Spheres
 
 CROSSING: Final = 1e-9
@@ -179,12 +205,18 @@ COINCIDENT: Final = 1e-6
 """Vertices of separate meshes closer than this, in mean edges, are one (1 µm per m)."""
 EXACT_BREP: Final = 1e-12
 """How far the parts of a Brep may lie apart, relative to the radius of its sphere."""
+ROUNDED_FILE: Final = 0.01
+"""Coordinates of a file rounded by more, in mean edges, are worth a remark (1 cm per m)."""
 SINGLE_EPSILON: Final = 1.1920928955078125e-07
 """Spacing of float32 at 1."""
 EDGE_MISS: Final = 0.01
 """A trimmed face whose edges lie farther off its surface, in edge lengths, is refused."""
+SAME_BOX: Final = 0.01
+"""A mesh whose box differs by less from that of a surface, relatively, was made from it."""
 CLOSED: Final = 1e-6
 """A surface whose ends lie this close, relative to its size, is closed there."""
+ON_EDGE: Final = 1e-12
+"""Points of a surface this close to an edge, relative to the surface's size, lie on it."""
 OVERLAP: Final = 1e-6
 """Beams that run into each other by less, in thicknesses, touch (rounding of mitres)."""
 SINGLE_IS_ENOUGH: Final = 0.01

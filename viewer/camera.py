@@ -18,16 +18,8 @@ MARGIN = 0.07
 class Camera:
     """A perspective camera.
 
-    Attributes
-    ----------
-    eye : (3,) float array
-        Where it stands, relative to the origin of the triangles.
-    axes : (3, 3) float array
-        Unit vectors to the right, upwards, and back towards the viewer.
-    focal : float
-        Focal length, in pixels.
-    width, height : int
-        Size of the picture, in pixels.
+    The eye is relative to the origin of the triangles; the axes (3, 3) are unit vectors to the
+    right, upwards, and back towards the viewer; focal length and size are in pixels.
     """
 
     eye: FloatArray
@@ -38,22 +30,10 @@ class Camera:
 
 
 def view_axes(direction: FloatArray) -> FloatArray:
-    """Axes of a camera that looks against a direction and stands upright.
+    """Axes of a camera that looks against a direction, of any length, and stands upright.
 
-    Parameters
-    ----------
-    direction : (3,) float array
-        From the scene to the viewer, of any length.
-
-    Returns
-    -------
-    (3, 3) float array
-        Unit vectors to the right, upwards, and towards the viewer.
-
-    Raises
-    ------
-    InputError
-        If the direction is zero or not finite.
+    Unit vectors (3, 3) to the right, upwards, and towards the viewer. Raises InputError if the
+    direction is zero or not finite.
     """
     if direction.shape != (3,) or not np.isfinite(direction).all() or not norm(direction) > 0:
         raise InputError(f"the direction of a view must be three numbers, not {direction}")
@@ -67,33 +47,12 @@ def view_axes(direction: FloatArray) -> FloatArray:
 def frame_scene(
     points: FloatArray, direction: FloatArray, width: int, height: int, strip: int = 0
 ) -> Camera:
-    """The camera that shows all points as large as they fit.
+    """The nearest camera whose pyramid of view holds all points (N, 3).
 
-    Parameters
-    ----------
-    points : (N, 3) float array
-        What has to be seen.
-    direction : (3,) float array
-        From the scene to the viewer.
-    width, height : int
-        Size of the picture, in pixels.
-    strip : int
-        Width of a strip at the right that is kept free, in pixels.
-
-    Returns
-    -------
-    Camera
-        The nearest camera whose pyramid of view holds the points.
-
-    Raises
-    ------
-    InputError
-        If the direction is zero or not finite.
-
-    Notes
-    -----
-    Closed form: each side of the pyramid touches the points where ``x ± t z`` is extreme, with
-    t the slope of the side.
+    The direction points to the viewer; sizes are in pixels, the strip that is kept free at the
+    right among them. Closed form: each side of the pyramid touches the points where ``x ± t z``
+    is extreme, with t the slope of the side. Raises InputError if the direction is zero or not
+    finite.
     """
     axes = view_axes(direction)
     x, y, z = axes @ points.T
@@ -111,18 +70,10 @@ def frame_scene(
 
 
 def project_points(camera: Camera, points: FloatArray) -> FloatArray:
-    """Where points lie in the picture.
+    """Where points (N, 3) in front of a camera lie in its picture.
 
-    Parameters
-    ----------
-    points : (N, 3) float array
-        Points in front of it.
-
-    Returns
-    -------
-    (N, 3) float array
-        Pixels to the right and downwards, and the nearness (inverse depth), which is affine
-        over the picture of a triangle.
+    Pixels to the right and downwards, and the nearness (inverse depth), which is affine over
+    the picture of a triangle: (N, 3).
     """
     x, y, z = camera.axes @ (points - camera.eye).T
     nearness = -1 / z
@@ -137,18 +88,9 @@ def project_points(camera: Camera, points: FloatArray) -> FloatArray:
 
 
 def pixel_rays(camera: Camera, x: FloatArray, y: FloatArray) -> FloatArray:
-    """Directions in which the camera sees points of its picture.
+    """Directions (n, 3) in which the camera sees pixels to the right and downwards.
 
-    Parameters
-    ----------
-    x, y : (n,) float array
-        Pixels to the right and downwards.
-
-    Returns
-    -------
-    (n, 3) float array
-        Directions whose component along the line of sight is 1: the point at depth d is
-        ``eye + d direction``.
+    Their component along the line of sight is 1: the point at depth d is ``eye + d direction``.
     """
     across = (x - camera.width / 2) / camera.focal
     upward = (camera.height / 2 - y) / camera.focal

@@ -21,16 +21,9 @@ SUN_PIXELS = 900
 class DepthMap:
     """What is nearest to a far away light.
 
-    Attributes
-    ----------
-    axes : (3, 3) float array
-        Unit vectors across, and towards the light.
-    corner : (2,) float array
-        Where the picture starts, along the axes.
-    pixel : float
-        Size of a pixel, in model units.
-    heights : (n, n) float array
-        Coordinate towards the light of the nearest point of each pixel; -inf for none.
+    The axes (3, 3) are unit vectors across, and towards the light; the corner (2,) is where the
+    picture starts along them, a pixel is in model units. The heights (n, n) are coordinates
+    towards the light of the nearest point of each pixel; -inf for none.
     """
 
     axes: FloatArray
@@ -42,21 +35,9 @@ class DepthMap:
 def depth_map(
     points: FloatArray, triangles: IntArray, direction: FloatArray, size: int
 ) -> DepthMap:
-    """The parallel picture of a scene from the side of a light.
+    """The parallel picture of points (N, 3) and triangles (T, 3) from the side of a light.
 
-    Parameters
-    ----------
-    points : (N, 3) float array
-    triangles : (T, 3) int array
-    direction : (3,) float array
-        Towards the light.
-    size : int
-        Pixels along each side of the picture.
-
-    Returns
-    -------
-    DepthMap
-        The picture, with an empty rim.
+    With an empty rim; the direction points towards the light, the size is in pixels.
     """
     axes = view_axes(direction)
     local = points @ axes.T
@@ -69,19 +50,10 @@ def depth_map(
 
 
 def light_reaches(light: DepthMap, points: FloatArray, softness: float = 0.0) -> FloatArray:
-    """Which share of a light reaches points.
+    """Which share of a light reaches points: from 0 in the shadow to 1 in the light.
 
-    Parameters
-    ----------
-    points : (N, 3) float array
-        Points, lifted from their surface towards the light by about a pixel.
-    softness : float
-        Width of the edge of shadows, in model units; 0 for a hard edge.
-
-    Returns
-    -------
-    (N,) float array
-        From 0 in the shadow to 1 in the light.
+    The points (N, 3) are lifted from their surface towards the light by about a pixel; the
+    softness is the width of the edge of shadows, in model units, 0 for a hard edge.
     """
     size = len(light.heights)
     across, upward, height = light.axes @ points.T
@@ -105,18 +77,9 @@ def _pixels(values: FloatArray, size: int) -> IntArray:
 
 
 def sky_maps(points: FloatArray, triangles: IntArray) -> list[DepthMap]:
-    """Depth maps from directions spread evenly over the sky.
+    """Depth maps of points (N, 3) and triangles (T, 3), of which coarse ones will do.
 
-    Parameters
-    ----------
-    points : (N, 3) float array
-    triangles : (T, 3) int array
-        Triangles; coarse ones will do.
-
-    Returns
-    -------
-    list of DepthMap
-        `SKY_DIRECTIONS` maps, of parts of the sky of equal size.
+    `SKY_DIRECTIONS` of them, for parts of the sky of equal size.
     """
     index = np.arange(SKY_DIRECTIONS) + 0.5
     height = index / SKY_DIRECTIONS
@@ -127,18 +90,9 @@ def sky_maps(points: FloatArray, triangles: IntArray) -> list[DepthMap]:
 
 
 def sky_openness(sky: list[DepthMap], points: FloatArray, normals: FloatArray) -> FloatArray:
-    """Share of the light of the sky that reaches both sides of a surface.
+    """Share of the light of the sky that reaches both sides of a surface at points (N, 3).
 
-    Parameters
-    ----------
-    sky : list of DepthMap
-    points : (N, 3) float array
-    normals : (N, 3) float array
-
-    Returns
-    -------
-    (N, 2) float array
-        Share on the side of the normal, and on the other: 0 hidden, 1 free.
+    On the side of the normal, and on the other: (N, 2), 0 hidden, 1 free.
     """
     seen, whole = np.zeros((2, len(points))), np.full((2, len(points)), 1e-9)
     for light in sky:
@@ -154,24 +108,11 @@ def sky_openness(sky: list[DepthMap], points: FloatArray, normals: FloatArray) -
 def daylight(
     normals: FloatArray, openness: FloatArray, sun: FloatArray, sunshine: FloatArray
 ) -> FloatArray:
-    """Light that falls on a surface.
+    """Light (N, 3) that falls on a surface: red, green and blue, linear.
 
-    Parameters
-    ----------
-    normals : (N, 3) float array
-        Unit normals, on the side that is looked at.
-    openness : (N,) float array
-        Share of the sky's light that arrives.
-    sun : (3,) float array
-        Direction towards the sun.
-    sunshine : (N,) float array
-        Share of the sun's light that arrives.
-
-    Returns
-    -------
-    (N, 3) float array
-        Red, green and blue, linear: a cool sky, a warm sun, and what the ground throws back.
-        Free level ground gets 1.
+    From unit normals (N, 3), on the side that is looked at, and the shares (N,) of the light of
+    sky and sun that arrive; `sun` points towards it. A cool sky, a warm sun, and what the
+    ground throws back: free level ground gets 1.
     """
     up = normals[:, 2]
     sky = openness * (0.5 + 0.5 * up)

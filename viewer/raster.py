@@ -21,14 +21,9 @@ _DEPTH_STEPS = 2**31 - 1
 
 @dataclass(frozen=True)
 class DepthPicture:
-    """The nearest triangle of every pixel.
+    """The nearest triangle of every pixel, (height, width), and its nearness there.
 
-    Attributes
-    ----------
-    triangles : (height, width) int array
-        Triangle; -1 where there is none.
-    nearness : (height, width) float array
-        Its nearness there, of about nine digits; -inf where there is none.
+    -1 and -inf where there is none; the nearness has about nine digits.
     """
 
     triangles: IntArray
@@ -38,20 +33,10 @@ class DepthPicture:
 def affine_over_triangles(
     points: FloatArray, triangles: IntArray, values: FloatArray
 ) -> FloatArray:
-    """Values at points as affine functions over the picture of each triangle.
+    """Values (T, 3) at corners as affine functions over the picture of each triangle.
 
-    Parameters
-    ----------
-    points : (N, 3) float array
-        Pixels to the right and downwards, and anything.
-    triangles : (T, 3) int array
-    values : (T, 3) float array
-        Value at each corner.
-
-    Returns
-    -------
-    (T, 3) float array
-        Coefficients c of ``c0 + c1 x + c2 y``; the mean where a triangle is seen edge on.
+    Coefficients c (T, 3) of ``c0 + c1 x + c2 y``, the mean where a triangle is seen edge on;
+    points (N, 3) are pixels to the right and downwards, and anything.
     """
     a, b, c = np.moveaxis(points[triangles, :2], 1, 0)
     (bx, by), (cx, cy) = (b - a).T, (c - a).T
@@ -67,21 +52,10 @@ def affine_over_triangles(
 
 
 def rasterize(points: FloatArray, triangles: IntArray, width: int, height: int) -> DepthPicture:
-    """The nearest triangle of every pixel.
+    """The nearest triangle of every pixel; of equally near ones the last.
 
-    Parameters
-    ----------
-    points : (N, 3) float array
-        Pixels to the right and downwards, and the nearness.
-    triangles : (T, 3) int array
-        Triangles, of either orientation.
-    width, height : int
-        Size of the picture, in pixels.
-
-    Returns
-    -------
-    DepthPicture
-        Of equally near triangles the last one.
+    Points (N, 3) are pixels to the right and downwards, and the nearness; triangles (T, 3) may
+    have either orientation.
     """
     # Depth and triangle in one integer: the largest wins, whatever the order of work.
     buffer = np.full(width * height, -1, np.int64)
@@ -103,12 +77,9 @@ def rasterize(points: FloatArray, triangles: IntArray, width: int, height: int) 
 def close_hairlines(picture: DepthPicture) -> DepthPicture:
     """Fill gaps of one pixel with what lies beside them.
 
-    Returns
-    -------
-    DepthPicture
-        Pixels behind both of their neighbours (left and right, or above and below) take the
-        triangle of the first of them: a crack between two triangles, or a joint too narrow to
-        be seen through.
+    Pixels behind both of their neighbours (left and right, or above and below) take the
+    triangle of the first of them: a crack between two triangles, or a joint too narrow to be
+    seen through.
     """
     triangles, nearness = picture.triangles.copy(), picture.nearness.copy()
     for axis in (0, 1):

@@ -61,32 +61,15 @@ def render_image(
     height: int = 1000,
     legend: bool = False,
 ) -> Image.Image:
-    """A picture of panels in daylight.
+    """A picture of panels in daylight, RGB; the same for the same panels.
 
-    Parameters
-    ----------
-    color_by : {"mould", "radius", "none"}
-        What the colours stand for: the mould; the curvature (red where a panel curves
-        outwards, blue where inwards, pale where flat); nothing.
-    shading : {"studio", "zebra"}
-        ``studio``: matt, in the light of sky and sun. ``zebra``: reflected stripes, which
-        break at every edge that is not smooth.
-    direction : sequence of 3 floats, optional
-        From the panels to the viewer; by default from above, onto the long side.
-    width, height : int
-        Size of the picture, in pixels.
-    legend : bool
-        Whether a list of moulds, their radii and numbers of panels stands at the right.
+    Colours stand for the mould; or the curvature (red where a panel curves outwards, blue where
+    inwards, pale where flat); or nothing. The shading is ``studio``: matt, in the light of sky
+    and sun; or ``zebra``: reflected stripes, which break at every edge that is not smooth. The
+    direction points from the panels to the viewer; by default from above, onto the long side.
+    Sizes are in pixels. A legend lists moulds, their radii and numbers of panels at the right.
 
-    Returns
-    -------
-    PIL.Image.Image
-        The picture, RGB; the same for the same panels.
-
-    Raises
-    ------
-    InputError
-        If there are no panels, or an option is unknown or out of range.
+    Raises InputError if there are no panels, or an option is unknown or out of range.
     """
     _check_options(color_by, shading, width, height)
     if legend and color_by != "mould":
@@ -110,30 +93,10 @@ def compare_image(
     width: int = 1600,
     height: int = 600,
 ) -> Image.Image:
-    """Two sets of panels side by side, seen by the same camera.
+    """Two sets of panels of the same model side by side, seen by the same camera, RGB.
 
-    Parameters
-    ----------
-    left, right : Panels
-        The panels to compare, of the same model.
-    captions : tuple of two str
-        What is written below them.
-    shading : {"studio", "zebra"}
-        See `render_image`.
-    direction : sequence of 3 floats, optional
-        From the panels to the viewer.
-    width, height : int
-        Size of the whole picture, in pixels.
-
-    Returns
-    -------
-    PIL.Image.Image
-        The picture, RGB.
-
-    Raises
-    ------
-    InputError
-        If there are no panels, or an option is unknown or out of range.
+    Captions stand below them; the size is that of the whole picture, the rest as in
+    `render_image`.
     """
     _check_options("none", shading, width, height)
     scenes = [make_scene(left), make_scene(right)]

@@ -23,21 +23,11 @@ FINE_PANEL = 20.0
 
 @dataclass(frozen=True)
 class Scene:
-    """Panels, made ready to be drawn.
+    """P panels with H corners, made ready to be drawn, relative to the origin of the triangles.
 
-    Attributes
-    ----------
-    panels : Panels
-        P panels with H corners.
-    triangles : PanelTriangles
-        Their triangles; coordinates of a scene are relative to their origin.
-    rows : (2P + H, 5) float array
-        Their surfaces, see `surface_rows`.
-    edges : (H, 8) float array
-        Cutting plane ``n, -d`` and the function (direction, constant) that runs along the
-        edge from -1 to 1.
-    edge_length : float
-        Mean length of the edges, in model units.
+    `rows` (2P + H, 5) are their surfaces, see `surface_rows`. `edges` (H, 8) have the cutting
+    plane ``n, -d`` and the function (direction, constant) that runs along the edge from -1 to
+    1. The edge length is the mean one.
     """
 
     panels: Panels
@@ -48,13 +38,7 @@ class Scene:
 
 
 def make_scene(panels: Panels) -> Scene:
-    """Triangles and tables for drawing panels.
-
-    Raises
-    ------
-    InputError
-        If there are no panels.
-    """
+    """Triangles and tables for drawing panels; raises InputError if there are none."""
     if panels.n_panels == 0:
         raise InputError("there are no panels to draw")
     ends = panels.corners[panels.next_corners]
@@ -73,49 +57,25 @@ def make_scene(panels: Panels) -> Scene:
 
 @dataclass(frozen=True)
 class Sight:
-    """What is seen in n samples of a picture.
+    """What is seen in n samples of a picture."""
 
-    Attributes
-    ----------
-    x, y : (n,) float array
-        Where in the picture.
-    triangles, panels : (n,) int array
-        The triangle and the panel that is seen.
-    points : (n, 3) float array
-        Points of the panels' surfaces, in the coordinates of the scene.
-    normals : (n, 3) float array
-        Exact unit normals there, towards the viewer.
-    rays : (n, 3) float array
-        Unit vectors from the viewer to the points.
-    is_inside : (n,) bool array
-        Whether the side of a surface is seen that does not look outwards.
-    joints : (n,) float array
-        Share of the sample that is covered by a joint.
-    """
-
-    x: FloatArray
-    y: FloatArray
-    triangles: IntArray
-    panels: IntArray
-    points: FloatArray
-    normals: FloatArray
-    rays: FloatArray
-    is_inside: BoolArray
-    joints: FloatArray
+    x: FloatArray  # (n,) where in the picture, to the right
+    y: FloatArray  # and downwards
+    triangles: IntArray  # (n,) that are seen
+    panels: IntArray  # (n,) that are seen
+    points: FloatArray  # (n, 3) of the surfaces, in the coordinates of the scene
+    normals: FloatArray  # (n, 3) exact unit normals there, towards the viewer
+    rays: FloatArray  # (n, 3) unit vectors from the viewer to the points
+    is_inside: BoolArray  # (n,) whether the side is seen that does not look outwards
+    joints: FloatArray  # (n,) share of the sample that is covered by a joint
 
 
 def look(
     scene: Scene, camera: Camera, samples: IntArray, found: IntArray, nearness: FloatArray
 ) -> Sight:
-    """Cut the rays of samples with the surfaces of the triangles that are seen there.
+    """Cut the rays of samples with the surfaces of the triangles `found` that are seen there.
 
-    Parameters
-    ----------
-    samples : (n,) int array
-        Samples of the picture, counted row by row.
-    found : (n,) int array
-        Triangles that are seen there.
-    nearness : (n,) float array
+    Samples (n,) are counted row by row.
     """
     panels, surfaces = scene.triangles.panels[found], scene.triangles.surfaces[found]
     shift = scene.panels.origins[panels] - scene.triangles.origin

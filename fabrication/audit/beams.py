@@ -24,17 +24,9 @@ def beam_subject(
 
 
 def check_beams(subject: BeamSubject) -> list[Finding]:
-    """Run every beam check.
+    """Run every beam check: the findings B102 to B208, see `audit_model`.
 
-    Parameters
-    ----------
-    subject : BeamSubject
-        At least one beam, with finite numbers.
-
-    Returns
-    -------
-    list of Finding
-        The findings B102 to B208, see `audit_model`.
+    The subject has at least one beam, with finite numbers.
     """
     return [finding for check in BEAM_CHECKS for finding in check(subject)]
 

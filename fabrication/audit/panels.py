@@ -24,17 +24,9 @@ def panel_subject(
 
 
 def check_panels(subject: PanelSubject) -> list[Finding]:
-    """Run every panel check.
+    """Run every panel check: the findings P101 to P202, see `audit_model`.
 
-    Parameters
-    ----------
-    subject : PanelSubject
-        At least one panel, with finite numbers.
-
-    Returns
-    -------
-    list of Finding
-        The findings P101 to P202, see `audit_model`.
+    The subject has at least one panel, with finite numbers.
     """
     return [finding for check in PANEL_CHECKS for finding in check(subject)]
 

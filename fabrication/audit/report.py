@@ -17,43 +17,26 @@ from .subjects import USUAL_LIMITS, AuditLimits
 
 
 def audit_model(
-    model: Model,
-    limits: AuditLimits = USUAL_LIMITS,
-    rejected: Iterable[Mapping[str, str]] = (),
+    model: Model, limits: AuditLimits = USUAL_LIMITS, rejected: Iterable[Mapping[str, str]] = ()
 ) -> tuple[Finding, ...]:
     """Look for whatever would trouble a workshop.
 
-    Parameters
-    ----------
-    model : Model
-        Panels and beams, perhaps none.
-    rejected : iterable of mapping
-        Parts that could not be made, as `rejected_report` gives them.
+    The parts that could not be made, as `rejected_report` gives them; then findings on panels
+    and on beams, by code, then in their order. Of each code a part has one finding, the worst.
 
-    Returns
-    -------
-    tuple of Finding
-        The rejected parts; then those of panels and of beams, by code, then in their order. Of
-        each code a part has one finding, the worst.
+    Errors of panels: P001 name used twice, P002 numbers that are not finite, P100 cannot be
+    made, P101 cap beyond 80 degrees. Notes: P102 sharp corner, P103 short edge, P104 thick
+    against its radius, P105 tilted wall, P106 other thickness than asked for, P107 blank too
+    large, P201 step to a neighbour, P202 neighbour missing.
 
-        Errors of panels: P001 name used twice, P002 numbers that are not finite, P100 cannot be
-        made, P101 cap beyond 80 degrees. Notes: P102 sharp corner, P103 short edge, P104 thick
-        against its radius, P105 tilted wall, P106 other thickness than asked for, P107 blank
-        too large, P201 step to a neighbour, P202 neighbour missing.
+    Errors of beams: B001 name used twice, B002 numbers that are not finite, B100 edge without
+    an annulus, B101 cannot be cut at a node, B102 runs into a neighbour. Notes: B201 tilted
+    against the surface, B202 twisted against a node axis, B203 ends at a node lie apart, B204
+    shallow, B205 short, B206 sharp bevel, B207 too long a piece, B208 drilling marks do not
+    fit.
 
-        Errors of beams: B001 name used twice, B002 numbers that are not finite, B100 edge
-        without an annulus, B101 cannot be cut at a node, B102 runs into a neighbour. Notes:
-        B201 tilted against the surface, B202 twisted against a node axis, B203 ends at a node
-        lie apart, B204 shallow, B205 short, B206 sharp bevel, B207 too long a piece, B208
-        drilling marks do not fit.
-
-        Checks from P101 and B102 on need finite numbers: where there is a P002 or B002 they
-        wait until it is mended.
-
-    Raises
-    ------
-    InputError
-        If the units are not known.
+    Checks from P101 and B102 on need finite numbers: where there is a P002 or B002 they wait
+    until it is mended. Raises InputError if the units are not known.
     """
     millimeters_per(model.units)
     findings = [

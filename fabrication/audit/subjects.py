@@ -14,43 +14,18 @@ from ...kernel.parts.findings import Finding, Severity
 
 @dataclass(frozen=True)
 class AuditLimits:
-    """What a workshop can do.
+    """What a workshop can do."""
 
-    Attributes
-    ----------
-    corner_deg : float
-        Corners of panels and bevels of beams sharper than this break.
-    edge_mm : float
-        Edges and beams shorter than this are hard to cut.
-    wall_tilt_deg : float
-        Walls and beams that lean more than this from upright need another tool.
-    step_mm : float
-        Steps between neighbours, and between the ends of beams at a node, larger than this are
-        seen.
-    thickness_share : float
-        Panels thicker than this share of their smallest radius are hard to form.
-    thickness_change : float
-        Thicknesses that differ by more than this share from the one asked for.
-    blank_mm : float
-        Largest blank to be had; infinite for any.
-    twist_deg : float
-        Beams whose plane misses a node axis by more than this do not fit there.
-    depth_share : float
-        Beams shallower than this many thicknesses are no beams any more.
-    beam_mm : float
-        Longest piece that can be cut; infinite for any.
-    """
-
-    corner_deg: float = 15.0
-    edge_mm: float = 20.0
-    wall_tilt_deg: float = 30.0
-    step_mm: float = 5.0
-    thickness_share: float = 0.2
-    thickness_change: float = 0.2
-    blank_mm: float = float("inf")
-    twist_deg: float = 1.0
-    depth_share: float = 2.0
-    beam_mm: float = float("inf")
+    corner_deg: float = 15.0  # corners of panels and bevels of beams sharper than this break
+    edge_mm: float = 20.0  # edges and beams shorter than this are hard to cut
+    wall_tilt_deg: float = 30.0  # walls and beams that lean more need another tool
+    step_mm: float = 5.0  # larger steps of neighbours, or of the ends of beams at a node, show
+    thickness_share: float = 0.2  # thicker against the smallest radius is hard to form
+    thickness_change: float = 0.2  # share by which it may differ from the one asked for
+    blank_mm: float = float("inf")  # largest blank to be had; infinite for any
+    twist_deg: float = 1.0  # beams that miss a node axis by more do not fit there
+    depth_share: float = 2.0  # beams shallower than this many thicknesses are none any more
+    beam_mm: float = float("inf")  # longest piece that can be cut; infinite for any
 
 
 USUAL_LIMITS: Final = AuditLimits()
@@ -61,17 +36,7 @@ FactsT = TypeVar("FactsT")
 
 @dataclass(frozen=True)
 class Subject(Generic[PartsT, FactsT]):
-    """What checks look at.
-
-    Attributes
-    ----------
-    parts : Panels or Beams
-        The parts, in millimetres.
-    facts : PanelFacts or BeamFacts
-        Their measures, in millimetres.
-    limits : AuditLimits
-        What the workshop can do.
-    """
+    """What checks look at: parts and their measures in millimetres, and the limits."""
 
     parts: PartsT
     facts: FactsT
@@ -85,21 +50,9 @@ class Subject(Generic[PartsT, FactsT]):
         message: str,
         severity: Severity = "note",
     ) -> list[Finding]:
-        """The findings of one check.
+        """The findings of one check, in the order of the parts.
 
-        Parameters
-        ----------
-        sizes : (n,) float array
-            How much was found on each part.
-        is_found : (n,) bool array
-        message : str
-            What is wrong, with a field for the size.
-        severity : {"error", "note"}
-
-        Returns
-        -------
-        list of Finding
-            In the order of the parts.
+        The sizes (n,) are how much was found on each; the message has a field for the size.
         """
         ids = self.parts.ids
         values: list[float] = sizes.tolist()
@@ -110,13 +63,7 @@ class Subject(Generic[PartsT, FactsT]):
 
 
 def warning_texts(findings: Iterable[Finding]) -> dict[str, str]:
-    """Findings of each part in a line.
-
-    Returns
-    -------
-    dict of str to str
-        Codes and messages, separated by semicolons, by the id of the part.
-    """
+    """Findings of each part in a line, by its id: codes and messages, after semicolons."""
     lines: dict[str, list[str]] = {}
     for finding in findings:
         lines.setdefault(finding.id, []).append(f"{finding.code} {finding.message}")

@@ -5,7 +5,6 @@ names of its nodes and the bevels of its ends, ``DRILL`` circles where it is dri
 the outlines of the sheets.
 """
 
-import io
 import math
 import os
 from dataclasses import dataclass
@@ -23,7 +22,7 @@ from ...kernel.support.node_axes import node_name
 from ..files import check_suffix, replacing
 from ..model import Model, Written, check_parts
 from ..units import millimeters_per
-from .dxf import fixed_ezdxf, millimeter_drawing, text_width
+from .dxf import drawing_text, fixed_ezdxf, millimeter_drawing, text_width
 
 # What comes from ezdxf is partly untyped.
 _Untyped: TypeAlias = Any
@@ -40,14 +39,9 @@ _LABEL_SHARE = 0.35
 
 @dataclass(frozen=True)
 class SheetOptions:
-    """The sheets that beams are cut from, in millimetres.
+    """The sheets that beams are cut from, in millimetres: width and height.
 
-    Attributes
-    ----------
-    size : (float, float)
-        Width and height.
-    spacing : float
-        Distance between pieces, and from the rim of the sheet.
+    The spacing is the distance between pieces, and from the rim of the sheet.
     """
 
     size: tuple[float, float] = (3000.0, 1500.0)
@@ -60,33 +54,15 @@ _USUAL_SHEETS: Final = SheetOptions()
 def write_dxf(
     model: Model, path: str | os.PathLike[str], options: SheetOptions = _USUAL_SHEETS
 ) -> Written:
-    """Write the flat contours of beams to a DXF file.
+    """Write the flat contours of beams to a DXF file, replaced when the new one is complete.
 
-    Parameters
-    ----------
-    model : Model
-        At least one beam; panels are not drawn.
-    path : path
-        File to write. It is replaced when the new one is complete.
+    The contour is that in the middle of the thickness (`beam_contours`). A beam larger than a
+    sheet is drawn on a larger one of its own: a note says which, and the counts how many
+    ``sheets``. The same beams give the same bytes: the dates in the file are fixed.
 
-    Returns
-    -------
-    Written
-        The file, how many ``sheets``, and a note on the beams that are larger than a sheet:
-        each is drawn on a larger one of its own.
-
-    Raises
-    ------
-    InputError
-        If there are no beams, two have one name or one is not finite, the unit is not known,
-        sheet or spacing are no lengths, or the folder does not exist.
-    MissingLibraryError
-        If ezdxf is missing.
-
-    Notes
-    -----
-    The contour is that in the middle of the thickness (`beam_contours`). The same beams give
-    the same bytes: the dates in the file are fixed.
+    Raises InputError if there are no beams, two have one name or one is not finite, the unit is
+    not known, sheet or spacing are no lengths, or the folder does not exist;
+    MissingLibraryError if ezdxf is missing.
     """
     target = Path(path)
     check_suffix(target, ".dxf")
@@ -112,10 +88,9 @@ def write_dxf(
         _add_labels(space, beams, contours, shifts)
         if beams.marks is not None:
             _add_marks(space, beams, beams.marks, shifts)
-        stream = io.StringIO()
-        document.write(stream)
+        text = drawing_text(document)
     with replacing(target) as temporary:
-        temporary.write_text(stream.getvalue(), encoding="utf-8")
+        temporary.write_text(text, encoding="utf-8")
     shown = ", ".join(beams.ids[i] for i in oversize[:8])
     note = f"{len(oversize)} beams are larger than the sheet: {shown}"
     return Written(target, notes=(note,) if oversize else (), counts={"sheets": len(corners)})

@@ -1,5 +1,6 @@
 """DXF documents in millimetres, without dates and random identifiers."""
 
+import io
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from typing import Any, TypeAlias
@@ -21,15 +22,7 @@ _LETTER = 0.9
 def fixed_ezdxf() -> Generator[_Untyped]:
     """Import ezdxf, without time and random identifiers in what it writes.
 
-    Yields
-    ------
-    module
-        The library.
-
-    Raises
-    ------
-    MissingLibraryError
-        If it is missing.
+    Raises MissingLibraryError if it is missing.
     """
     try:
         import ezdxf
@@ -46,21 +39,23 @@ def fixed_ezdxf() -> Generator[_Untyped]:
 
 
 def millimeter_drawing(library: _Untyped, layers: Mapping[str, int]) -> _Untyped:
-    """An empty drawing in millimetres.
-
-    Parameters
-    ----------
-    library : module
-        From `fixed_ezdxf`.
-    layers : mapping of str to int
-        Layers and their colours, by AutoCAD's index.
-    """
+    """An empty drawing in millimetres, with layers and their colours by AutoCAD's index."""
     document = library.new("R2010")
     document.units = _MILLIMETERS
     document.header["$MEASUREMENT"] = 1
     for name, color in layers.items():
         document.layers.add(name, color=color)
     return document
+
+
+def drawing_text(document: _Untyped) -> str:
+    """The drawing as text; the same entities give the same text."""
+    # Left alone, ezdxf declares the classes in use in the order of their hashes.
+    for name in sorted(document.entitydb.dxf_types_in_use()):
+        document.classes.add_class(name)
+    stream = io.StringIO()
+    document.write(stream)
+    return stream.getvalue()
 
 
 def text_width(text: str) -> float:

@@ -4,7 +4,6 @@ A drawing is laid out once, as lines, circles and labels on named layers, and th
 DXF (for CAD and plotters) or SVG (for browsers and print).
 """
 
-import io
 import os
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +21,7 @@ from ...kernel.spheres.arcs import Arcs, arc_points
 from ..files import check_suffix, replacing
 from ..model import Model, Written, check_parts
 from ..units import millimeters_per
-from .dxf import fixed_ezdxf, millimeter_drawing, text_width
+from .dxf import drawing_text, fixed_ezdxf, millimeter_drawing, text_width
 
 _LAYERS: Final = {"OUTER": 7, "INNER": 8, "BLANK": 5, "TEXT": 3}
 """Layers and their colours in DXF: outer and inner outlines, rims of blanks, labels."""
@@ -40,16 +39,9 @@ _DECLARATION: Final = "<?xml version='1.0' encoding='utf-8'?>\n"
 
 @dataclass(frozen=True)
 class Label:
-    """A line of text.
+    """A line of text that begins at, or has the middle of its baseline at, a point, in mm.
 
-    Attributes
-    ----------
-    at : tuple of float
-        Where its baseline begins (or its middle is), in mm.
-    height : float
-        Height of its capitals, in mm.
-    is_centered : bool
-        Whether `at` is the middle of the baseline.
+    The height is that of its capitals.
     """
 
     text: str
@@ -60,17 +52,10 @@ class Label:
 
 @dataclass(frozen=True)
 class Drawing:
-    """What is drawn, in millimetres, y upwards.
+    """What is drawn, in millimetres, y upwards: from x = 0 to the width, y = -height to 0.
 
-    Attributes
-    ----------
-    outlines : list of tuple of str and (n, 2) float array
-        Layer and points of each closed line.
-    rims : list of tuple of float
-        Centre x, y and radius of each blank.
-    labels : list of Label
-    width, height : float
-        Size: x from 0 to the width, y from minus the height to 0.
+    Layer and points (n, 2) of each closed line; centre x, y and radius of the rim of each
+    blank.
     """
 
     outlines: list[tuple[str, FloatArray]]
@@ -81,24 +66,10 @@ class Drawing:
 
 
 def write_mould_drawings(model: Model, path: str | os.PathLike[str]) -> Written:
-    """Draw the panels of every mould into one file.
+    """Draw the panels of every mould into one .dxf or .svg file, see `layout_moulds`.
 
-    Parameters
-    ----------
-    model : Model
-        At least one panel; beams are not drawn.
-    path : path
-        File ending in ``.dxf`` or ``.svg``.
-
-    Raises
-    ------
-    InputError
-        If the suffix or the units are unknown, there are no panels, two have the same name or
-        one is not finite, or the file cannot be written.
-
-    Notes
-    -----
-    See `layout_moulds` for what is drawn.
+    Raises InputError if the suffix or the units are unknown, there are no panels, two have the
+    same name or one is not finite, or the file cannot be written.
     """
     target = Path(path)
     check_suffix(target, ".dxf", ".svg")
@@ -112,13 +83,10 @@ def write_mould_drawings(model: Model, path: str | os.PathLike[str]) -> Written:
 def layout_moulds(panels: Panels, units: str = "m") -> Drawing:
     """Arrange the panels of every mould under its title.
 
-    Returns
-    -------
-    Drawing
-        A block per mould, the sharpest first, panels without a mould last. Its title names
-        radius, number of panels and the blank that holds them all. Every panel is projected
-        along the axis of its smallest cap, seen from outside, outer and inner outline, in the
-        rim of its mould's blank, with its id and the sagitta of its own cap.
+    A block per mould, the sharpest first, panels without a mould last. Its title names radius,
+    number of panels and the blank that holds them all. Every panel is projected along the axis
+    of its smallest cap, seen from outside, outer and inner outline, in the rim of its mould's
+    blank, with its id and the sagitta of its own cap.
     """
     made = scale_panels(panels, millimeters_per(units))
     caps = panel_caps(made)
@@ -152,10 +120,7 @@ def _title(made: Panels, caps: PanelCaps, members: IntArray, name: str) -> str:
 
 
 def _cells(
-    made: Panels,
-    caps: PanelCaps,
-    views: list[tuple[str, list[FloatArray]]],
-    members: IntArray,
+    made: Panels, caps: PanelCaps, views: list[tuple[str, list[FloatArray]]], members: IntArray
 ) -> list[_Cell]:
     largest = float(caps.radii[members].max())
     bulges = panel_bulges(made)
@@ -232,9 +197,7 @@ def _dxf(drawing: Drawing) -> str:
             text = model.add_text(label.text, height=label.height, dxfattribs={"layer": "TEXT"})
             centered, left = TextEntityAlignment.CENTER, TextEntityAlignment.LEFT
             text.set_placement(label.at, align=centered if label.is_centered else left)
-        stream = io.StringIO()
-        document.write(stream)
-    return stream.getvalue()
+        return drawing_text(document)
 
 
 def _svg(drawing: Drawing) -> str:

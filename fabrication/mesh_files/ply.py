@@ -1,5 +1,6 @@
 """Polygon File Format (PLY): ascii or binary of either byte order, polygons of any degree."""
 
+import re
 import struct
 from dataclasses import dataclass
 from itertools import islice
@@ -11,8 +12,16 @@ from numpy.typing import NDArray
 from ...kernel.arrays import IntArray
 from ...kernel.errors import InputError
 from ...kernel.meshes.mesh import Mesh
-from ..polygons import Polygons
-from ..text import TextPolygons, decode, numbered_words, to_count
+from ..polygons import FileContent, Polygons
+from ..text import (
+    TextPolygons,
+    decode,
+    numbered_words,
+    significant_digits,
+    to_count,
+    unended,
+)
+from .mending import SINGLE, Source, mended
 
 _AGAIN = "export the mesh again"
 _ORDERS: Final = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
@@ -23,6 +32,7 @@ _CODES: Final = {
     "float": "f", "float32": "f", "double": "d", "float64": "d",
 }  # fmt: skip
 _FACE_LISTS: Final = ("vertex_indices", "vertex_index")
+_END: Final = re.compile(rb"(?<=[\r\n])end_header[ \t]*(\r\n|\n|\r)")
 _NO_FACE_LIST: Final = f"the faces have no list {' or '.join(_FACE_LISTS)}; {_AGAIN}"
 
 
@@ -48,7 +58,7 @@ class _Header:
     size: int
 
 
-def read_ply(data: bytes) -> Polygons:
+def read_ply(data: bytes) -> FileContent:
     """Polygons of a PLY file.
 
     Parameters
@@ -59,8 +69,9 @@ def read_ply(data: bytes) -> Polygons:
 
     Returns
     -------
-    Polygons
-        Faces in the order of the file; all vertices, used or not.
+    FileContent
+        Faces in the order of the file; all vertices, used or not, unless every face has
+        vertices of its own.
 
     Raises
     ------
@@ -69,15 +80,22 @@ def read_ply(data: bytes) -> Polygons:
         the line of text files.
     """
     header = _read_header(data)
-    body = data[header.size :]
-    return _read_ascii(body, header) if not header.order else _read_binary(body, header)
+    names = [element.name for element in header.elements]
+    if "face" not in names and "tristrips" in names:
+        raise InputError(
+            f"the faces are strips of triangles, which are not read; {_AGAIN} with faces"
+        )
+    if not header.order:
+        return _read_ascii(data, header)
+    return _read_binary(data[header.size :], header)
 
 
 def _read_header(data: bytes) -> _Header:
-    end = data.find(b"end_header")
-    size = data.find(b"\n", end) + 1
-    if not data.startswith(b"ply") or end < 0 or size == 0:
+    end = _END.search(data)
+    if not data.startswith(b"ply") or not end:
         raise InputError(f"line 1: the header does not run from ply to end_header; {_AGAIN}")
+    # Where lines end in \r alone, a \n behind the last is a number.
+    size = end.end() if b"\n" in data[: end.start()] else end.start(1) + 1
     lines = decode(data[:size]).split("\n")[:-1]
     order = None
     elements: list[_Element] = []
@@ -90,10 +108,11 @@ def _read_header(data: bytes) -> _Header:
             case ["property", *words] if elements and (new := _read_property(words)):
                 last = elements[-1]
                 elements[-1] = _Element(last.name, last.count, (*last.properties, new))
-            case ["format" | "element" | "property", *_]:
-                raise InputError(f"line {number}: cannot read {line.strip()!r}; {_AGAIN}")
-            case _:
+            case [] | ["ply"] | ["comment" | "obj_info" | "end_header", *_]:
                 pass
+            case _:
+                # A line left out would shift the columns that it describes.
+                raise InputError(f"line {number}: cannot read {line.strip()[:60]!r}; {_AGAIN}")
     if order is None:
         raise InputError(f"line 2: the header names no format; {_AGAIN}")
     return _Header(order, tuple(elements), len(lines), size)
@@ -119,8 +138,8 @@ def _coordinate_columns(element: _Element) -> list[int]:
     return [names.index(axis) for axis in "xyz"]
 
 
-def _read_ascii(body: bytes, header: _Header) -> Polygons:
-    rows = numbered_words(decode(body), header.n_lines + 1)
+def _read_ascii(data: bytes, header: _Header) -> FileContent:
+    rows = numbered_words(decode(data[header.size :]), header.n_lines + 1)
     found = TextPolygons()
     last = header.n_lines
     for element in header.elements:
@@ -128,6 +147,7 @@ def _read_ascii(body: bytes, header: _Header) -> Polygons:
         n_read = 0
         for n_read, (last, words) in enumerate(islice(rows, element.count), 1):  # noqa: B007
             if element.name == "vertex":
+                _check_width(last, words, len(element.properties))
                 found.add_vertex(last, [words[i] for i in columns if i < len(words)])
             elif element.name == "face":
                 found.add_face(last, _ascii_corners(last, words, element))
@@ -136,11 +156,27 @@ def _read_ascii(body: bytes, header: _Header) -> Polygons:
                 f"line {last}: the file ends after {n_read} of {element.count} rows of element "
                 f"{element.name}; {_AGAIN}"
             )
-    return found.polygons()
+    behind = next(rows, None)
+    remarks = (_goes_on(f"line {behind[0]}: the file"),) if behind else ()
+    source = Source(significant_digits(found.coordinates), has_end=not unended(data))
+    return mended(found.polygons(), source, remarks)
+
+
+def _goes_on(what: str) -> str:
+    return f"{what} goes on after the rows that its header counts; what follows is left out"
+
+
+def _check_width(number: int, words: list[str], width: int) -> None:
+    if len(words) > width:
+        raise InputError(
+            f"line {number}: the row has {len(words)} numbers where the header names {width}; "
+            f"{_AGAIN}"
+        )
 
 
 def _ascii_corners(number: int, words: list[str], element: _Element) -> list[str]:
     start = 0
+    corners: list[str] | None = None
     for each in element.properties:
         if not each.count_code:
             start += 1
@@ -150,11 +186,15 @@ def _ascii_corners(number: int, words: list[str], element: _Element) -> list[str
         if count < 0 or start > len(words):
             raise InputError(f"line {number}: the list {each.name} is not complete; {_AGAIN}")
         if each.name in _FACE_LISTS:
-            return words[start - count : start]
-    raise InputError(_NO_FACE_LIST)
+            corners = words[start - count : start]
+    if corners is None:
+        raise InputError(_NO_FACE_LIST)
+    _check_width(number, words, start)
+    return corners
 
 
-def _read_binary(body: bytes, header: _Header) -> Polygons:
+def _read_binary(body: bytes, header: _Header) -> FileContent:
+    digits = 0
     vertices, corners, degrees = np.zeros((0, 3)), np.zeros(0, np.int64), np.zeros(0, np.int64)
     start = 0
     for element in header.elements:
@@ -172,9 +212,13 @@ def _read_binary(body: bytes, header: _Header) -> Polygons:
             names = [f"f{column}" for column in _coordinate_columns(element)]
             table = np.frombuffer(body, record, element.count, start)
             with np.errstate(invalid="ignore"):  # a signalling NaN; Mesh refuses it
+                is_single = all(record[name] == np.float32 for name in names)
+                digits = SINGLE if is_single else 0
                 vertices = np.stack([table[name].astype(np.float64) for name in names], axis=1)
         start += element.count * record.itemsize
-    return Polygons(vertices, corners, degrees)
+    n_behind = len(body) - start
+    remarks = (_goes_on("the file"),) if n_behind and body[start:].strip() else ()
+    return mended(Polygons(vertices, corners, degrees), Source(digits), remarks)
 
 
 def _binary_lists(

@@ -39,40 +39,19 @@ _ROUNDING = 16
 class BrepErrors:
     """How far the parts of a Brep of one face lie apart, in model units.
 
-    Attributes
-    ----------
-    defect : str
-        Why the stream cannot be judged; empty if it can. Then all errors are infinite.
-    scale : float
-        What errors are relative to: the radius of the sphere; for a plane the panel's size.
-    rounding : float
-        What float64 leaves of coordinates as large as these.
-    trim_to_edge : float
-        From points of the trims, lifted to the surface, to the arcs or lines of their edges.
-    trim_to_vertex : float
-        From the lifted ends of trims to the vertices; contains the gaps of the loop.
-    edge_to_vertex : float
-        From the ends of edges to the vertices.
-    to_sphere : float
-        From vertices, edges and surface to the sphere.
-    mesh_to_sphere : float
-        From the vertices of the render mesh to the sphere; 0 without one.
-    is_counter_clockwise : bool
-        Whether the loop runs counter-clockwise in (u, v).
-    is_outward : bool
-        Whether the normal of the face agrees with N of the sphere.
+    With a defect, which says why the stream cannot be judged, all errors are infinite.
     """
 
     defect: str = ""
-    scale: float = 1.0
-    rounding: float = 0.0
-    trim_to_edge: float = np.inf
-    trim_to_vertex: float = np.inf
-    edge_to_vertex: float = np.inf
-    to_sphere: float = np.inf
-    mesh_to_sphere: float = np.inf
-    is_counter_clockwise: bool = False
-    is_outward: bool = False
+    scale: float = 1.0  # what errors are relative to: radius, or size of a plane panel
+    rounding: float = 0.0  # what float64 leaves of coordinates as large as these
+    trim_to_edge: float = np.inf  # points of trims, lifted to the surface, from arcs or lines
+    trim_to_vertex: float = np.inf  # lifted ends of trims from vertices; has gaps of the loop
+    edge_to_vertex: float = np.inf  # ends of edges from vertices
+    to_sphere: float = np.inf  # vertices, edges and surface from the sphere
+    mesh_to_sphere: float = np.inf  # vertices of the render mesh from it; 0 without one
+    is_counter_clockwise: bool = False  # the loop, in (u, v)
+    is_outward: bool = False  # the normal of the face agrees with N of the sphere
 
     @property
     def worst(self) -> float:
@@ -89,13 +68,9 @@ class BrepErrors:
         )
 
     def reason(self) -> str:
-        """Why the Brep is to be refused.
+        """Why the Brep is to be refused; empty for a sound one.
 
-        Returns
-        -------
-        str
-            Empty for a sound Brep: its distances are at most `EXACT_BREP` times the scale,
-            and rounding.
+        Its distances are at most `EXACT_BREP` times the scale, and rounding.
         """
         if self.defect:
             return self.defect
@@ -115,19 +90,10 @@ def verify_breps(
 ) -> list[BrepErrors]:
     """Errors of Breps, measured from their bytes; those of the same layout together.
 
-    Parameters
-    ----------
-    streams : sequence of bytes
-        P `ON_Brep` of one face and one loop, as written by `brep_streams` or by openNURBS.
-    spheres : (P, 5) float array, optional
-        Unit rows that the faces must lie on; without them, spheres are taken from the surfaces.
-    origins : (P, 3) float array, optional
-        Origins of the coordinates of the rows; the model's own by default.
-
-    Returns
-    -------
-    list of BrepErrors
-        P records; a stream that cannot be read has a defect and no errors.
+    Takes P `ON_Brep` of one face and one loop, as written by `brep_streams` or by openNURBS;
+    unit rows (P, 5) that the faces must lie on, by default those of the surfaces; and origins
+    (P, 3) of the coordinates of the rows, by default the model's own. A stream that cannot be
+    read has a defect and no errors.
     """
     result = [BrepErrors()] * len(streams)
     if origins is None:

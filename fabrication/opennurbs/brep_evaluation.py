@@ -12,35 +12,13 @@ _SAMPLES = 9
 
 
 def stream_numbers(streams: NDArray[np.uint8], place: int, count: int) -> FloatArray:
-    """Float64 numbers that begin at a place of every stream.
-
-    Parameters
-    ----------
-    streams : (n, bytes) uint8 array
-        Streams of one layout.
-
-    Returns
-    -------
-    (n, count) float array
-        The numbers.
-    """
+    """Float64 numbers (n, count) that begin at a place of streams (n, bytes) of one layout."""
     raw = np.ascontiguousarray(streams[:, place : place + 8 * count])
     return raw.view("<f8").astype(np.float64)
 
 
 def trim_points(streams: NDArray[np.uint8], curve: Curve) -> FloatArray:
-    """Points of a trim in (u, v).
-
-    Parameters
-    ----------
-    streams : (n, bytes) uint8 array
-        Streams of one layout.
-
-    Returns
-    -------
-    (n, q, 2) float array
-        The points, ends included.
-    """
+    """Points (n, q, 2) of a trim in (u, v), ends included, in streams (n, bytes)."""
     if curve.uuid == LINE_CURVE:
         return _between(stream_numbers(streams, curve.points, 6).reshape(-1, 2, 3)[..., :2])
     points = stream_numbers(streams, curve.points, 3 * curve.n_points).reshape(
@@ -63,19 +41,7 @@ def _bernstein(t: FloatArray) -> FloatArray:
 
 
 def surface_points(streams: NDArray[np.uint8], surface: Surface, uv: FloatArray) -> FloatArray:
-    """Points of a surface.
-
-    Parameters
-    ----------
-    streams : (n, bytes) uint8 array
-        Streams of one layout.
-    uv : (n, q, 2) float array
-
-    Returns
-    -------
-    (n, q, 3) float array
-        The points; NaN outside its domain.
-    """
+    """Points (n, q, 3) of a surface at uv (n, q, 2); NaN outside its domain."""
     if surface.uuid == PLANE_SURFACE:
         plane = stream_numbers(streams, surface.points, 12)
         domain = stream_numbers(streams, surface.knots[0], 4).reshape(-1, 2, 2)
@@ -107,18 +73,7 @@ def _spline_basis(knots: FloatArray, t: FloatArray) -> FloatArray:
 
 
 def edge_points(streams: NDArray[np.uint8], curve: Curve) -> FloatArray:
-    """Points of an edge.
-
-    Parameters
-    ----------
-    streams : (n, bytes) uint8 array
-        Streams of one layout.
-
-    Returns
-    -------
-    (n, q, 3) float array
-        The points, ends included.
-    """
+    """Points (n, q, 3) of an edge, ends included, in streams (n, bytes)."""
     if curve.uuid == LINE_CURVE:
         return _between(stream_numbers(streams, curve.points, 6).reshape(-1, 2, 3))
     circle = stream_numbers(streams, curve.points, 28)
@@ -136,19 +91,7 @@ def _circle_points(circle: FloatArray, angles: FloatArray) -> FloatArray:
 def distances_to_edge(
     streams: NDArray[np.uint8], curve: Curve, points: FloatArray
 ) -> FloatArray:
-    """Distances of points from an edge.
-
-    Parameters
-    ----------
-    streams : (n, bytes) uint8 array
-        Streams of one layout.
-    points : (n, q, 3) float array
-
-    Returns
-    -------
-    (n, q) float array
-        The distances.
-    """
+    """Distances (n, q) of points (n, q, 3) from an edge, in streams (n, bytes)."""
     if curve.uuid == LINE_CURVE:
         start, end = (
             stream_numbers(streams, curve.points, 6).reshape(-1, 2, 1, 3).transpose(1, 0, 2, 3)

@@ -55,18 +55,9 @@ class FaceMesh(NamedTuple):
 class BrepLayout:
     """Where the numbers of a Brep stand.
 
-    Attributes
-    ----------
-    sides : tuple of Side
-        The sides in the order of the loop.
-    is_reversed : bool
-        Whether the face looks against the normal of its surface.
-    mesh : FaceMesh, optional
-    checksums : tuple of Checksum
-    numbers : tuple of (int, int)
-        Places and counts of all float64 numbers.
-    fixed : (n,) bool array
-        The bytes that are neither numbers nor checksums.
+    The sides are in the order of the loop; a face `is_reversed` if it looks against the normal
+    of its surface; `numbers` are places and counts of all float64 numbers; `fixed` marks the
+    bytes that are neither numbers nor checksums.
     """
 
     surface: Surface

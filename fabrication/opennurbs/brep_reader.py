@@ -21,18 +21,7 @@ _FILE_HEADER = 32
 
 
 def read_brep_streams(data: bytes) -> list[bytes]:
-    """Streams of the Breps in a .3dm file, in their order.
-
-    Parameters
-    ----------
-    data : bytes
-        The file; version 5 or later.
-
-    Returns
-    -------
-    list of bytes
-        One stream per Brep, without attributes.
-    """
+    """Streams of the Breps in a .3dm file (version 5 or later), without attributes."""
     streams: list[bytes] = []
     for typecode, start, stop in _chunks(data, _FILE_HEADER, len(data)):
         if typecode != _OBJECT_TABLE:
@@ -58,24 +47,11 @@ def _chunks(data: bytes, start: int, stop: int) -> Generator[tuple[int, int, int
 
 
 def parse_brep(stream: bytes) -> BrepLayout:
-    """Layout of a Brep of one face and one loop.
+    """Places of the numbers of a Brep of one face and one loop.
 
-    Parameters
-    ----------
-    stream : bytes
-        The object, as written by `brep_streams` or encoded by openNURBS.
-
-    Returns
-    -------
-    BrepLayout
-        Places of its numbers.
-
-    Raises
-    ------
-    UnreadableError
-        If the stream is cut short, or not a Brep of the kind that spherical panels make:
-        trims that are lines or rational quadratics in Bézier spans, edges that are lines or
-        arcs, a plane or a rational biquadratic surface in Bézier spans.
+    Raises UnreadableError if the stream is cut short, or not a Brep of the kind that spherical
+    panels make: trims that are lines or rational quadratics in Bézier spans, edges that are
+    lines or arcs, a plane or a rational biquadratic surface in Bézier spans.
     """
     reader = StreamReader(stream)
     with reader.object() as uuid:

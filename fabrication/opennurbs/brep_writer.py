@@ -40,37 +40,15 @@ from .sphere_patches import (
     span_counts,
     trim_control_points,
 )
-from .stream_writer import (
-    Chunk,
-    Piece,
-    Slot,
-    class_object,
-    doubles,
-    fill,
-    ints,
-    table,
-)
+from .stream_writer import Chunk, Piece, Slot, class_object, doubles, fill, ints, table
 
 
 def brep_streams(panels: Panels, meshes: RenderMeshes | None = None) -> list[bytes]:
-    """Outer faces of panels, each as the stream of one `ON_Brep`.
+    """Outer faces of panels, each as the stream of one `ON_Brep`, with render meshes if given.
 
-    Parameters
-    ----------
-    panels : Panels
-        P panels, of spheres and planes.
-    meshes : RenderMeshes, optional
-        Their render meshes, for viewers that cannot make their own.
-
-    Returns
-    -------
-    list of bytes
-        P objects, in model coordinates; the normal of a Brep is N of its panel.
-
-    Notes
-    -----
-    Batched over the panels of one degree; about 0.05 ms and 4 kB per panel. Patches that open
-    far or whose trims sweep far are cut into 2 x 2 spans, so that all weights are positive.
+    In model coordinates; the normal of a Brep is N of its panel. Batched over the panels of one
+    degree; about 0.05 ms and 4 kB per panel. Patches that open far or whose trims sweep far are
+    cut into 2 x 2 spans, so that all weights are positive.
     """
     arcs = panel_arcs(panels)
     curves = _edge_records(panels, arcs)
@@ -98,17 +76,7 @@ def brep_streams(panels: Panels, meshes: RenderMeshes | None = None) -> list[byt
 def face_streams(panels: Panels) -> tuple[list[bytes], list[bytes]]:
     """Surfaces and trims of the outer faces, to be joined.
 
-    Parameters
-    ----------
-    panels : Panels
-        P panels with H corners.
-
-    Returns
-    -------
-    surfaces : list of bytes
-        P objects, in model coordinates.
-    trims : list of bytes
-        H curves over [-1, 1] in (u, v).
+    P surfaces in model coordinates, and H trims over [-1, 1] in (u, v), one per corner.
     """
     surfaces, trims = [b""] * panels.n_panels, [b""] * len(panels.corners)
     for group, spans, _ in _groups(panels, panel_arcs(panels), None):
@@ -139,15 +107,7 @@ def _groups(
 def edge_streams(panels: Panels) -> list[bytes]:
     """Edges of the outer faces, each as the stream of an `ON_ArcCurve` or `ON_LineCurve`.
 
-    Parameters
-    ----------
-    panels : Panels
-        P panels with H corners.
-
-    Returns
-    -------
-    list of bytes
-        H objects, in model coordinates, from corner h to the next.
+    H objects, in model coordinates, from corner h to the next.
     """
     arcs = panel_arcs(panels)
     records = _edge_records(panels, arcs)

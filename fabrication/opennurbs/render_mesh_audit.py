@@ -7,7 +7,7 @@ from ...kernel.arrays import BoolArray, FloatArray, dot, norm
 from ...kernel.spheres.incidence import normals, signed_distance
 from ...kernel.tolerances import SINGLE_EPSILON
 from .brep_layout import FaceMesh
-from .stream_reader import BufferPlace, inflated
+from .stream_reader import BufferPlace, buffer_content
 
 
 def audit_render_meshes(
@@ -15,23 +15,9 @@ def audit_render_meshes(
 ) -> tuple[FloatArray, list[tuple[str, BoolArray]]]:
     """How far the vertices of render meshes lie from their spheres, and what else is wrong.
 
-    Parameters
-    ----------
-    streams : (n, bytes) uint8 array
-        Streams of one layout.
-    mesh : FaceMesh
-        Where the mesh stands.
-    rows : (n, 5) float array
-        Unit rows of the spheres, relative to their origins.
-    origins : (n, 3) float array
-
-    Returns
-    -------
-    distances : (n,) float array
-        The largest distances, in model units; of vertices in float32 alone, what their
-        rounding does not explain.
-    defects : list of (str, (n,) bool array)
-        Each defect and the streams that have it.
+    Unit rows (n, 5) of the spheres are relative to origins (n, 3). The largest distances (n,)
+    are in model units; of vertices in float32 alone, what their rounding does not explain. Then
+    each defect and the streams (n,) that have it.
     """
     points, rounding = _vertices(streams, mesh)
     local = points - origins[:, None]
@@ -67,7 +53,7 @@ def _vertices(streams: NDArray[np.uint8], mesh: FaceMesh) -> tuple[FloatArray, F
 def _points(streams: NDArray[np.uint8], buffer: BufferPlace, dtype: str) -> FloatArray:
     """Points (n, V, 3) of a buffer; a deflated one is the same in all streams."""
     if buffer.is_deflated:
-        content = np.frombuffer(inflated(streams[0].tobytes(), buffer), dtype)
+        content = np.frombuffer(buffer_content(streams[0].tobytes(), buffer), dtype)
         raw = np.broadcast_to(content, (len(streams), len(content)))
     else:
         raw = np.ascontiguousarray(streams[:, buffer.start : buffer.stop]).view(dtype)

@@ -51,43 +51,23 @@ _IDENTITY = doubles(*np.eye(4).ravel().tolist())
 class RenderMeshes:
     """Triangles of panels or beams, those of the same triangulation together.
 
-    Attributes
-    ----------
-    kinds : (P,) int array
-        Triangulation of each piece.
-    triangles : tuple of (T, 3) int array
-        The triangulations; counter-clockwise about the normals.
-    starts : (P,) int array
-        First vertex of each piece; its triangulation tells how many there are.
-    points : (N, 3) float array
-        Vertices on the surfaces, in model coordinates.
-    normals : (N, 3) float array
-        Exact unit normals there.
-    has_doubles : bool
-        Whether vertices are written as float64 too: where the model lies so far from the
-        origin that float32 would show.
+    Vertices are written as float64 too where the model lies so far from the origin that float32
+    would show.
     """
 
-    kinds: IntArray
-    triangles: tuple[IntArray, ...]
-    starts: IntArray
-    points: FloatArray
-    normals: FloatArray
+    kinds: IntArray  # (P,) triangulation of each piece
+    triangles: tuple[IntArray, ...]  # (T, 3) each, counter-clockwise about the normals
+    starts: IntArray  # (P,) first vertex of each piece; its triangulation tells how many
+    points: FloatArray  # (N, 3) vertices on the surfaces, in model coordinates
+    normals: FloatArray  # (N, 3) exact unit normals there
     has_doubles: bool
 
 
 def panel_meshes(panels: Panels, tolerance: float) -> RenderMeshes:
-    """Triangulate the outer faces of panels.
+    """Triangulate the outer faces of panels, a mesh each.
 
-    Parameters
-    ----------
-    tolerance : float
-        Largest distance of a triangle from its sphere, relative to the radius of the panel.
-
-    Returns
-    -------
-    RenderMeshes
-        A mesh per panel.
+    The tolerance is the largest distance of a triangle from its sphere, relative to the radius
+    of the panel.
     """
     pieces = tessellate(panels, tolerance, solid=False)
     order = np.argsort(pieces.panels, kind="stable")
@@ -109,19 +89,10 @@ def panel_meshes(panels: Panels, tolerance: float) -> RenderMeshes:
 
 
 def gather_meshes(groups: Sequence[BeamTriangles], error: float) -> RenderMeshes:
-    """Triangulated beams or cylinders as render meshes.
+    """Triangulated beams or cylinders as render meshes, every piece once.
 
-    Parameters
-    ----------
-    groups : sequence of BeamTriangles
-        Every piece once.
-    error : float
-        Distance of the triangles of the smallest piece from its surface, in model units.
-
-    Returns
-    -------
-    RenderMeshes
-        A mesh per piece.
+    The error is the distance of the triangles of the smallest piece from its surface, in model
+    units.
     """
     n_pieces = sum(len(group.beams) for group in groups)
     kinds, starts = np.zeros((2, n_pieces), np.int64)
@@ -145,36 +116,14 @@ def _needs_doubles(points: FloatArray, error: float) -> bool:
 
 
 def mesh_numbers(meshes: RenderMeshes, members: IntArray) -> dict[str, FloatArray]:
-    """Numbers that fill the slots of `mesh_object`.
-
-    Parameters
-    ----------
-    members : (n,) int array
-        Pieces of one triangulation.
-
-    Returns
-    -------
-    dict of str to (n, 1, V, 3) float array
-        ``points`` and ``normals``.
-    """
+    """Points and normals (n, 1, V, 3) of pieces of one triangulation, for `mesh_object`."""
     count = _n_points(meshes.triangles[int(meshes.kinds[members[0]])])
     ids = meshes.starts[members][:, None, None] + np.arange(count)
     return {"points": meshes.points[ids], "normals": meshes.normals[ids]}
 
 
 def mesh_object(meshes: RenderMeshes, kind: int) -> Chunk:
-    """An `ON_Mesh` whose vertices and normals are still to be filled in.
-
-    Parameters
-    ----------
-    kind : int
-        Which of the triangulations; it uses all of its vertices.
-
-    Returns
-    -------
-    Chunk
-        The object, with slots ``points`` and ``normals``.
-    """
+    """An `ON_Mesh` of a triangulation, with slots ``points`` and ``normals`` to be filled."""
     triangles = meshes.triangles[kind]
     count = _n_points(triangles)
     size = 1 if count < 1 << 8 else 2 if count < 1 << 16 else 4
@@ -199,18 +148,7 @@ def _n_points(triangles: IntArray) -> int:
 
 
 def mesh_streams(meshes: RenderMeshes) -> list[bytes]:
-    """Each mesh as the stream of an `ON_Mesh`.
-
-    Parameters
-    ----------
-    meshes : RenderMeshes
-        The triangles of P pieces.
-
-    Returns
-    -------
-    list of bytes
-        P objects, in model coordinates.
-    """
+    """Each mesh as the stream of an `ON_Mesh`, in model coordinates."""
     return _filled(meshes, lambda mesh: mesh)
 
 
@@ -225,20 +163,7 @@ def _filled(meshes: RenderMeshes, wrap: Callable[[Chunk], Chunk]) -> list[bytes]
 
 
 def extrusions_with_meshes(extrusions: Sequence[bytes], meshes: RenderMeshes) -> list[bytes]:
-    """Put render meshes into extrusions.
-
-    Parameters
-    ----------
-    extrusions : sequence of bytes
-        Streams of B `ON_Extrusion`, as openNURBS encodes them without meshes.
-    meshes : RenderMeshes
-        The triangles of B pieces.
-
-    Returns
-    -------
-    list of bytes
-        The streams with their meshes.
-    """
+    """Put render meshes into `ON_Extrusion` that openNURBS encoded without meshes."""
     caches = _filled(meshes, _cache)
     empty = encode(_cache())
     result: list[bytes] = []

@@ -53,25 +53,10 @@ class _Joints:
 
 
 def join_panels(panels: Panels, largest_gap: float, meshes: RenderMeshes | None) -> Shell:
-    """Outer faces of panels as one `ON_Brep`.
+    """Outer faces of panels as one `ON_Brep`, whose face p is panel p.
 
-    Parameters
-    ----------
-    panels : Panels
-        At least one.
-    largest_gap : float
-        How far edges of neighbours that are joined may lie apart, in model units.
-    meshes : RenderMeshes, optional
-
-    Returns
-    -------
-    Shell
-        The stream, whose face p is panel p, and the number of edges left open.
-
-    Raises
-    ------
-    InputError
-        If no two neighbours are close enough.
+    Edges of neighbours are joined if they lie at most the largest gap apart, in model units.
+    Raises InputError if no two neighbours are close enough.
     """
     joints = _join(panels, largest_gap)
     if joints.n_open and not joints.is_reversed.any():

@@ -46,18 +46,9 @@ class PanelCharts:
 
 
 def panel_charts(panels: Panels, arcs: Arcs, ids: IntArray) -> PanelCharts:
-    """Stereographic charts of panels of the same degree.
+    """Stereographic charts of panels `ids` (n,) of the same degree; arcs are outer edges.
 
-    Parameters
-    ----------
-    arcs : Arcs
-        Their outer edges.
-    ids : (n,) int array
-
-    Returns
-    -------
-    PanelCharts
-        n charts, turned so that no trim runs along u or v.
+    They are turned so that no trim runs along u or v.
     """
     corner_ids = panels.offsets[ids][:, None] + np.arange(int(panels.degrees[ids[0]]))
     rows = panels.spheres[ids]
@@ -109,22 +100,14 @@ def _project_chart(curvatures: FloatArray, frames: FloatArray, x: FloatArray) ->
 
 
 def select_charts(charts: PanelCharts, chosen: BoolArray) -> PanelCharts:
-    """Some of the charts.
-
-    Parameters
-    ----------
-    chosen : (P,) bool array
-    """
+    """The charts where chosen (P,)."""
     return PanelCharts(*(values[chosen] for values in vars(charts).values()))
 
 
 def span_counts(charts: PanelCharts) -> IntArray:
-    """Bézier spans of the trims and, each way, of the patch.
+    """Bézier spans (P,) of the trims and, each way, of the patch.
 
-    Returns
-    -------
-    (P,) int array
-        1 or 2, so that all weights are positive; 0 for planes.
+    1 or 2, so that all weights are positive; 0 for planes.
     """
     middle_weights = 1 - charts.curvatures**2 * dot(charts.reaches, charts.reaches)
     is_bent = np.abs(charts.bulges).max(1) > _ONE_SPAN_BULGE
@@ -133,15 +116,11 @@ def span_counts(charts: PanelCharts) -> IntArray:
 
 
 def trim_control_points(charts: PanelCharts, spans: int) -> FloatArray:
-    """Homogeneous control points of the trims over [-1, 1].
+    """Homogeneous control points (P, k, 2 spans + 1, 3) of the trims over [-1, 1].
 
     The arc ``(h τ (1 + b²), h b (1 - τ²)) / (1 + b² τ²)`` over its chord, see
-    `kernel.spheres.arcs`; a control point is its polar form at two consecutive knots.
-
-    Returns
-    -------
-    (P, k, 2 spans + 1, 3) float array
-        u, v and 1, times the weight.
+    `kernel.spheres.arcs`; a control point (u, v and 1, times the weight) is its polar form at
+    two consecutive knots.
     """
     knots = np.repeat(np.linspace(-1, 1, spans + 1), 2)
     total, product = knots[:-1] + knots[1:], knots[:-1] * knots[1:]
@@ -161,17 +140,9 @@ def trim_control_points(charts: PanelCharts, spans: int) -> FloatArray:
 
 
 def patch_control_points(charts: PanelCharts, knots: FloatArray) -> FloatArray:
-    """Homogeneous control points of the patches.
+    """Homogeneous control points (P, n, n, 4) of the patches: x, y, z and 1, times the weight.
 
-    Parameters
-    ----------
-    knots : (P, 2, n + 1) float array
-        Knots in u and v, without the first and last knot of other notations.
-
-    Returns
-    -------
-    (P, n, n, 4) float array
-        x, y, z and 1, times the weight.
+    Knots (P, 2, n + 1) in u and v are without the first and last knot of other notations.
     """
     mean = (knots[..., :-1] + knots[..., 1:]) / 2
     product = knots[..., :-1] * knots[..., 1:]

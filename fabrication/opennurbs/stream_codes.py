@@ -43,12 +43,7 @@ OUTER_LOOP: Final = 1
 class Checksum(NamedTuple):
     """Place of a CRC-32 in a stream and the ranges (start, stop) of bytes that it covers.
 
-    Attributes
-    ----------
-    place : int
-        Where its four bytes begin.
-    ranges : tuple of (int, int)
-        The bytes of its chunk that are in no inner chunk.
+    Its four bytes begin at the place; the ranges are the bytes of its chunk in no inner chunk.
     """
 
     place: int

@@ -25,16 +25,8 @@ class StreamReader:
     """Reads a stream from front to back.
 
     Every method that reads raises `UnreadableError` where the stream ends too early or holds
-    something else.
-
-    Attributes
-    ----------
-    position : int
-        Where the next byte is.
-    checksums : list of Checksum
-        Checksums passed so far.
-    numbers : list of (int, int)
-        Places and counts of the float64 numbers passed so far.
+    something else. `position` is where the next byte is; `checksums`, and `numbers` (places and
+    counts of float64 numbers), are those passed so far.
     """
 
     def __init__(self, data: bytes) -> None:
@@ -69,26 +61,14 @@ class StreamReader:
         return self.ints(self.ints(1)[0])
 
     def expect(self, expected: bytes, name: str) -> None:
-        """Pass known bytes.
-
-        Parameters
-        ----------
-        name : str
-            What they are, for the message.
-        """
+        """Pass known bytes; the name says what they are, for the message."""
         start = self.take(len(expected))
         if self.data[start : self.position] != expected:
             raise UnreadableError(f"{name} expected at byte {start}")
 
     @contextmanager
     def chunk(self, typecode: int) -> Generator[None]:
-        """Read a chunk; the block must consume its body.
-
-        Yields
-        ------
-        None
-            With the reader at its body.
-        """
+        """Read a chunk; the block begins at its body and must consume it."""
         start = self.take(codes.CHUNK_HEADER.size)
         found, length = codes.CHUNK_HEADER.unpack_from(self.data, start)
         if found != typecode:
@@ -111,13 +91,7 @@ class StreamReader:
 
     @contextmanager
     def object(self) -> Generator[bytes]:
-        """Read an object; the block must consume it.
-
-        Yields
-        ------
-        bytes
-            Id of its class.
-        """
+        """Read an object: the id of its class; the block must consume it."""
         with self.chunk(codes.CLASS):
             with self.chunk(codes.CLASS_UUID):
                 start = self.take(16)
@@ -127,17 +101,9 @@ class StreamReader:
 
     @contextmanager
     def table(self, minor: int = 0) -> Generator[int]:
-        """Read a table of records; the block must consume them.
+        """Read a table of version 1.0 to 1.`minor`: its number of records.
 
-        Parameters
-        ----------
-        minor : int
-            Highest version 1.`minor` known.
-
-        Yields
-        ------
-        int
-            Number of records.
+        The block must consume them.
         """
         with self.chunk(codes.ANONYMOUS):
             version = self.data[self.take(1)]
@@ -145,22 +111,17 @@ class StreamReader:
                 raise UnreadableError(f"a table of unknown version before {self.position}")
             yield self.ints(1)[0]
 
-    def buffer(self, size: int) -> BufferPlace:
-        """Pass a buffer.
+    def skip_chunk(self) -> None:
+        """Pass a chunk of any type."""
+        start = self.take(codes.CHUNK_HEADER.size)
+        self.take(codes.CHUNK_HEADER.unpack_from(self.data, start)[1])
 
-        Parameters
-        ----------
-        size : int
-            What it must hold, in bytes.
-
-        Returns
-        -------
-        BufferPlace
-            Where its bytes stand.
-        """
+    def buffer(self, expected: int | None = None) -> BufferPlace:
+        """Pass a buffer; it must hold so many bytes if that is given."""
         begin = self.position
-        if self.ints(1)[0] != size:
-            raise UnreadableError(f"the buffer at byte {begin} does not hold {size} bytes")
+        (size,) = self.ints(1)
+        if expected not in (None, size):
+            raise UnreadableError(f"the buffer at byte {begin} does not hold {expected} bytes")
         if size == 0:
             return BufferPlace(self.position, self.position, is_deflated=False)
         place = self.take(codes.CRC.size)
@@ -172,16 +133,17 @@ class StreamReader:
         with self.chunk(codes.ANONYMOUS):
             start = self.take(self.limit - self.position)
             found = BufferPlace(start, self.position, is_deflated=True)
-        content = inflated(self.data, found)
+        content = buffer_content(self.data, found)
         (checksum,) = codes.CRC.unpack_from(self.data, place)
         if len(content) != size or checksum != zlib.crc32(content):
             raise UnreadableError(f"the buffer at byte {begin} does not inflate to its content")
         return found
 
 
-def inflated(data: bytes, buffer: BufferPlace) -> bytes:
-    """Content of a deflated buffer: the content; empty if the bytes are damaged."""
+def buffer_content(data: bytes, buffer: BufferPlace) -> bytes:
+    """Content of a buffer; empty if deflated bytes are damaged."""
+    content = data[buffer.start : buffer.stop]
     try:
-        return zlib.decompress(data[buffer.start : buffer.stop])
+        return zlib.decompress(content) if buffer.is_deflated else content
     except zlib.error:
         return b""

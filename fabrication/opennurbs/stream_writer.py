@@ -91,15 +91,8 @@ def _shifted(checksum: codes.Checksum, by: int) -> codes.Checksum:
 def fill(piece: Piece, numbers: Mapping[str, NDArray[Any]]) -> Iterator[bytes]:
     """Streams of one layout.
 
-    Parameters
-    ----------
-    numbers : mapping of str to (n, count of slots, ...) array
-        Numbers of the slots, one row per stream; more than a slot takes are left out.
-
-    Yields
-    ------
-    bytes
-        Each of the n streams.
+    Numbers of the slots by name are (n, count of slots, ...), one row per stream; more than a
+    slot takes are left out.
     """
     template = _assemble(piece)
     rows = len(next(iter(numbers.values())))
@@ -133,26 +126,13 @@ def doubles(*values: float) -> bytes:
 
 
 def class_object(uuid: bytes, *body: Piece) -> Chunk:
-    """An object of a class.
-
-    Parameters
-    ----------
-    uuid : bytes
-        Id of the class.
-    """
+    """An object of the class with an id."""
     name = Chunk(codes.CLASS_UUID, (uuid,))
     end = codes.CHUNK_HEADER.pack(codes.CLASS_END, 0)
     return Chunk(codes.CLASS, (name, Chunk(codes.CLASS_DATA, body), end))
 
 
 def table(minor: int, records: Sequence[tuple[Piece, ...]]) -> Chunk:
-    """Counted records.
-
-    Parameters
-    ----------
-    minor : int
-        Version 1.`minor` of the table.
-    records : sequence of tuple of pieces
-    """
+    """Counted records in a table of version 1.`minor`."""
     pieces = (piece for record in records for piece in record)
     return Chunk(codes.ANONYMOUS, (bytes([16 + minor]), ints(len(records)), *pieces))

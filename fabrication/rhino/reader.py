@@ -1,14 +1,12 @@
-"""Reads Rhino .3dm files: meshes with ngons, or grids on surfaces."""
+"""Reads Rhino .3dm files: meshes with ngons and grids on surfaces, joined."""
 
-import base64
-from collections import Counter
+from functools import lru_cache
 
 import numpy as np
 
-from ...kernel.arrays import IntArray
+from ...kernel.arrays import FloatArray
 from ...kernel.errors import InputError
-from ...kernel.tolerances import COINCIDENT
-from ..opennurbs.mesh_ngons import read_mesh_object
+from ...kernel.tolerances import COINCIDENT, SAME_BOX
 from ..polygons import (
     FileContent,
     Polygons,
@@ -16,26 +14,26 @@ from ..polygons import (
     drop_unused,
     join_polygons,
     mean_side,
-    transform_polygons,
     weld,
 )
-from .object_reader import RhinoObject, placed_objects
-from .surface_reader import SURFACES, GridSize, sample_object
+from .isolation import isolated
+from .object_polygons import FileObjects, ObjectPolygons, read_objects
+from .surface_reader import GridSize
 
 _GRID = GridSize(24, 24)
 
 
 def read_3dm(data: bytes, layer: str = "", size: GridSize = _GRID) -> FileContent:
-    """All the meshes in a .3dm file, joined; without meshes, grids on its surfaces.
+    """All that a .3dm file shows and can be panelled: its meshes, and grids on its surfaces.
 
     Parameters
     ----------
     data : bytes
         Content of the file.
     layer : str
-        Full path of a layer, such as ``Roof::Panels``: read only what is on it and on its
-        sublayers; empty reads all. Objects inside blocks are read wherever an instance
-        stands, see `placed_objects`.
+        Layers by full path, such as ``Roof::Panels``, or by the end of it, several with
+        commas; capitals do not matter. Only what is on them and on their sublayers is read, a
+        layer that is off too if it is named. Empty reads all layers that are on.
     size : GridSize
         Quads along u and v of each face of surfaces and polysurfaces.
 
@@ -43,9 +41,10 @@ def read_3dm(data: bytes, layer: str = "", size: GridSize = _GRID) -> FileConten
     -------
     FileContent
         Faces in the order of the objects and, within a mesh, of the file; an ngon stands
-        where the first of its triangles and quads stood. Vertices closer than COINCIDENT
-        mean sides are one, as separate and unwelded meshes repeat the vertices of their
-        seams; vertices inside ngons are dropped.
+        where the first of its triangles and quads stood. Hidden objects are left out, objects
+        inside blocks read wherever an instance stands; remarks say what was left out. Vertices
+        closer than COINCIDENT mean sides are one, as separate and unwelded meshes repeat the
+        vertices of their seams; vertices inside ngons are dropped.
 
     Raises
     ------
@@ -53,62 +52,73 @@ def read_3dm(data: bytes, layer: str = "", size: GridSize = _GRID) -> FileConten
         If the file cannot be read or holds neither meshes nor surfaces there; the message says
         what it holds.
     """
-    import rhino3dm
+    found = _read_isolated(data, layer, size)
+    sources, polygons = _join(found.objects)
+    if not len(polygons.degrees):
+        if any(each.is_mesh for each in found.objects):
+            raise InputError("its faces have no area; export the mesh again")
+        raise InputError(
+            f"{size.n_u} by {size.n_v} quads on surfaces have no area: ask for more"
+        )
+    remarks = (*found.remarks, *_narrowed(found.objects, sources), *_doubled(found.objects))
+    return FileContent(polygons, found.units, remarks, sources)
 
-    rhino: RhinoObject = rhino3dm
-    model = rhino.File3dm.FromByteArray(data)
-    if model is None:
-        raise InputError("Rhino cannot read the file: it is damaged or no .3dm; save it again")
-    objects = placed_objects(model, layer)
-    meshes = [
-        transform_polygons(_mesh_polygons(each.geometry), each.transform)
-        for each in objects
-        if isinstance(each.geometry, rhino.Mesh) and each.geometry.Faces.Count
+
+@lru_cache(maxsize=1)
+def _read_isolated(data: bytes, layer: str, size: GridSize) -> FileObjects:
+    """The objects of a file, once for its units and again for its mesh."""
+    return isolated(read_objects, data, layer, size)
+
+
+def _join(objects: list[ObjectPolygons]) -> tuple[tuple[tuple[str, int], ...], Polygons]:
+    """Numbers of faces by object, and all of them with common vertices."""
+    joined = join_polygons([each.polygons for each in objects])
+    used = drop_unused(joined)
+    vertices, ids = weld(used.vertices, COINCIDENT * mean_side(used))
+    ends = np.cumsum([len(each.polygons.corners) for each in objects])[:-1]
+    parts = [
+        drop_repeats(Polygons(vertices, corners, each.polygons.degrees))
+        for each, corners in zip(objects, np.split(ids[used.corners], ends), strict=True)
     ]
-    if meshes:
-        return FileContent(_weld(meshes))
-    grids = [
-        transform_polygons(grid, each.transform)
-        for each in objects
-        if type(each.geometry).__name__ in SURFACES
-        for grid in sample_object(each.geometry, size)
+    faces = Polygons(
+        vertices,
+        np.concatenate([part.corners for part in parts]),
+        np.concatenate([part.degrees for part in parts]),
+    )
+    counts = [len(part.degrees) for part in parts]
+    labels = [each.label for each in objects]
+    sources = tuple(zip(labels, counts, strict=True))
+    return sources, (drop_unused(faces) if sum(counts) else faces)
+
+
+def _narrowed(objects: list[ObjectPolygons], sources: tuple[tuple[str, int], ...]) -> list[str]:
+    """Meshes that lost faces of no area; grids do so at every pole."""
+    return [
+        f"left out {lost} faces of no area of {each.label}"
+        for each, (_, count) in zip(objects, sources, strict=True)
+        if each.is_mesh and (lost := len(each.polygons.degrees) - count)
     ]
-    if grids:
-        found = drop_repeats(_weld(grids))
-        if not len(found.degrees):
-            raise InputError(
-                f"{size.n_u} by {size.n_v} quads on surfaces have no area: ask for more"
+
+
+def _doubled(objects: list[ObjectPolygons]) -> list[str]:
+    """Meshes and surfaces that fill the same box: one was likely made from the other."""
+    boxes = [_box(each.polygons) for each in objects]
+    meshes = [i for i, each in enumerate(objects) if each.is_mesh]
+    remarks: list[str] = []
+    if not meshes:
+        return remarks
+    mesh_boxes = np.array([boxes[i] for i in meshes])
+    for each, box in zip(objects, boxes, strict=True):
+        misses = np.abs(mesh_boxes - box).max(axis=(1, 2))
+        nearest = int(misses.argmin())
+        if not each.is_mesh and misses[nearest] < SAME_BOX * np.ptp(box, axis=0).max():
+            remarks.append(
+                f"{each.label} fills the same box as {objects[meshes[nearest]].label}: if one "
+                "was made from the other, hide one of them, or name a layer"
             )
-        return FileContent(found)
-    kinds = Counter(type(each.geometry).__name__ for each in objects)
-    held = ", ".join(f"{count} {kind}" for kind, count in kinds.items()) or "no objects"
-    where = f"layer {layer!r}" if layer else "the file"
-    raise InputError(
-        f"{where} holds no meshes and no surfaces, but {held}; mesh them in Rhino (Mesh, "
-        "QuadRemesh or ExtractRenderMesh) and save"
-    )
+    return remarks
 
 
-def _weld(parts: list[Polygons]) -> Polygons:
-    joined = drop_unused(join_polygons(parts))
-    if joined.corners.max() >= len(joined.vertices) or not np.isfinite(joined.vertices).all():
-        return joined
-    vertices, ids = weld(joined.vertices, COINCIDENT * mean_side(joined))
-    return Polygons(vertices, ids[joined.corners], joined.degrees)
-
-
-def _mesh_polygons(mesh: RhinoObject) -> Polygons:
-    vertices, faces, ngons = read_mesh_object(base64.b64decode(mesh.Encode()["data"]))
-    degrees = np.where(faces[:, 2] == faces[:, 3], 3, 4)
-    is_free = np.ones(len(faces), bool)
-    boundaries: dict[int, IntArray] = {}
-    for boundary, members in ngons:
-        is_free[members] = False
-        boundaries[int(members.min())] = boundary
-    kept = [
-        faces[i, : degrees[i]] if is_free[i] else boundaries[i]
-        for i in sorted([*np.flatnonzero(is_free).tolist(), *boundaries])
-    ]
-    return Polygons(
-        vertices, np.concatenate(kept), np.array([len(face) for face in kept], np.int64)
-    )
+def _box(polygons: Polygons) -> FloatArray:
+    points = polygons.vertices[polygons.corners]
+    return np.array([points.min(axis=0), points.max(axis=0)])

@@ -19,26 +19,22 @@ from ..units import CUBIC_METER
 def beam_tables(beams: Beams, units: str) -> dict[str, list[dict[str, Any]]]:
     """What the schedule says of beams and node cylinders, as plain values.
 
-    Returns
-    -------
-    dict of str to list of dict
-        ``Beams``: B rows of the columns ``id``, ``edge``, ``panels`` (ids left and right; None
-        beyond the boundary), ``nodes`` (ids at both ends), ``thickness_mm``, ``depths_mm`` (on
-        the node axes of both ends), ``width_mm`` (in the middle), ``outer_length_mm`` and
-        ``inner_length_mm`` (along the arcs of the contour), ``outer_radius_mm`` and
-        ``inner_radius_mm`` (None for straight arcs), ``chord_mm`` and ``sagitta_mm`` (of the
-        outer arc, positive to the outer side), ``length_mm`` (longest chord of the piece),
-        ``size_mm`` (length and width of the rectangle about the piece in its plane),
-        ``volume_m3``, ``bevels_deg`` (of the cuts at both ends, on the lower and the upper
-        side; 90 is square), ``tilt_deg`` (against the surface), ``twists_deg`` (against the
-        node axes), ``mismatches_mm`` (between the ends at a node), ``clearances_mm`` (to
-        neighbours that are cut alike; None where there is none), ``ends_mm`` (outer corners on
-        the node axes), ``holes`` (number of drilling marks) and ``warnings`` (findings of the
-        audit).
+    ``Beams``: B rows of the columns ``id``, ``edge``, ``panels`` (ids left and right; None
+    beyond the boundary), ``nodes`` (ids at both ends), ``thickness_mm``, ``depths_mm`` (on the
+    node axes of both ends), ``width_mm`` (in the middle), ``outer_length_mm`` and
+    ``inner_length_mm`` (along the arcs of the contour), ``outer_radius_mm`` and
+    ``inner_radius_mm`` (None for straight arcs), ``chord_mm`` and ``sagitta_mm`` (of the outer
+    arc, positive to the outer side), ``length_mm`` (longest chord of the piece), ``size_mm``
+    (length and width of the rectangle about the piece in its plane), ``volume_m3``,
+    ``bevels_deg`` (of the cuts at both ends, on the lower and the upper side; 90 is square),
+    ``tilt_deg`` (against the surface), ``twists_deg`` (against the node axes),
+    ``mismatches_mm`` (between the ends at a node), ``clearances_mm`` (to neighbours that are
+    cut alike; None where there is none), ``ends_mm`` (outer corners on the node axes),
+    ``holes`` (number of drilling marks) and ``warnings`` (findings of the audit).
 
-        ``Nodes``: rows of ``id``, ``vertex``, ``radius_mm``, ``height_mm``, ``outer_mm``
-        (centre of the outer disc), ``direction`` (unit vector to the inner side) and ``beams``
-        (ids); empty where beams are mitred.
+    ``Nodes``: rows of ``id``, ``vertex``, ``radius_mm``, ``height_mm``, ``outer_mm`` (centre of
+    the outer disc), ``direction`` (unit vector to the inner side) and ``beams`` (ids); empty
+    where beams are mitred.
     """
     subject = beam_subject(beams, units)
     return {"Beams": _beam_rows(subject), "Nodes": _node_rows(subject.parts)}

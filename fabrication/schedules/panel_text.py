@@ -17,21 +17,12 @@ TEXT_KEYS: Final = (
 
 
 def panel_text(panels: Panels, units: str) -> list[dict[str, str]]:
-    """User text of panels: what a workshop needs without measuring.
+    """User text of panels: what a workshop needs without measuring, by the keys `TEXT_KEYS`.
 
-    Parameters
-    ----------
-    units : str
-        Model units.
-
-    Returns
-    -------
-    list of dict of str to str
-        P mappings with the keys `TEXT_KEYS`. ``bulge`` is out, in or flat, seen along the
-        outward normal; ``radius`` is that of the mould, as in the schedule, and ``plane`` for
-        planes, which have the center ``-``. ``mould`` counts from 01, as the layers do; ``-``
-        without mould. ``neighbors`` are the panels beyond each edge, in order; ``-`` where
-        there is none. Lengths and areas are in model units.
+    ``bulge`` is out, in or flat, seen along the outward normal; ``radius`` is that of the
+    mould, as in the schedule, and ``plane`` for planes, which have the center ``-``. ``mould``
+    counts from 01, as the layers do; ``-`` without mould. ``neighbors`` are the panels beyond
+    each edge, in order; ``-`` where there is none. Lengths and areas are in model units.
     """
     found = panel_radii(panels)
     radii, centers = found.radii.tolist(), found.centers.tolist()

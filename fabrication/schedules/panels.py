@@ -21,25 +21,22 @@ from ..units import CUBIC_METER, SQUARE_METER
 def panel_tables(panels: Panels, units: str) -> dict[str, list[dict[str, Any]]]:
     """What the schedule says of panels and their moulds, as plain values.
 
-    Returns
-    -------
-    dict of str to list of dict
-        ``Panels``: P rows of the columns ``id``, ``face``, ``mould`` (from 1; None without
-        clustering), ``same_as`` (the first of identical panels), ``shape`` (sphere or plane),
-        ``bulge`` (out, in or flat, seen along the face normal), ``radius_mm`` (of the mould),
-        ``outer_radius_mm``, ``inner_radius_mm`` and ``center_mm`` (None for planes),
-        ``area_m2``, ``volume_m3``, ``thickness_mm``, ``size_mm`` (length, width and rise of
-        the box around the outer face, its length along the first edge's chord),
-        ``blank_diameter_mm`` and ``blank_sagitta_mm`` of the smallest cap of the mould that
-        holds the panel, ``edge_lengths_mm``, ``arc_radii_mm`` (None for straight edges),
-        ``sagittas_mm``, ``wall_tilts_deg``, ``corner_angles_deg``, ``neighbors`` (ids; None
-        where there is none), ``corners_mm`` and ``warnings`` (findings of the audit). Edge i
-        runs from corner i to the next; tilts are those of the cutting planes.
+    ``Panels``: P rows of the columns ``id``, ``face``, ``mould`` (from 1; None without
+    clustering), ``same_as`` (the first of identical panels), ``shape`` (sphere or plane),
+    ``bulge`` (out, in or flat, seen along the face normal), ``radius_mm`` (of the mould),
+    ``outer_radius_mm``, ``inner_radius_mm`` and ``center_mm`` (None for planes), ``area_m2``,
+    ``volume_m3``, ``thickness_mm``, ``size_mm`` (length, width and rise of the box around the
+    outer face, its length along the first edge's chord), ``blank_diameter_mm`` and
+    ``blank_sagitta_mm`` of the smallest cap of the mould that holds the panel,
+    ``edge_lengths_mm``, ``arc_radii_mm`` (None for straight edges), ``sagittas_mm``,
+    ``wall_tilts_deg``, ``corner_angles_deg``, ``neighbors`` (ids; None where there is none),
+    ``corners_mm`` and ``warnings`` (findings of the audit). Edge i runs from corner i to the
+    next; tilts are those of the cutting planes.
 
-        ``Moulds``: rows of ``mould`` (from 1), ``radius_mm`` (None for a flat mould),
-        ``panels`` (number), ``shapes`` (number of different ones), ``blank_diameter_mm``,
-        ``blank_sagitta_mm`` and ``blank_opening_deg`` (of the cap that holds every panel of the
-        mould) and ``ids``; empty without clustering.
+    ``Moulds``: rows of ``mould`` (from 1), ``radius_mm`` (None for a flat mould), ``panels``
+    (number), ``shapes`` (number of different ones), ``blank_diameter_mm``, ``blank_sagitta_mm``
+    and ``blank_opening_deg`` (of the cap that holds every panel of the mould) and ``ids``;
+    empty without clustering.
     """
     subject = panel_subject(panels, units)
     same = congruent_panels(subject.parts)

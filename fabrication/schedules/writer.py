@@ -16,24 +16,15 @@ from .panels import panel_tables
 def write_schedule(model: Model, path: str | os.PathLike[str]) -> Written:
     """Write the schedule as a table or as JSON, by the suffix of the path.
 
-    Parameters
-    ----------
-    model : Model
-        At least one panel or beam.
-    path : path
-        File ending in ``.csv`` (one table, in UTF-8 with byte order mark, as spreadsheets
-        expect; lists are separated by blanks, points by semicolons), ``.xlsx`` (sheets of
-        panels and moulds, of beams and nodes, the lists as in CSV) or ``.json`` (the lists
-        ``panels`` and ``moulds``, ``beams`` and ``nodes``).
+    ``.csv`` has one table, in UTF-8 with byte order mark, as spreadsheets expect (lists are
+    separated by blanks, points by semicolons); ``.xlsx`` sheets of panels and moulds, of beams
+    and nodes, the lists as in CSV; ``.json`` the lists ``panels`` and ``moulds``, ``beams`` and
+    ``nodes``.
 
-    Raises
-    ------
-    InputError
-        If the suffix or the units are unknown, there is nothing to write, two parts have the
-        same name or one is not finite, panels and beams are to share a ``.csv``, or the file
-        cannot be written.
-    MissingLibraryError
-        If openpyxl is missing, which writes ``.xlsx``.
+    Raises InputError if the suffix or the units are unknown, there is nothing to write, two
+    parts have the same name or one is not finite, panels and beams are to share a ``.csv``, or
+    the file cannot be written; MissingLibraryError if openpyxl is missing, which writes
+    ``.xlsx``.
     """
     target = Path(path)
     check_suffix(target, ".csv", ".json", ".xlsx")

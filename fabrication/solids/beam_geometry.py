@@ -19,55 +19,27 @@ LEVELS = ((0, 1), (1, 2), (0, 2))
 class BeamGeometry:
     """Solids of beams, about their rounded origins.
 
-    Attributes
-    ----------
-    places : (B, 3) float array
-        Where their solids stand.
-    corners : (B, 2, 2, 3, 3) float array
-        Corners by end, face (outer, inner) and level.
-    centers : (B, 2, 3) float array
-        Points of the axes of the outer and inner faces; not finite for planes.
-    radii : (B, 2) float array
-        Radii of these faces; infinite for planes.
-    frames : (B, 2, 3, 3) float array
-        Unit axes x, y, z of these faces in rows: x from the beam to the axis of a cylinder,
-        or out of the outer face of a plane beam reversed; z along the axis.
-    is_dome : (B, 2) bool array
-        Whether the normal away from the axis points to the outer side.
-    arcs : dict of int to (Arcs, Arcs)
-        Outer and inner edges of the lower (0) and the upper (2) side.
-    circles : dict of int to (ArcCircles, ArcCircles)
-    cuts : dict of (int, int) to EndEdges
-        Edges across the thickness, by their levels.
-    tolerances : (B,) float array
-        How far edges miss faces, or large numbers are rounded.
+    The frames of outer and inner faces have z along the axis and x from the beam to the axis of
+    a cylinder, or out of the outer face of a plane beam reversed.
     """
 
     beams: Beams
-    places: FloatArray
-    corners: FloatArray
-    centers: FloatArray
-    radii: FloatArray
-    frames: FloatArray
-    is_dome: BoolArray
-    arcs: dict[int, tuple[Arcs, Arcs]]
+    places: FloatArray  # (B, 3) where the solids stand
+    corners: FloatArray  # (B, 2, 2, 3, 3) by end, face (outer, inner) and level
+    centers: FloatArray  # (B, 2, 3) points of the axes of these faces; not finite for planes
+    radii: FloatArray  # (B, 2) radii of the faces; infinite for planes
+    frames: FloatArray  # (B, 2, 3, 3) unit axes x, y, z of the faces in rows
+    is_dome: BoolArray  # (B, 2) the normal away from the axis points to the outer side
+    arcs: dict[int, tuple[Arcs, Arcs]]  # outer and inner edges, lower (0) and upper (2) side
     circles: dict[int, tuple[ArcCircles, ArcCircles]]
-    cuts: dict[tuple[int, int], EndEdges]
-    tolerances: FloatArray
+    cuts: dict[tuple[int, int], EndEdges]  # edges across the thickness, by their levels
+    tolerances: FloatArray  # (B,) how far edges miss faces, or large numbers are rounded
 
 
 def beam_geometry(beams: Beams, confusion: float = CONFUSION) -> BeamGeometry:
-    """Geometry of the solids of beams.
+    """Geometry of the solids of beams; the confusion is the least tolerance, in their unit.
 
-    Parameters
-    ----------
-    confusion : float
-        Least tolerance, in the unit of the beams.
-
-    Raises
-    ------
-    InputError
-        If a beam has numbers that are not finite.
+    Raises InputError if a beam has numbers that are not finite.
     """
     annuli = beams.annuli
     places = rounded_origins(annuli.origins)

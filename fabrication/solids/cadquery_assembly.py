@@ -15,24 +15,10 @@ if TYPE_CHECKING:
 
 
 def beams_to_cadquery(beams: Beams, units: str = "m") -> "cadquery.Assembly":
-    """Beams as a CadQuery assembly in millimetres.
+    """Beams in any unit as a CadQuery assembly in millimetres: solids named by their ids.
 
-    Parameters
-    ----------
-    units : str
-        Unit of the model: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
-
-    Returns
-    -------
-    cadquery.Assembly
-        A `cadquery.Solid` per beam, named by its id.
-
-    Raises
-    ------
-    InputError
-        If the unit is not known.
-    MissingLibraryError
-        If CadQuery or a library of the system that it needs is missing.
+    Raises InputError if the unit is not known, MissingLibraryError if CadQuery or a library of
+    the system that it needs is missing.
     """
     scale = millimeters_per(units)
     with _opencascade():
@@ -46,25 +32,10 @@ def beams_to_cadquery(beams: Beams, units: str = "m") -> "cadquery.Assembly":
 
 
 def to_cadquery(panels: Panels, units: str = "m") -> "cadquery.Assembly":
-    """Panels as a CadQuery assembly in millimetres.
+    """Panels in any unit as a CadQuery assembly in millimetres.
 
-    Parameters
-    ----------
-    units : str
-        Unit of the model: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
-
-    Returns
-    -------
-    cadquery.Assembly
-        A `cadquery.Solid` (`cadquery.Face` without thickness) per panel, named by its id and in
-        the colour of its mould.
-
-    Raises
-    ------
-    InputError
-        If the unit is not known.
-    MissingLibraryError
-        If CadQuery or a library of the system that it needs is missing.
+    A `cadquery.Solid` (`cadquery.Face` without thickness) per panel, named by its id and in the
+    colour of its mould. Raises as `beams_to_cadquery`.
     """
     scale = millimeters_per(units)
     with _opencascade():

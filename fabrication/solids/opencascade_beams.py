@@ -16,17 +16,9 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
-from OCP.Geom import (
-    Geom_Curve,
-    Geom_CylindricalSurface,
-    Geom_Ellipse,
-    Geom_Line,
-    Geom_Plane,
-)
-from OCP.Geom2d import Geom2d_BSplineCurve, Geom2d_Curve, Geom2d_Line
+from OCP.Geom import Geom_Curve, Geom_CylindricalSurface, Geom_Ellipse, Geom_Line, Geom_Plane
+from OCP.Geom2d import Geom2d_Curve, Geom2d_Line
 from OCP.gp import gp_Ax2, gp_Ax3, gp_Dir, gp_Dir2d, gp_Elips, gp_Pnt, gp_Pnt2d
-from OCP.TColgp import TColgp_Array1OfPnt2d
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape, TopoDS_Vertex
 
 from ...kernel.arrays import FloatArray, dot, norm
@@ -75,23 +67,12 @@ class _Block:
 
 
 def beam_shapes(beams: Beams, scale: float = 1.0) -> list[TopoDS_Shape]:
-    """A closed solid per beam.
+    """A closed solid per beam, placed by a translation to the origin of its beam.
 
-    Parameters
-    ----------
-    scale : float
-        Units of the shapes per model unit; OpenCASCADE's tolerances suit millimetres.
-
-    Returns
-    -------
-    list of TopoDS_Shape
-        B solids, each placed by a translation to the origin of its beam. Edges carry curves in
-        the parameters of cylinders, which OpenCASCADE's algorithms need.
-
-    Raises
-    ------
-    InputError
-        If a beam has numbers that are not finite, at which OpenCASCADE would crash.
+    The scale is units of the shapes per model unit; OpenCASCADE's tolerances suit millimetres.
+    Edges carry curves in the parameters of cylinders, which OpenCASCADE's algorithms need.
+    Raises InputError if a beam has numbers that are not finite, at which OpenCASCADE would
+    crash.
     """
     if beams.n_beams == 0:
         return []
@@ -313,10 +294,7 @@ def _parameter_curves(
     for level, sides in solids.sides.items():
         start, turn = float(sides.starts[beam, k]), float(sides.turns[beam, k])
         height = float(heights[0, level])
-        yield (
-            block.arcs[k, level],
-            Geom2d_Line(gp_Pnt2d(start, height), gp_Dir2d(turn, 0.0)),
-        )
+        yield (block.arcs[k, level], Geom2d_Line(gp_Pnt2d(start, height), gp_Dir2d(turn, 0.0)))
     for end in (0, 1):
         for step in block.steps[end]:
             edge = block.uprights[end, k, step]
@@ -330,16 +308,5 @@ def _parameter_curves(
             )
             x, y, z = solids.numbers.frames[beam, k] @ relative.T
             points = np.stack([np.pi + np.arctan2(-y, -x), z], 1)
-            yield edge, _straight(points.tolist(), float(norm(relative[1] - relative[0])))
-
-
-def _straight(points: list[list[float]], length: float) -> Geom2d_BSplineCurve:
-    """Line in the parameters of a surface, by the length of its edge."""
-    poles = TColgp_Array1OfPnt2d(1, 2)
-    knots = TColStd_Array1OfReal(1, 2)
-    multiplicities = TColStd_Array1OfInteger(1, 2)
-    for i, (point, knot) in enumerate(zip(points, (0.0, length), strict=True), 1):
-        poles.SetValue(i, gp_Pnt2d(*point))
-        knots.SetValue(i, knot)
-        multiplicities.SetValue(i, 2)
-    return Geom2d_BSplineCurve(poles, knots, multiplicities, 1)
+            length = float(norm(relative[1] - relative[0]))
+            yield edge, occ.make_spline([0.0, length], points.tolist(), 1)

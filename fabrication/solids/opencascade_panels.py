@@ -15,20 +15,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from OCP.Geom import (
-    Geom_Line,
-    Geom_Plane,
-    Geom_SphericalSurface,
-    Geom_Surface,
-)
+from OCP.Geom import Geom_Line, Geom_Plane, Geom_SphericalSurface, Geom_Surface
 from OCP.Geom2d import Geom2d_BSplineCurve
 from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt
-from OCP.TopoDS import (
-    TopoDS_Edge,
-    TopoDS_Face,
-    TopoDS_Shape,
-    TopoDS_Vertex,
-)
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Vertex
 
 from ...kernel.arrays import FloatArray, IntArray, norm
 from ...kernel.panels.panels import Panels, panel_arcs
@@ -50,24 +40,11 @@ class _Layer:
 def panel_shapes(panels: Panels, scale: float = 1.0) -> list[TopoDS_Shape]:
     """A face per panel, or a closed solid where panels have a thickness.
 
-    Parameters
-    ----------
-    scale : float
-        Units of the shapes per model unit; OpenCASCADE's tolerances suit millimetres.
+    Each is placed by a translation to the origin of its panel; faces are oriented along N,
+    solids outwards. The scale is units of the shapes per model unit; OpenCASCADE's tolerances
+    suit millimetres. Raises InputError if a panel has numbers that are not finite, at which
+    OpenCASCADE would crash.
 
-    Returns
-    -------
-    list of TopoDS_Shape
-        P shapes, each placed by a translation to the origin of its panel. Faces are oriented
-        along N, solids outwards.
-
-    Raises
-    ------
-    InputError
-        If a panel has numbers that are not finite, at which OpenCASCADE would crash.
-
-    Notes
-    -----
     A solid has the outer face, the concentric inner face and a plane wall per edge. Edges carry
     curves in the parameters of spheres, which OpenCASCADE's algorithms need. The shape of a
     panel of n edges takes 0.1 n ms.

@@ -32,35 +32,14 @@ BUILDER = BRep_Builder()
 
 
 def placement(origin: list[float]) -> TopLoc_Location:
-    """A translation.
-
-    Parameters
-    ----------
-    origin : list of 3 float
-        Where the origin of a shape goes.
-
-    Returns
-    -------
-    TopLoc_Location
-        For `TopoDS_Shape.Located`.
-    """
+    """The translation of the origin of a shape to a point, for `TopoDS_Shape.Located`."""
     translation = gp_Trsf()
     translation.SetTranslation(gp_Vec(*origin))
     return TopLoc_Location(translation)
 
 
 def make_vertex(point: list[float], tolerance: float) -> TopoDS_Vertex:
-    """A vertex.
-
-    Parameters
-    ----------
-    point : list of 3 float
-
-    Returns
-    -------
-    TopoDS_Vertex
-        To be shared by the edges that meet there.
-    """
+    """A vertex, to be shared by the edges that meet there."""
     vertex = TopoDS_Vertex()
     BUILDER.MakeVertex(vertex, gp_Pnt(*point), tolerance)
     return vertex
@@ -74,19 +53,9 @@ def make_edge(
     tolerance: float,
     first: float = 0.0,
 ) -> TopoDS_Edge:
-    """An edge between two vertices.
+    """An edge between two vertices, to be shared by the faces on its sides.
 
-    Parameters
-    ----------
-    length : float
-        Length of the range of parameters.
-    first : float
-        Parameter of the start.
-
-    Returns
-    -------
-    TopoDS_Edge
-        To be shared by the faces on its sides.
+    Its parameters run from `first` over the length.
     """
     edge = TopoDS_Edge()
     BUILDER.MakeEdge(edge, curve, tolerance)
@@ -99,18 +68,7 @@ def make_edge(
 def make_face(
     surface: Geom_Surface, ring: Iterable[TopoDS_Shape], tolerance: float
 ) -> TopoDS_Face:
-    """Face to the left of a closed chain of oriented edges.
-
-    Parameters
-    ----------
-    ring : iterable of TopoDS_Shape
-        Oriented edges, counter-clockwise about the normal of the surface.
-
-    Returns
-    -------
-    TopoDS_Face
-        With the normal of the surface.
-    """
+    """Face to the left of a closed ring of oriented edges, with the normal of the surface."""
     wire = TopoDS_Wire()
     BUILDER.MakeWire(wire)
     for edge in ring:
@@ -123,13 +81,7 @@ def make_face(
 
 
 def make_solid(faces: Iterable[TopoDS_Shape]) -> TopoDS_Solid:
-    """Solid in a closed shell.
-
-    Parameters
-    ----------
-    faces : iterable of TopoDS_Shape
-        Faces that share their edges, normals outwards.
-    """
+    """Solid in a closed shell of faces that share their edges, normals outwards."""
     shell = TopoDS_Shell()
     BUILDER.MakeShell(shell)
     for face in faces:
@@ -144,12 +96,7 @@ def make_solid(faces: Iterable[TopoDS_Shape]) -> TopoDS_Solid:
 def arc_curves(arcs: Arcs, circles: ArcCircles) -> tuple[list[Geom_Curve], list[float]]:
     """Curves from parameter 0 at the starts of arcs, and the parameters of their ends.
 
-    Returns
-    -------
-    curves : list of Geom_Curve
-        H circles, or lines where arcs are straight.
-    lengths : list of float
-        H parameters: angles, or lengths.
+    H circles, or lines where arcs are straight; H angles, or lengths.
     """
     starts, chords = arcs.starts, arcs.ends - arcs.starts
     x_axes, _ = circle_axes(arcs, circles)
@@ -168,22 +115,12 @@ def arc_curves(arcs: Arcs, circles: ArcCircles) -> tuple[list[Geom_Curve], list[
 
 
 def quintic_poles(nodes: FloatArray, steps: FloatArray) -> FloatArray:
-    """Poles of quintic splines with triple inner knots, through n + 1 nodes.
+    """Poles (H, 3n + 3, 2) of quintic splines with triple inner knots, for `make_spline`.
 
-    With the Bézier points b₃, b₄ before an inner node and b₂ after it, the three poles of its
-    knot are b₃, 2 b₄ - b₃, b₂. The first and last three poles are Bézier points.
-
-    Parameters
-    ----------
-    nodes : (3, H, n + 1, 2) float array
-        Values and first two derivatives.
-    steps : (H,) float array
-        Distances of the knots.
-
-    Returns
-    -------
-    (H, 3n + 3, 2) float array
-        For `make_spline`.
+    They pass through nodes (3, H, n + 1, 2), values and first two derivatives; the steps (H,)
+    are the distances of the knots. With the Bézier points b₃, b₄ before an inner node and b₂
+    after it, the three poles of its knot are b₃, 2 b₄ - b₃, b₂. The first and last three poles
+    are Bézier points.
     """
     value, rate, bend = nodes
     rate = rate * steps[:, None, None]
@@ -197,19 +134,10 @@ def quintic_poles(nodes: FloatArray, steps: FloatArray) -> FloatArray:
     return ring.reshape(len(steps), -1, 2)
 
 
-def make_spline(knots: list[float], poles: list[list[float]]) -> Geom2d_BSplineCurve:
-    """A quintic spline in the parameters of a surface.
-
-    Parameters
-    ----------
-    knots : list of n + 1 float
-    poles : list of 3n + 3 points
-
-    Returns
-    -------
-    Geom2d_BSplineCurve
-        Triple at its inner knots.
-    """
+def make_spline(
+    knots: list[float], poles: list[list[float]], degree: int = 5
+) -> Geom2d_BSplineCurve:
+    """A spline in the parameters of a surface: for degree 5, n + 1 knots and 3n + 3 poles."""
     points = TColgp_Array1OfPnt2d(1, len(poles))
     for i, pole in enumerate(poles, 1):
         points.SetValue(i, gp_Pnt2d(*pole))
@@ -218,6 +146,6 @@ def make_spline(knots: list[float], poles: list[list[float]]) -> Geom2d_BSplineC
     for i, knot in enumerate(knots, 1):
         values.SetValue(i, knot)
         multiplicities.SetValue(i, 3)
-    multiplicities.SetValue(1, 6)
-    multiplicities.SetValue(len(knots), 6)
-    return Geom2d_BSplineCurve(points, values, multiplicities, 5)
+    multiplicities.SetValue(1, degree + 1)
+    multiplicities.SetValue(len(knots), degree + 1)
+    return Geom2d_BSplineCurve(points, values, multiplicities, degree)

@@ -17,34 +17,16 @@ CONFUSION = 1e-7
 
 
 def rounded_origins(origins: FloatArray) -> FloatArray:
-    """Origins with the decimals that leave the farthest ten digits.
-
-    Parameters
-    ----------
-    origins : (n, 3) float array
-
-    Returns
-    -------
-    (n, 3) float array
-        Rounded origins, short in the text of a file.
-    """
+    """Origins (n, 3) with the decimals that leave the farthest ten digits: short in a file."""
     farthest = float(np.abs(origins).max(initial=0.0))
     decimals = 10 - int(np.ceil(np.log10(farthest))) if farthest > 0 else 0
     return np.round(origins, decimals)
 
 
 def panels_in_place(panels: Panels, scale: float) -> Panels:
-    """Panels in another unit, about rounded origins.
+    """Panels in another unit, `scale` per model unit, about rounded origins.
 
-    Parameters
-    ----------
-    scale : float
-        New units per model unit.
-
-    Returns
-    -------
-    Panels
-        The same panels; the remainders of their origins are in the local numbers.
+    The remainders of their origins are in the local numbers.
     """
     panels = scale_panels(panels, scale)
     return move_origins(panels, rounded_origins(panels.origins))
@@ -53,18 +35,8 @@ def panels_in_place(panels: Panels, scale: float) -> Panels:
 def copy_places(panels: Panels, same: CongruentPanels, scale: float) -> FloatArray:
     """Where the body of the first of identical panels stands for each of them.
 
-    Parameters
-    ----------
-    same : CongruentPanels
-        Which of them are identical, and the motions between them.
-    scale : float
-        New units per model unit.
-
-    Returns
-    -------
-    (P, 9) float array
-        Origins, z and x axes for the bodies of the representatives, made about the rounded
-        origins of all panels (`panels_in_place`).
+    Origins, z and x axes (P, 9) for the bodies of the representatives, made about the rounded
+    origins of all panels (`panels_in_place`); the scale is new units per model unit.
     """
     origins = panels.origins * scale
     models = same.representatives[same.labels]
@@ -75,22 +47,10 @@ def copy_places(panels: Panels, same: CongruentPanels, scale: float) -> FloatArr
 
 
 def panel_tolerances(panels: Panels, confusion: float = CONFUSION) -> FloatArray:
-    """Tolerances that panels need: how far corners miss surfaces, or large numbers are rounded.
+    """Tolerances (P,) of panels: how far corners miss surfaces, or large numbers are rounded.
 
-    Parameters
-    ----------
-    confusion : float
-        Least tolerance, in the unit of the panels.
-
-    Returns
-    -------
-    (P,) float array
-        In the unit of the panels.
-
-    Raises
-    ------
-    InputError
-        If a panel has numbers that are not finite.
+    At least the confusion, in the unit of the panels. Raises InputError if a panel has numbers
+    that are not finite.
     """
     owners, previous = panels.corner_panels, np.empty(len(panels.corners), np.int64)
     previous[panels.next_corners] = np.arange(len(previous))
@@ -113,41 +73,19 @@ def panel_tolerances(panels: Panels, confusion: float = CONFUSION) -> FloatArray
 
 
 def check_finite(kind: str, ids: Sequence[str], is_finite: BoolArray) -> None:
-    """Refuse parts at which OpenCASCADE would crash.
-
-    Parameters
-    ----------
-    ids : (n,) sequence of str
-    is_finite : (n,) bool array
-
-    Raises
-    ------
-    InputError
-        If a part is not finite.
-    """
+    """Refuse parts that are not finite, at which OpenCASCADE would crash, by an InputError."""
     broken = [ids[i] for i in np.flatnonzero(~is_finite).tolist()]
     if broken:
         raise InputError(f"{kind} {broken[0]} ({len(broken)} in all) is not finite")
 
 
 def surface_frames(rows: FloatArray, arcs: Arcs, offsets: IntArray) -> FloatArray:
-    """Axes x, y, z of the surfaces of panels.
+    """Axes x, y, z of the surfaces of panels, unit vectors in rows: (P, 3, 3).
 
-    Parameters
-    ----------
-    rows : (P, 5) float array
-        Their unit rows.
-    arcs : Arcs
-        H edges on them.
-    offsets : (P + 1,) int array
-        Bounds of the edges of each.
-
-    Returns
-    -------
-    (P, 3, 3) float array
-        Unit vectors in rows. Those of a sphere point from the panel to the centre, along the
-        first edge of the panel, and across: the patch lies about u = π, v = 0, away from the
-        seam and the poles. Those of a plane: along the first edge, across, along N.
+    From their unit rows (P, 5), H edges on them, and the bounds (P + 1,) of the edges of each.
+    The axes of a sphere point from the panel to the centre, along the first edge of the panel,
+    and across: the patch lies about u = π, v = 0, away from the seam and the poles. Those of a
+    plane: along the first edge, across, along N.
     """
     first = offsets[:-1]
     chords = arcs.ends[first] - arcs.starts[first]

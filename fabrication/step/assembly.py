@@ -44,15 +44,7 @@ Place = tuple[float, ...]
 
 @dataclass(frozen=True)
 class Instance:
-    """Where a part stands.
-
-    Attributes
-    ----------
-    name : str
-        Name of the instance.
-    place : tuple of 3 or 9 float
-        Origin, and unless nothing is turned the unit z and x axes, in the assembly.
-    """
+    """The name of an instance, and where it stands in the assembly."""
 
     name: str
     place: Place
@@ -62,20 +54,8 @@ class Instance:
 class Part:
     """A body as it appears in a file, once or several times.
 
-    Attributes
-    ----------
-    body : Body
-        The body, at its own origin.
-    name : str
-        Name of the part.
-    layer : str
-        Layer, made where it is new.
-    color : Color
-        Red, green and blue from 0 to 255 (sRGB).
-    tolerance : float
-        Distance below which points of the part are one, in the unit of the file.
-    instances : tuple of Instance
-        Where it stands.
+    The body is at its own origin. Its layer is made where it is new; the colour is sRGB, from 0
+    to 255; points of the part nearer than the tolerance, in the unit of the file, are one.
     """
 
     body: Body
@@ -88,15 +68,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Group:
-    """An assembly.
-
-    Attributes
-    ----------
-    name : str
-        Name of the assembly.
-    members : iterable of Part and Group
-        What it consists of.
-    """
+    """An assembly of parts and of other assemblies."""
 
     name: str
     members: "Iterable[Part | Group]"
@@ -106,19 +78,9 @@ class Group:
 class StepHeader:
     """What a STEP file says about itself.
 
-    Attributes
-    ----------
-    schema : {"AP214IS", "AP242DIS"}
-    unit : str
-        Unit of length, ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
-    millimeters : float
-        Millimetres in that unit.
-    tolerance : float
-        Distance below which points of assemblies are one, in that unit.
-    title : str
-        Title of the file.
-    system : str
-        Name and version of the program that wrote it.
+    Its unit is ``mm``, ``cm``, ``m``, ``in`` or ``ft``, of so many millimetres; points of
+    assemblies nearer than the tolerance, in that unit, are one; the system is the name and
+    version of the program that wrote it.
     """
 
     schema: StepSchema
@@ -138,20 +100,9 @@ class _Definition:
 
 
 def assembly_lines(root: Group, header: StepHeader) -> list[str]:
-    """Lines of a STEP file.
+    """Lines of a STEP file in ASCII, in pieces of whole lines.
 
-    Parameters
-    ----------
-    root : Group
-        Parts, and assemblies within.
-    header : StepHeader
-        Schema, unit and names.
-
-    Returns
-    -------
-    list of str
-        The file in pieces of whole lines, in ASCII. The same parts give the same text, but for
-        the time in the header.
+    The same parts give the same text, but for the time in the header.
     """
     return [*_frame(header), *_Assembler(header).lines(root), _END]
 
@@ -288,8 +239,7 @@ class _Assembler:
                 part, instances = self._add_part(member), member.instances
             items += [self._place(definition, part, instance) for instance in instances]
         self._write(
-            definition.shape,
-            f"SHAPE_REPRESENTATION('',({references(items)}),#{self._context})",
+            definition.shape, f"SHAPE_REPRESENTATION('',({references(items)}),#{self._context})"
         )
         return definition
 

@@ -13,15 +13,7 @@ import numpy as np
 from ...kernel.arrays import FloatArray, IntArray, unit
 from ...kernel.beams.end_edges import EndEdges
 from ..solids.beam_geometry import LEVELS, BeamGeometry
-from .bodies import (
-    Body,
-    EdgeBatch,
-    FaceBatch,
-    Ring,
-    bodies,
-    bodies_by_kind,
-    circle_numbers,
-)
+from .bodies import Body, EdgeBatch, FaceBatch, Ring, bodies, bodies_by_kind, circle_numbers
 
 _Levels = tuple[int, int]
 

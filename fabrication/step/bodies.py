@@ -27,13 +27,9 @@ _SENSES: Final = {True: ".T.", False: ".F."}
 class EdgeBatch:
     """The same edge of m bodies.
 
-    Attributes
-    ----------
-    kind : {"LINE", "CIRCLE", "ELLIPSE"}
-        Circles and ellipses run counter-clockwise about their axes.
-    numbers : (m, n) float array
-        The unit direction of a line, which leaves its start; or centre, unit axis, unit vector
-        to parameter 0, and one or two radii, the larger first.
+    Circles and ellipses run counter-clockwise about their axes. The numbers (m, n) are the unit
+    direction of a line, which leaves its start; or centre, unit axis, unit vector to parameter
+    0, and one or two radii, the larger first.
     """
 
     start: int
@@ -46,19 +42,10 @@ class EdgeBatch:
 class FaceBatch:
     """The same face of m bodies.
 
-    Attributes
-    ----------
-    kind : {"PLANE", "SPHERICAL_SURFACE", "CYLINDRICAL_SURFACE"}
-        Normals point away from centres and axes.
-    numbers : (m, n) float array
-        Unit normal and x axis of a plane, which passes through a corner; or origin, unit z and
-        x axes, and the radius.
-    ring : tuple of (int, bool)
-        Its edges, counter-clockwise about its normal.
-    is_along : bool
-        Whether the normal of the face, out of a solid, is that of the surface.
-    corner : int
-        Corner through which a plane passes.
+    Normals of surfaces point away from centres and axes. The numbers (m, n) are the unit normal
+    and x axis of a plane, which passes through the corner; or origin, unit z and x axes, and
+    the radius. The ring runs counter-clockwise about the normal of the face, out of a solid,
+    which `is_along` that of the surface or against it.
     """
 
     kind: Literal["PLANE", "SPHERICAL_SURFACE", "CYLINDRICAL_SURFACE"]
@@ -72,16 +59,9 @@ class FaceBatch:
 class BodyLayout:
     """Text of bodies of one topology.
 
-    Attributes
-    ----------
-    template : str
-        The entities, to be filled with numbers and then with the numbers of entities.
-    references : (n,) int array
-        Numbers of entities in the order of the text, the first entity being 0.
-    n_entities : int
-        How many entities there are.
-    representation : str
-        Type of the shape representation that holds such bodies.
+    The template is to be filled with numbers and then with the numbers of entities:
+    `references`, in the order of the text, the first entity being 0. The representation is the
+    type of the shape representation that holds such bodies.
     """
 
     template: str
@@ -92,29 +72,15 @@ class BodyLayout:
 
 @dataclass(frozen=True)
 class Body:
-    """A body to be written.
-
-    Attributes
-    ----------
-    numbers : (n,) float array
-        Its numbers, finite, in the unit of the file.
-    """
+    """A body to be written: its numbers are finite, in the unit of the file."""
 
     layout: BodyLayout
     numbers: FloatArray
 
     def text(self, first: int) -> str:
-        """Entities of the body.
+        """Entities of the body; every number is read back as the same number.
 
-        Parameters
-        ----------
-        first : int
-            Number of the first of them, which is the solid, surface or set of lines.
-
-        Returns
-        -------
-        str
-            The text; every number is read back as the same number.
+        The first of them, with the number given, is the solid, surface or set of lines.
         """
         filled = self.layout.template % tuple(map(real, self.numbers.tolist()))
         return filled % tuple((self.layout.references + first).tolist())
@@ -127,14 +93,7 @@ def bodies(
     *,
     is_solid: bool = True,
 ) -> list[Body]:
-    """Bodies of one topology.
-
-    Parameters
-    ----------
-    corners : iterable of (m, 3) float array
-    is_solid : bool
-        Whether the faces are closed.
-    """
+    """Bodies of one topology with corners (m, 3) each; solids if the faces are closed."""
     corners, edges, faces = list(corners), list(edges), list(faces)
     layout = _layout(
         len(corners),
@@ -148,19 +107,9 @@ def bodies(
 
 
 def bodies_by_kind(kinds: FloatArray, make: Callable[[IntArray], Iterable[Body]]) -> list[Body]:
-    """Bodies of several topologies.
+    """Bodies of several topologies, in the order of the rows of kinds.
 
-    Parameters
-    ----------
-    kinds : (n, k) float array
-        Bodies of equal rows have one topology.
-    make : callable
-        Makes the bodies of some ids, all of one topology.
-
-    Returns
-    -------
-    list of Body
-        n bodies, in the order of the rows.
+    Bodies of equal rows have one topology: `make` makes those of some ids, all of one topology.
     """
     if not len(kinds):
         return []
@@ -173,29 +122,13 @@ def bodies_by_kind(kinds: FloatArray, make: Callable[[IntArray], Iterable[Body]]
 
 
 def circle_numbers(arcs: Arcs, circles: ArcCircles) -> FloatArray:
-    """What tells the circles of arcs in an `EdgeBatch`.
-
-    Returns
-    -------
-    (n, 10) float array
-        Parameter 0 is at the start of the arc.
-    """
+    """What tells the circles of arcs in an `EdgeBatch`: (n, 10), parameter 0 at the start."""
     x, _ = circle_axes(arcs, circles)
     return np.column_stack([circles.centers, circles.axes, x, circles.radii])
 
 
 def line_body(segments: FloatArray) -> Body:
-    """A set of straight lines.
-
-    Parameters
-    ----------
-    segments : (n, 2, 3) float array
-
-    Returns
-    -------
-    Body
-        One for all lines.
-    """
+    """A set of straight lines (n, 2, 3) as one body."""
     changes = segments[:, 1] - segments[:, 0]
     numbers = [segments.reshape(-1, 6), unit(changes), norm(changes)[:, None]]
     return Body(_line_layout(len(segments)), np.concatenate(numbers, axis=1).ravel() + 0.0)

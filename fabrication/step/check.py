@@ -95,19 +95,11 @@ class _Text:
 def check_part21(path: str | os.PathLike[str]) -> tuple[Finding, ...]:
     """Check the structure of a STEP file as the library writes them.
 
-    Returns
-    -------
-    tuple of Finding
-        What is wrong, empty if nothing is. S101 frame, S102 header, S103 characters and
-        strings, S104 syntax, S105 unexpected type, S106 number of parameters, S201 number used
-        twice, S202 reference to nothing, S203 entity that nothing uses, S301 open loop,
-        S302 edge of a solid not used once each way, S303 no geometry. Of each code the first
-        `SHOWN` are listed, and one more says how many there are.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read.
+    What is wrong, empty if nothing is. S101 frame, S102 header, S103 characters and strings,
+    S104 syntax, S105 unexpected type, S106 number of parameters, S201 number used twice, S202
+    reference to nothing, S203 entity that nothing uses, S301 open loop, S302 edge of a solid
+    not used once each way, S303 no geometry. Of each code the first `SHOWN` are listed, and one
+    more says how many there are. Raises InputError if the file cannot be read.
     """
     try:
         content = Path(path).read_bytes()

@@ -9,20 +9,9 @@ from .bodies import Body, EdgeBatch, FaceBatch, Ring, bodies
 def cylinder_bodies(
     bases: FloatArray, directions: FloatArray, heights: FloatArray, radius: float
 ) -> list[Body]:
-    """Closed solids of cylinders.
+    """Closed solids of n cylinders: a cylinder, whose two ends meet in a line, and two discs.
 
-    Parameters
-    ----------
-    bases : (n, 3) float array
-        Centres of the discs at which they begin.
-    directions : (n, 3) float array
-        Unit vectors along the axes.
-    heights : (n,) float array
-
-    Returns
-    -------
-    list of Body
-        n solids: a cylinder, whose two ends meet in a line, and two discs.
+    They begin at discs about the bases (n, 3) and run along unit directions (n, 3).
     """
     x = _across(directions)
     discs = [bases, bases + heights[:, None] * directions]

@@ -12,33 +12,14 @@ from ...kernel.panels.panels import Panels, panel_arcs
 from ...kernel.spheres.arcs import Arcs, arc_circles
 from ...kernel.spheres.rows import center_radius
 from ..solids.panel_geometry import surface_frames
-from .bodies import (
-    Body,
-    EdgeBatch,
-    FaceBatch,
-    Ring,
-    bodies,
-    bodies_by_kind,
-    circle_numbers,
-)
+from .bodies import Body, EdgeBatch, FaceBatch, Ring, bodies, bodies_by_kind, circle_numbers
 
 
 def panel_bodies(panels: Panels) -> list[Body]:
-    """A face per panel, or a closed solid where panels have a thickness.
+    """A face per panel, or a closed solid where panels have a thickness, about their origins.
 
-    Parameters
-    ----------
-    panels : Panels
-        P panels with finite numbers.
-
-    Returns
-    -------
-    list of Body
-        P bodies, about the origins of the panels. Faces are oriented along N, solids outwards.
-
-    Notes
-    -----
-    A solid has the outer face, the concentric inner face and a plane wall per edge.
+    Panels need finite numbers. Faces are oriented along N, solids outwards: a solid has the
+    outer face, the concentric inner face and a plane wall per edge.
     """
     outer = _Layer(panels, panels.spheres, panel_arcs(panels))
     if not panels.thickness > 0:

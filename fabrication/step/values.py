@@ -6,12 +6,7 @@ from typing import Final
 
 
 def real(number: float) -> str:
-    """A number as the least digits that are read back as the same.
-
-    Returns
-    -------
-    str
-        A real number of ISO 10303-21, with a point and a capital E.
+    """The least digits that are read back as the same number, with a point and a capital E.
 
     Examples
     --------
@@ -26,12 +21,7 @@ def real(number: float) -> str:
 
 
 def references(ids: Iterable[int]) -> str:
-    """A list of references.
-
-    Returns
-    -------
-    str
-        The references, separated by commas, ten to a line.
+    """References, separated by commas, ten to a line.
 
     Examples
     --------
@@ -48,13 +38,9 @@ def numbers(values: Iterable[float]) -> str:
 
 
 def string(text: str) -> str:
-    r"""A string of ISO 10303-21.
+    r"""A text in quotes, characters beyond ASCII as directives of ISO 10303-21.
 
-    Returns
-    -------
-    str
-        The text in quotes; characters beyond ASCII as directives: those of the basic plane
-        by two bytes each, which more programs read than four.
+    Those of the basic plane by two bytes each, which more programs read than four.
 
     Examples
     --------

@@ -46,16 +46,9 @@ StepCopies = Literal["shapes", "instances"]
 class StepOptions:
     """How a STEP file is written.
 
-    Attributes
-    ----------
-    units : str
-        Unit that the file declares: ``mm``, ``cm``, ``m``, ``in`` or ``ft``.
-    schema : {"AP214IS", "AP242DIS"}
-    title : str
-        Title in the header of the file.
-    copies : {"shapes", "instances"}
-        ``shapes``: a shape of its own for every panel. ``instances``: identical panels (see
-        `congruent_panels`) are instances of one shape, named after the first of them.
+    It declares the units ``mm``, ``cm``, ``m``, ``in`` or ``ft``; the title is in its header.
+    Copies are ``shapes``, a shape of its own for every panel, or ``instances``: identical
+    panels (see `congruent_panels`) are instances of one shape, named after the first of them.
     """
 
     units: str = "mm"
@@ -72,36 +65,19 @@ def write_step(
 ) -> Written:
     """Write panels and beams to a STEP file as exact solids, or faces without thickness.
 
-    Parameters
-    ----------
-    model : Model
-        At least one panel or beam.
-    path : path
-        File to write. It is replaced when the new one is complete.
+    The file is replaced when the new one is complete. It holds one assembly ``Panels`` with a
+    component per panel, named by its id, on the layer and in the colour of its mould. With
+    beams, it is part of an assembly ``Model``, together with an assembly ``Beams``, an assembly
+    ``Nodes`` of the node cylinders if beams have a node radius, and a part ``Axes`` of the node
+    axes as lines: each on the layer of that name.
 
-    Returns
-    -------
-    Written
-        The file. It holds one assembly ``Panels`` with a component per panel, named by its id,
-        on the layer and in the colour of its mould. With beams, it is part of an assembly
-        ``Model``, together with an assembly ``Beams``, an assembly ``Nodes`` of the node
-        cylinders if beams have a node radius, and a part ``Axes`` of the node axes as lines:
-        each on the layer of that name.
-
-    Raises
-    ------
-    InputError
-        If there is nothing to write, two panels have one name or one is not finite, a unit,
-        schema or way of copies is not known, or the folder does not exist.
-
-    Notes
-    -----
     The only geometry is spheres, planes, circles and lines, and for beams cylinders and
     ellipses. Names of curves get lost in STEP, so the axes are one part of many lines; a Rhino
-    file has them by name. Every number is read back as it was.
+    file has them by name. Every number is read back as it was. Instances stand within 1e-6 mean
+    edges of the panels that they stand for (`SAME_PANEL`): 0.001 mm where edges are 1 m long.
 
-    Instances stand within 1e-6 mean edges of the panels that they stand for (`SAME_PANEL`):
-    0.001 mm where edges are 1 m long.
+    Raises InputError if there is nothing to write, two panels have one name or one is not
+    finite, a unit, schema or way of copies is not known, or the folder does not exist.
     """
     target = Path(path)
     check_suffix(target, ".step", ".stp")

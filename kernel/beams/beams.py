@@ -40,13 +40,7 @@ class DrillMarks:
 
     @property
     def holes(self) -> FloatArray:
-        """Centres of all holes of each beam.
-
-        Returns
-        -------
-        (B, 2 n, 3) float array
-            Those of the first end first; local.
-        """
+        """Local centres of all holes of each beam, (B, 2 n, 3), the first end first."""
         n_beams, n_ends, count, _ = self.centers.shape
         return self.centers.reshape(n_beams, n_ends * count, 3)
 
@@ -95,13 +89,7 @@ class Beams:
 
     @property
     def element_ids(self) -> IntArray:
-        """Edge of each beam.
-
-        Returns
-        -------
-        (B,) int array
-            Those of the annuli.
-        """
+        """Edge of each beam, (B,)."""
         return self.annuli.edge_ids
 
     @property
@@ -111,13 +99,7 @@ class Beams:
 
 
 def inward_directions(annuli: Annuli) -> FloatArray:
-    """Unit vectors from the lines of the ends into the annuli, across them in their planes.
-
-    Returns
-    -------
-    (B, 2, 3) float array
-        Vectors at both ends.
-    """
+    """Unit vectors from the lines of the ends into the annuli, across them, (B, 2, 3)."""
     across = np.cross(annuli.end_directions, annuli.frames[:, None, 2])
     outer = annuli.corners[:, :, 0]
     chords = outer[:, ::-1] - outer
@@ -125,19 +107,9 @@ def inward_directions(annuli: Annuli) -> FloatArray:
 
 
 def insets_at(levels: FloatArray, insets: FloatArray, heights: FloatArray) -> FloatArray:
-    """How far cuts lie inside at a height.
+    """How far cuts lie inside at a height (B,) over the plane of each annulus: (B, 2).
 
-    Parameters
-    ----------
-    levels, insets : (B, 2, 3) float array
-        Levels and insets of the ends, as in `Beams`.
-    heights : (B,) float array
-        Height over the plane of each annulus.
-
-    Returns
-    -------
-    (B, 2) float array
-        Insets of both ends.
+    Levels and insets (B, 2, 3) of the ends are those of `Beams`.
     """
     height = heights[:, None]
     upper = height > levels[..., 1]
@@ -150,17 +122,9 @@ def insets_at(levels: FloatArray, insets: FloatArray, heights: FloatArray) -> Fl
 def cut_corners(annuli: Annuli, insets: FloatArray) -> tuple[FloatArray, BoolArray]:
     """Where lines parallel to the ends meet the circles.
 
-    Parameters
-    ----------
-    insets : (B, 2, n) float array
-        Distances of the lines from those of the ends, into the annuli.
-
-    Returns
-    -------
-    points : (B, 2, 2, n, 3) float array
-        Points at both ends, on the outer and the inner circle; local, in the planes.
-    exists : (B,) bool array
-        Whether all lines of an annulus meet its circles.
+    Insets (B, 2, n) of the lines from those of the ends, into the annuli. Points
+    (B, 2, 2, n, 3) at both ends, on the outer and the inner circle, local, in the planes; and
+    whether all lines of an annulus meet its circles.
     """
     across = inward_directions(annuli)[:, :, None, None]
     points = annuli.corners[:, :, :, None] + insets[:, :, None, :, None] * across
@@ -174,18 +138,7 @@ def cut_corners(annuli: Annuli, insets: FloatArray) -> tuple[FloatArray, BoolArr
 
 
 def scale_beams(beams: Beams, factor: float) -> Beams:
-    """Beams in another unit of length.
-
-    Parameters
-    ----------
-    factor : float
-        Positive number of new units in an old one.
-
-    Returns
-    -------
-    Beams
-        The same beams; every length is multiplied by the factor.
-    """
+    """Beams in another unit of length: every length is multiplied by the factor."""
     annuli, marks = beams.annuli, beams.marks
     scaled = replace(
         annuli,
@@ -213,44 +166,24 @@ def scale_beams(beams: Beams, factor: float) -> Beams:
 def section_arcs(beams: Beams) -> tuple[Arcs, Arcs]:
     """Outer and inner arcs in the middle of the thickness, between the cuts of the ends.
 
-    Returns
-    -------
-    outer, inner : Arcs
-        B arcs each, local, from the first to the second end.
+    B arcs each, local, from the first to the second end.
     """
     return level_arcs(beams, beams.sections, np.zeros(beams.n_beams))
 
 
 def side_arcs(beams: Beams, level: int) -> tuple[Arcs, Arcs]:
-    """Outer and inner arcs that bound a side.
+    """Outer and inner arcs that bound a side: level 0 for the lower, 2 for the upper side.
 
-    Parameters
-    ----------
-    level : int
-        0 for the lower, 2 for the upper side.
-
-    Returns
-    -------
-    outer, inner : Arcs
-        B arcs each, local, from the first to the second end.
+    B arcs each, local, from the first to the second end.
     """
     return level_arcs(beams, beams.corners[:, :, :, level], beams.levels[:, 0, level])
 
 
 def level_arcs(beams: Beams, corners: FloatArray, heights: FloatArray) -> tuple[Arcs, Arcs]:
-    """Outer and inner arcs at a height, between given corners.
+    """Outer and inner arcs at a height (B,), between given corners.
 
-    Parameters
-    ----------
-    corners : (B, 2, 2, 3) float array
-        Corners at both ends, outer and inner, at the height; local.
-    heights : (B,) float array
-        Heights over the planes of the annuli.
-
-    Returns
-    -------
-    outer, inner : Arcs
-        B arcs each, local, from the first to the second end.
+    Local corners (B, 2, 2, 3) at both ends, outer and inner. B arcs each, local, from the first
+    to the second end.
     """
     planes = beams.annuli.frames[:, 2]
     lift = heights[:, None] * planes
@@ -265,13 +198,10 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 
 def beam_volumes(beams: Beams) -> FloatArray:
-    """Volumes of beams.
+    """Volumes (B,) of beams, in cubed model units.
 
-    Returns
-    -------
-    (B,) float array
-        Volumes, in cubed model units: the areas of plane sections, integrated over the
-        thickness with 6 Gauss points between the levels of the two ridges.
+    The areas of plane sections, integrated over the thickness with 6 Gauss points between the
+    levels of the two ridges.
     """
     half = np.full(beams.n_beams, beams.thickness / 2)
     ridges = np.sort(beams.levels[:, :, 1], axis=1)
@@ -296,12 +226,8 @@ def _section_areas(beams: Beams, heights: FloatArray) -> FloatArray:
 def node_axis_segments(beams: Beams) -> tuple[tuple[int, ...], FloatArray]:
     """The lines in which the beams of each node meet.
 
-    Returns
-    -------
-    vertices : tuple of int
-        The vertices that carry beams.
-    segments : (n, 2, 3) float array
-        Outer and inner corner at each, of its first beam, in model coordinates.
+    The vertices that carry beams; outer and inner corner at each, of its first beam, (n, 2, 3),
+    in model coordinates.
     """
     annuli = beams.annuli
     vertices, first = np.unique(annuli.edge_vertices.ravel(), return_index=True)
@@ -310,12 +236,6 @@ def node_axis_segments(beams: Beams) -> tuple[tuple[int, ...], FloatArray]:
 
 
 def beam_lengths(beams: Beams) -> FloatArray:
-    """Largest lengths of the pieces.
-
-    Returns
-    -------
-    (B,) float array
-        Longest chord between the corners of the two ends, in model units.
-    """
+    """Longest chords (B,) between the corners of the two ends, in model units."""
     ends = beams.corners.reshape(beams.n_beams, 2, 6, 3)
     return norm(ends[:, 0, :, None] - ends[:, 1, None]).max(axis=(1, 2))

@@ -66,18 +66,7 @@ def _in_plane(points: FloatArray, axes: FloatArray) -> FloatArray:
 
 
 def contour_boxes(contours: Contours) -> FloatArray:
-    """Boxes around contours.
-
-    Parameters
-    ----------
-    contours : Contours
-        B contours; no side is more than a half circle.
-
-    Returns
-    -------
-    (B, 2, 2) float array
-        Least and largest coordinates of rectangles about the sides.
-    """
+    """Rectangles about the sides, no more than half circles: least and largest, (B, 2, 2)."""
     starts = contours.corners
     ends = np.roll(starts, -1, axis=1)
     # A positive bulge lies to the right of its side.

@@ -97,27 +97,19 @@ def _outer_side_up(annuli: Annuli) -> Annuli:
 
 
 def mitre_angles(annuli: Annuli) -> FloatArray:
-    """Half angles at which mitres are cut.
+    """Half angles (B, 2, 2) at which mitres are cut: those of `neighbor_angles`.
 
-    Returns
-    -------
-    (B, 2, 2) float array
-        At both ends, to the lower and to the upper side of the plane, in radians: those of
-        `neighbor_angles`, and a right angle where the neighbour is farther than twice
-        `MITRE_LIMIT`.
+    A right angle where the neighbour is farther than twice `MITRE_LIMIT`.
     """
     half = neighbor_angles(annuli)
     return np.where(half > MITRE_LIMIT, np.pi / 2, half)
 
 
 def neighbor_angles(annuli: Annuli) -> FloatArray:
-    """Half the angles to the neighbouring beams around the node axes.
+    """Half the angles to the neighbouring beams around the node axes, (B, 2, 2).
 
-    Returns
-    -------
-    (B, 2, 2) float array
-        At both ends, to the lower and to the upper side of the plane, in radians; half a turn
-        for a single beam.
+    At both ends, to the lower and to the upper side of the plane, in radians; half a turn for a
+    single beam.
     """
     axes = annuli.node_axes.reshape(-1, 3)
     away = inward_directions(annuli).reshape(-1, 3)
@@ -176,8 +168,7 @@ def _rejection_reasons(
     closest = half_angles.min(axis=(1, 2))
     _note(closest < PARALLEL_PLANES, "another beam leaves the node in the same direction")
     _note(
-        ~exists,
-        "the cut of an end misses a circle: make the beams thinner or the node smaller",
+        ~exists, "the cut of an end misses a circle: make the beams thinner or the node smaller"
     )
     ridges = np.abs(beams.levels[..., 1]) >= beams.thickness / 2
     _note(

@@ -113,11 +113,8 @@ def _end_margin(beams: Beams, holes: FloatArray) -> FloatArray:
 
 
 def mark_centers(beams: Beams, marks: DrillMarks) -> FloatArray:
-    """Centres of drilling marks in the planes of their contours.
+    """Centres (B, 2 n, 2) of drilling marks in the planes of their contours.
 
-    Returns
-    -------
-    (B, 2 n, 2) float array
-        Along the edge and to the outer side, as in `kernel.contours.Contours`.
+    Along the edge and to the outer side, as in `kernel.contours.Contours`.
     """
     return dot(marks.holes[:, :, None], beams.annuli.frames[:, None, :2])

@@ -48,10 +48,7 @@ class NodeCylinders:
 def node_cylinders(beams: Beams) -> NodeCylinders:
     """Cylinders about the node axes, as high as the end faces of the beams that meet there.
 
-    Returns
-    -------
-    NodeCylinders
-        One for each node that carries beams; none if the beams have no node radius.
+    One for each node that carries beams; none if the beams have no node radius.
 
     Notes
     -----

@@ -11,21 +11,12 @@ def conjugacy_residuals(
 ) -> FloatArray:
     """How far a parametrisation or a net is from conjugate: distance of f_uv from a span.
 
-    Parameters
-    ----------
-    along_u, along_v : (..., n) float array
-        First derivatives; of a net the differences along the two sides of a face.
-    mixed : (..., n) float array
-        Derivative f_uv; of a net the difference of the differences.
-    lift : (..., n) float array, optional
-        The map itself where it is projective, for example rows of spheres, of any scale.
-
-    Returns
-    -------
-    (...) float array
-        Distance of f_uv from ``[f_u, f_v]``, or from ``[f, f_u, f_v]`` with a lift; in the
-        unit of f_uv. Zero means conjugate, in every coordinate system; other values depend on
-        the parametrisation, and with a lift on its scale and coordinates.
+    Derivatives are (..., n); of a net the differences along the two sides of a face, and the
+    difference of the differences. The lift (..., n) is the map itself where it is projective,
+    for example rows of spheres, of any scale. Distance (...) of f_uv from ``[f_u, f_v]``, or
+    from ``[f, f_u, f_v]`` with a lift; in the unit of f_uv. Zero means conjugate, in every
+    coordinate system; other values depend on the parametrisation, and with a lift on its scale
+    and coordinates.
 
     References
     ----------

@@ -23,19 +23,9 @@ def touching_spheres(
 ) -> FloatArray:
     """Spheres through points with given normals and curvatures: a parabolic pencil at each.
 
-    Parameters
-    ----------
-    points : (..., 3) float array
-    normals : (..., 3) float array
-        Unit normals.
-    curvatures : (...) array_like of float
-        Curvatures with respect to the normals: ``1 / κ`` is the signed distance of the centre
-        along the normal; 0 for the tangent plane.
-
-    Returns
-    -------
-    (..., 5) float array
-        Unit rows; N agrees with the normals.
+    Unit normals (..., 3) and curvatures (...) with respect to them: ``1 / κ`` is the signed
+    distance of the centre along the normal; 0 for the tangent plane. Unit rows (..., 5); N
+    agrees with the normals.
     """
     half = np.broadcast_to(np.asarray(curvatures, float) / 2, points.shape[:-1])[..., None]
     return recenter(np.concatenate([half, normals, np.zeros_like(half)], -1), -points)
@@ -46,18 +36,9 @@ def mean_curvature_spheres(
 ) -> FloatArray:
     """The central spheres of a surface: of its mean curvature, touching it.
 
-    Parameters
-    ----------
-    points, normals : (..., 3) float array
-        Points of the surface and its unit normals.
-    first, second : (...) float array
-        Principal curvatures with respect to the normals.
-
-    Returns
-    -------
-    (..., 5) float array
-        Unit rows of curvature ``H = (k1 + k2) / 2``, planes where it vanishes. They commute
-        with Möbius maps: with the principal spheres and the point the cross-ratio is -1.
+    Points and unit normals are (..., 3), principal curvatures with respect to these (...). Unit
+    rows (..., 5) of curvature ``H = (k1 + k2) / 2``, planes where it vanishes. They commute
+    with Möbius maps: with the principal spheres and the point the cross-ratio is -1.
 
     References
     ----------

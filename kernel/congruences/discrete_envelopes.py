@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import BoolArray, FloatArray, batches_by_count, dot, norm, sum_by
-from ..errors import InputError, name_ids
+from ..errors import InputError
 from ..meshes.mesh import Mesh, face_centroids, local_corners, mean_edge_length
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.incidence import normals, signed_distance
-from ..spheres.minkowski import minkowski
 from ..spheres.pentaspherical import from_pentaspherical, pentaspherical
-from ..spheres.rows import Kind, kind, lift_points, recenter
+from ..spheres.row_checks import check_rows, unit_rows
+from ..spheres.rows import lift_points, recenter
 from ..tolerances import DEGENERATE, EPSILON
 
 EnvelopeOrder: TypeAlias = Literal["nearest", "oriented"]
@@ -133,22 +133,10 @@ def envelope(mesh: Mesh, spheres: ArrayLike, order: EnvelopeOrder = "nearest") -
 
 def _rows_at_corners(mesh: Mesh, spheres: FloatArray, size: float) -> FloatArray:
     """Unit rows (H, 5) seen from the centroid of the face, in the unit `size`."""
-    if spheres.shape != (mesh.n_vertices, 5):
-        raise InputError(f"spheres must have shape ({mesh.n_vertices}, 5), not {spheres.shape}")
-    bad = np.flatnonzero(~np.isfinite(spheres).all(axis=1))
-    if len(bad):
-        raise InputError(f"the spheres of vertices {name_ids(bad.tolist())} are not finite")
+    check_rows(spheres, mesh.n_vertices, "vertex")
     rows = recenter(spheres[mesh.corners], face_centroids(mesh)[mesh.topology.corner_faces])
     rows = rows * np.array([size, 1.0, 1.0, 1.0, 1 / size])
-    kinds = kind(rows)
-    is_bad = (kinds == Kind.IMAGINARY) | (kinds == Kind.POINT)
-    if is_bad.any():
-        bad = name_ids(np.unique(mesh.corners[is_bad]).tolist())
-        raise InputError(
-            f"the spheres of vertices {bad} are imaginary or points: an envelope needs real "
-            "spheres or planes there"
-        )
-    return rows / np.sqrt(minkowski(rows, rows))[:, None]
+    return unit_rows(rows, mesh.corners, ": an envelope needs real spheres or planes there")
 
 
 def _common_points(rows: FloatArray) -> tuple[FloatArray, BoolArray]:
@@ -188,16 +176,8 @@ def _corner_distances(rows: FloatArray, points: FloatArray) -> FloatArray:
 def mirror_points(sphere_mesh: SphereMesh) -> MirrorPoints:
     """Second envelope of a sphere mesh: where the spheres around a vertex meet once more.
 
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
-        The sphere mesh; its spheres pass through the vertices.
-
-    Returns
-    -------
-    MirrorPoints
-        The mirror images of the interior vertices in the planes of the centres; around
-        vertices of more than three faces by least squares.
+    The spheres pass through the vertices. Mirror images of the interior vertices in the planes
+    of the centres; around vertices of more than three faces by least squares.
 
     Notes
     -----
@@ -243,18 +223,9 @@ def _rows_at_vertices(sphere_mesh: SphereMesh, size: float) -> FloatArray:
 def contact_points(sphere_mesh: SphereMesh) -> tuple[FloatArray, FloatArray]:
     """Discrete contact points: the points nearest to all spheres around each vertex.
 
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
-        The sphere mesh; its vertices are the start.
-
-    Returns
-    -------
-    points : (V, 3) float array
-        Least squares of the distances from the spheres, by steps of least length: a vertex on
-        fewer than three spheres moves no farther than it must. Unused vertices stay.
-    residuals : (V,) float array
-        Distance from the farthest of the spheres, in model units.
+    Least squares (V, 3) of the distances from the spheres, by steps of least length from the
+    vertices: a vertex on fewer than three spheres moves no farther than it must. Unused
+    vertices stay. Also the distances (V,) from the farthest of the spheres, in model units.
 
     References
     ----------
@@ -299,17 +270,10 @@ def _contact_step(
 def ribaucour_residuals(sphere_mesh: SphereMesh) -> tuple[FloatArray, FloatArray]:
     """How far the two envelopes of a sphere mesh are from circular nets.
 
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
-        A sphere mesh; a Q-congruence if its `mirror_points` have no residuals.
-
-    Returns
-    -------
-    plus, minus : (F,) float array
-        Of each face of the mesh, and of the face of its mirror points: least singular value of
-        the lifted corners that must vanish on a circle, relative to the largest. Zero for
-        triangles; NaN where a corner has no mirror point.
+    It is a Q-congruence if its `mirror_points` have no residuals. Of each face (F,) of the
+    mesh, and of the face of its mirror points: least singular value of the lifted corners that
+    must vanish on a circle, relative to the largest. Zero for triangles; NaN where a corner has
+    no mirror point.
 
     Notes
     -----

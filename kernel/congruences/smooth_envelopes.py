@@ -35,11 +35,8 @@ class SphereJet:
 def has_real_envelopes(jet: SphereJet) -> BoolArray:
     """Whether a congruence has two real envelopes.
 
-    Returns
-    -------
-    (...) bool array
-        ``|c_u|² |c_v|² - <c_u, c_v>² > |r_u c_v - r_v c_u|²``: the gradient of r on the surface
-        of the centres is shorter than 1. False where the congruence is not regular.
+    ``|c_u|² |c_v|² - <c_u, c_v>² > |r_u c_v - r_v c_u|²``: the gradient of r on the surface of
+    the centres is shorter than 1. False where the congruence is not regular.
 
     References
     ----------
@@ -50,14 +47,11 @@ def has_real_envelopes(jet: SphereJet) -> BoolArray:
 
 
 def envelope_points(jet: SphereJet) -> tuple[FloatArray, FloatArray]:
-    """Points in which the spheres of a congruence touch its two envelopes.
+    """Points (..., 3) in which the spheres of a congruence touch its two envelopes.
 
-    Returns
-    -------
-    plus, minus : (..., 3) float array
-        ``f± = c - r grad r ± r sqrt(1 - |grad r|²) N`` with N along ``c_u × c_v``: mirror
-        images in the tangent plane of the surface of the centres. NaN where they are not real
-        or the congruence is not regular; equal where ``|grad r| = 1`` up to rounding.
+    ``f± = c - r grad r ± r sqrt(1 - |grad r|²) N`` with N along ``c_u × c_v``: mirror images in
+    the tangent plane of the surface of the centres. NaN where they are not real or the
+    congruence is not regular; equal where ``|grad r| = 1`` up to rounding.
 
     Notes
     -----

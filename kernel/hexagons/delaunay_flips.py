@@ -42,16 +42,9 @@ class Flips:
 def dual_edge_lengths(mesh: Mesh, rows: FloatArray) -> FloatArray:
     """Signed lengths of the edges of the dual mesh, relative to the edges that they cross.
 
-    Parameters
-    ----------
-    rows : (V, 5) float array
-        Unit rows at the vertices, seen from them (`vertex_rows`).
-
-    Returns
-    -------
-    (E,) float array
-        Over the interior edges: positive where the dual edge runs from the right to the left
-        face, as it must on a convex face; negative where it runs backwards and faces cross.
+    (E,) over the interior edges, from rows of `vertex_rows`: positive where the dual edge runs
+    from the right to the left face, as it must on a convex face; negative where it runs
+    backwards and faces cross.
     """
     points = face_centroids(mesh) + triangle_points(mesh, rows)[0]
     return _signed_lengths(mesh, rows, points)
@@ -74,18 +67,8 @@ def _across(
 def flip_to_convex(mesh: Mesh, rows: FloatArray, max_sweeps: int = MAX_SWEEPS) -> Flips:
     """Flip edges until no edge of the dual mesh runs backwards, or no flip helps.
 
-    Parameters
-    ----------
-    rows : (V, 5) float array
-        Unit rows at the vertices, seen from them (`vertex_rows`).
-    max_sweeps : int
-        Largest number of rounds.
-
-    Returns
-    -------
-    Flips
-        The triangulation. Edges stay where the flipped one would fold a triangle, exist twice,
-        or run backwards even farther.
+    The rows are those of `vertex_rows`. Edges stay where the flipped one would fold a triangle,
+    exist twice, or run backwards even farther, or after `max_sweeps` rounds.
 
     Notes
     -----

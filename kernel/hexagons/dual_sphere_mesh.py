@@ -103,17 +103,8 @@ def dual_sphere_mesh(
 def bad_faces(mesh: Mesh, spheres: ArrayLike) -> tuple[tuple[int, str], ...]:
     """Inner vertices whose face cannot be made or is not convex, and why.
 
-    Parameters
-    ----------
-    mesh : Mesh
-        A triangulation.
-    spheres : (V, 5) array_like of float
-        Rows as for `dual_sphere_mesh`.
-
-    Returns
-    -------
-    tuple of (int, str)
-        Vertices in ascending order; the reason, or the shape of the face.
+    Rows as for `dual_sphere_mesh`. Vertices in ascending order; the reason, or the shape of the
+    face.
     """
     check_triangles(mesh)
     rows = _orient(mesh, vertex_rows(mesh, spheres))

@@ -198,10 +198,7 @@ def _evolve(surface: TangentSurface, rules: _Rules) -> tuple[TangentSurface, Flo
 
 
 def _retreat(
-    surface: TangentSurface,
-    offsets: FloatArray,
-    aims: FloatArray,
-    rules: _Rules,
+    surface: TangentSurface, offsets: FloatArray, aims: FloatArray, rules: _Rules
 ) -> tuple[TangentSurface, FloatArray, FloatArray, int]:
     """Lower the aims where faces are not convex: around small enough spheres they are."""
     n_flips, least, aims = 0, least_offsets(surface.mesh), aims.copy()
@@ -255,25 +252,11 @@ def _bad_vertices(surface: TangentSurface, offsets: FloatArray, rules: _Rules) -
 def descend(
     surface: TangentSurface, offsets: FloatArray, aims: FloatArray, bound: float, weight: float
 ) -> tuple[FloatArray, int, bool]:
-    """Minimise the energy of the offsets on a triangulation that stays as it is.
+    """Minimise the energy of the offsets (V,) on a triangulation that stays as it is.
 
-    Parameters
-    ----------
-    offsets, aims : (V,) float array
-        Offsets to start from and to end at.
-    bound : float
-        Angle allowed between axis and normal, in radians.
-    weight : float
-        Weight of the bound.
-
-    Returns
-    -------
-    offsets : (V,) float array
-        Better offsets.
-    iterations : int
-        Linear systems solved.
-    at_rest : bool
-        Whether no step lowers the energy by more than a share of `LEAST_GAIN`.
+    From offsets towards aims (V,), with a weight on the bound: the angle allowed between axis
+    and normal, in radians. Better offsets, the number of linear systems, and whether no step
+    lowers the energy by more than a share of `LEAST_GAIN`.
     """
     from scipy.sparse import csr_array, diags_array
 

@@ -31,17 +31,9 @@ class PencilPosition(IntEnum):
 def face_shapes(sphere_mesh: SphereMesh) -> NDArray[Any]:
     """Tell visually convex faces from bow-ties and from those whose boundary crosses itself.
 
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
-        The sphere mesh, of any face degrees.
-
-    Returns
-    -------
-    (F,) str array
-        ``"convex"``: seen along the direction of its largest shadow, no corner of the face is
-        reflex. ``"bow-tie"``: some are (two, in the typical case). ``"crossing"``: two of its
-        arcs meet, or the face is folded over and runs clockwise about N.
+    For each face ``"convex"``: seen along the direction of its largest shadow, no corner is
+    reflex; ``"bow-tie"``: some are (two, in the typical case); ``"crossing"``: two of its arcs
+    meet, or the face is folded over and runs clockwise about N.
 
     Notes
     -----
@@ -71,17 +63,9 @@ def _has_reflex_corner(sphere_mesh: SphereMesh, shadow: FloatArray) -> BoolArray
 
 
 def boundary_crosses(sphere_mesh: SphereMesh) -> BoolArray:
-    """Faces whose boundary, of the arcs in which spheres meet, crosses itself.
+    """Faces (F,) whose boundary, of the arcs in which spheres meet, crosses itself.
 
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
-        The sphere mesh; its vertices lie on the spheres.
-
-    Returns
-    -------
-    (F,) bool array
-        True where two arcs meet elsewhere than in their common corner.
+    Two arcs meet elsewhere than in their common corner. The vertices lie on the spheres.
     """
     flat = flatten_nearly_plane(sphere_mesh)
     mesh, rows = flat.mesh, flat.local_spheres
@@ -93,19 +77,10 @@ def boundary_crosses(sphere_mesh: SphereMesh) -> BoolArray:
 
 
 def pencil_positions(curvatures: FloatArray, first: FloatArray, second: FloatArray) -> IntArray:
-    """Position of tangent spheres in the parabolic pencils of a surface.
+    """Position of tangent spheres in the parabolic pencils of a surface: `PencilPosition`.
 
-    Parameters
-    ----------
-    curvatures : (...) float array
-        Signed curvatures 2A of the spheres with respect to the surface normals.
-    first, second : (...) float array
-        Principal curvatures with respect to the same normals, ``first >= second``.
-
-    Returns
-    -------
-    (...) int array
-        Values of `PencilPosition`.
+    By the signed curvatures 2A of the spheres and the principal curvatures,
+    ``first >= second``, all with respect to the surface normals.
 
     References
     ----------

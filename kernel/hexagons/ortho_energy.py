@@ -16,21 +16,11 @@ from ..arrays import FloatArray, IntArray, dot, norm, unit
 def axis_deviations(
     points: FloatArray, normals: FloatArray, triangles: IntArray, offsets: FloatArray
 ) -> FloatArray:
-    """Angles between node axes and surface normals.
+    """Angles (T,) between node axes and surface normals, in [0, π].
 
-    Parameters
-    ----------
-    points, normals : (V, 3) float array
-        Points of the surface, and unit normals to the side of the centres.
-    triangles : (T, 3) int array
-        Triangles, counter-clockwise about the normals.
-    offsets : (V,) float array
-        Distances λ of the centres along the normals.
-
-    Returns
-    -------
-    (T,) float array
-        Radians in [0, π]; beyond π/2 the triangle of the centres is turned over.
+    Normals (V, 3) are unit, to the side of the centres, triangles counter-clockwise about them,
+    and offsets (V,) the distances λ of the centres along them. Beyond π/2 the triangle of the
+    centres is turned over.
     """
     axes, upright = _axes_and_normals(points, normals, triangles, offsets)
     axes = unit(axes)
@@ -44,21 +34,10 @@ def ortho_residuals(
     offsets: FloatArray,
     bound: float,
 ) -> tuple[FloatArray, FloatArray]:
-    """Residuals of the node axes, and their derivatives.
+    """Residuals (T,) of the node axes, and derivatives (T, 3) by the offsets at the corners.
 
-    Parameters
-    ----------
-    points, normals, triangles, offsets : arrays
-        As for `axis_deviations`.
-    bound : float
-        Angle allowed between axis and normal, in radians.
-
-    Returns
-    -------
-    residuals : (T,) float array
-        Zero where the bound holds.
-    slopes : (T, 3) float array
-        Derivatives with respect to the offsets at the three corners.
+    Arrays as for `axis_deviations`. Zero where the angle between axis and normal is within the
+    bound, in radians.
     """
     axes, upright = _axes_and_normals(points, normals, triangles, offsets)
     height, square = dot(axes, upright), dot(axes, axes)

@@ -1,14 +1,15 @@
 """Triangulations of quadrilateral grids whose rows are shifted by half a step."""
 
-from typing import Any, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 import numpy as np
 
-from ..arrays import BoolArray, IntArray
+from ..arrays import BoolArray
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh
 from ..meshes.topology import previous_corners
 from ..meshes.vertex_fans import vertex_fans
+from ..solvers.weighted_graphs import piece_labels
 
 RowDirection: TypeAlias = Literal["first", "second"]
 
@@ -83,15 +84,11 @@ def _check_grid(mesh: Mesh) -> None:
 
 def _is_even(mesh: Mesh) -> BoolArray:
     """Vertices an even number of steps away from the first one of their part of the mesh."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     count = mesh.n_vertices
     tails, heads = mesh.corners, mesh.corners[mesh.topology.next_corners]
     # Two copies of the vertices, edges lead from one to the other.
     ends = np.concatenate([tails, heads]), np.concatenate([heads, tails]) + count
-    graph: Any = coo_array((np.ones(len(ends[0])), ends), (2 * count, 2 * count))
-    labels: IntArray = np.asarray(connected_components(graph, directed=False)[1], np.int64)
+    labels = piece_labels(*ends, 2 * count)
     if (labels[tails] == labels[tails + count]).any():
         raise InputError("a closed row has an odd number of faces: use an even number")
     return labels[:count] < labels[count:]

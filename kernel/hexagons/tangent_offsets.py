@@ -53,17 +53,8 @@ class TangentSurface:
 def tangent_surface(mesh: Mesh, side: CenterSide = "auto") -> tuple[TangentSurface, BoolArray]:
     """Normals and curvature radii of a triangulation on the side of the centres.
 
-    Parameters
-    ----------
-    side : {"auto", "plus", "minus"}
-        Side of the centres.
-
-    Returns
-    -------
-    surface : TangentSurface
-        The surface in units of its mean edge.
-    is_outer : (V,) bool array
-        Vertices where the surface bends away from the centres in all directions.
+    In units of the mean edge. Also the vertices (V,) where the surface bends away from the
+    centres in all directions.
 
     Raises
     ------
@@ -88,19 +79,10 @@ def tangent_surface(mesh: Mesh, side: CenterSide = "auto") -> tuple[TangentSurfa
 
 
 def grow_offsets(surface: TangentSurface, aims: FloatArray, bound: float) -> FloatArray:
-    """Largest offsets below an aim whose slopes between neighbours are bounded.
+    """Largest offsets (V,) below an aim whose slopes between neighbours are bounded.
 
-    Parameters
-    ----------
-    aims : (V,) float array
-        Upper bounds of the offsets.
-    bound : float
-        Angle allowed between axis and normal, in radians.
-
-    Returns
-    -------
-    (V,) float array
-        Offsets, grown from the least aim until each reaches its own or is held by a neighbour.
+    The bound is the angle allowed between axis and normal, in radians. Offsets grow from the
+    least aim until each reaches its own or is held by a neighbour.
 
     Notes
     -----
@@ -150,12 +132,9 @@ def _neighbor_pairs(mesh: Mesh) -> tuple[IntArray, IntArray]:
 
 
 def least_offsets(mesh: Mesh) -> FloatArray:
-    """Offsets below which the spheres of a triangle may have no point in common.
+    """Offsets (V,) below which the spheres of a triangle may have no point in common.
 
-    Returns
-    -------
-    (V,) float array
-        A share of the longest edge at each vertex.
+    A share of the longest edge at each vertex.
     """
     starts, ends = mesh_edges(mesh)
     lengths = norm(mesh.vertices[ends] - mesh.vertices[starts])
@@ -166,13 +145,7 @@ def least_offsets(mesh: Mesh) -> FloatArray:
 
 
 def mesh_edges(mesh: Mesh) -> tuple[IntArray, IntArray]:
-    """Ends of every edge, those on the boundary included.
-
-    Returns
-    -------
-    starts, ends : (n,) int array
-        Vertices, each edge once.
-    """
+    """Starts and ends of every edge, those on the boundary included, each edge once."""
     topology = mesh.topology
     once = np.flatnonzero(topology.twins < np.arange(len(topology.twins)))
     return mesh.corners[once], mesh.corners[topology.next_corners[once]]

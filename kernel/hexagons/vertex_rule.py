@@ -9,28 +9,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm
-from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, mean_edge_length
-from ..spheres.minkowski import minkowski
-from ..spheres.rows import Kind, kind, recenter
-from ..tolerances import DEGENERATE, EPSILON
+from ..spheres.row_checks import check_rows, seen_from, unit_rows
+from ..spheres.rows import recenter
+from ..tolerances import DEGENERATE
 
 
 def meet_three(rows: FloatArray) -> tuple[FloatArray, BoolArray]:
-    """The common point of three spheres or planes that lies nearest the origin.
+    """The common point (n, 3) of three spheres or planes that lies nearest the origin.
 
-    Parameters
-    ----------
-    rows : (n, 3, 5) float array
-        Unit rows in coordinates whose origin and unit suit the place where they meet.
-
-    Returns
-    -------
-    points : (n, 3) float array
-        Of the two common points the one nearer the origin. Where they are not real, the point
-        half way between them: of the radical axis, in the plane of the centres.
-    is_real : (n,) bool array
-        False where the three have no real point in common, or more than two.
+    Unit rows (n, 3, 5) in coordinates whose origin and unit suit the place where they meet.
+    Where the two common points are not real, the point half way between them: of the radical
+    axis, in the plane of the centres. Also whether they are real: False as well where the three
+    have more than two common points.
 
     Notes
     -----
@@ -77,49 +68,19 @@ def _meet_line(
 
 
 def vertex_rows(mesh: Mesh, spheres: ArrayLike) -> FloatArray:
-    """Spheres at the vertices of a mesh, seen from their vertex.
+    """Spheres at the vertices of a mesh, seen from them: unit rows (V, 5), in model units.
 
-    Parameters
-    ----------
-    spheres : (V, 5) array_like of float
-        Real rows of any scale, in model coordinates; the orientation is kept.
-
-    Returns
-    -------
-    (V, 5) float array
-        Unit rows whose origin is the vertex, in model units.
+    The spheres are real rows of any scale, in model coordinates; the orientation is kept.
 
     Raises
     ------
     InputError
         If the rows do not match the vertices, are not finite, or are no real spheres or planes;
         the message names the vertices.
-
-    Notes
-    -----
-    Far from the origin a row rounds its last coefficient: where the vertex lies on its sphere
-    up to this rounding, it lies on it exactly.
     """
     rows = np.asarray(spheres, float)
-    if rows.shape != (mesh.n_vertices, 5):
-        raise InputError(
-            f"spheres must be one per vertex, of shape ({mesh.n_vertices}, 5), not {rows.shape}"
-        )
-    bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
-    if len(bad):
-        raise InputError(f"the spheres of vertices {name_ids(bad.tolist())} are not finite")
-    points = mesh.vertices
-    local = recenter(rows, points)
-    scale = np.abs(rows[:, 4]) + np.abs(dot(rows[:, 1:4], points))
-    scale = scale + np.abs(rows[:, 0]) * dot(points, points)
-    local[np.abs(local[:, 4]) <= 8 * EPSILON * scale, 4] = 0
-    kinds = kind(local)
-    bad = np.flatnonzero((kinds == Kind.IMAGINARY) | (kinds == Kind.POINT))
-    if len(bad):
-        raise InputError(
-            f"the spheres of vertices {name_ids(bad.tolist())} are imaginary or points"
-        )
-    return local / np.sqrt(minkowski(local, local))[:, None]
+    check_rows(rows, mesh.n_vertices, "vertex")
+    return unit_rows(seen_from(rows, mesh.vertices), np.arange(mesh.n_vertices))
 
 
 def triangle_points(
@@ -127,20 +88,8 @@ def triangle_points(
 ) -> tuple[FloatArray, BoolArray]:
     """Common point of the spheres of each triangle, the one nearest the triangle.
 
-    Parameters
-    ----------
-    rows : (V, 5) float array
-        Unit rows at the vertices, seen from them (`vertex_rows`).
-    faces : (n,) int array, optional
-        Triangles asked for; all by default.
-
-    Returns
-    -------
-    points : (n, 3) float array
-        Points relative to the centroids of the triangles; where they are not real, of the
-        radical axis.
-    is_real : (n,) bool array
-        False where the spheres have no real point in common.
+    Of rows of `vertex_rows`, for all triangles by default. Points (n, 3) relative to the
+    centroids; where they are not real (False), of the radical axis.
 
     References
     ----------
@@ -157,15 +106,8 @@ def triangle_points(
 def corner_reach(mesh: Mesh, points: FloatArray) -> FloatArray:
     """How far the common points of triangles lie from them.
 
-    Parameters
-    ----------
-    points : (T, 3) float array
-        Points relative to the centroids (`triangle_points`).
-
-    Returns
-    -------
-    (T,) float array
-        Distances from the centroids, relative to the longest side of the triangle.
+    Points (T, 3) of `triangle_points`; distances (T,) from the centroids, relative to the
+    longest side of the triangle.
     """
     corners = mesh.vertices[mesh.corners.reshape(-1, 3)]
     sides = np.roll(corners, -1, axis=1) - corners
@@ -178,21 +120,9 @@ def meet_near(
 ) -> tuple[FloatArray, BoolArray]:
     """The common point of three spheres at each of many places, nearest the place.
 
-    Parameters
-    ----------
-    rows : (n, 3, 5) float array
-        Unit rows, each seen from a point of its own.
-    origins : (n, 3, 3) float array
-        The place, seen from these points.
-    size : float
-        Unit of length to compute in, about the distance between the points.
-
-    Returns
-    -------
-    points : (n, 3) float array
-        Points relative to the place, as of `meet_three`.
-    is_real : (n,) bool array
-        Whether the spheres have a real point in common.
+    Unit rows (n, 3, 5), each seen from a point of its own; the place, seen from these points;
+    and a unit of length to compute in, about the distance between the points. Points (n, 3)
+    relative to the place, and whether they are real, as of `meet_three`.
     """
     units = np.array([size, 1.0, 1.0, 1.0, 1 / size])
     points, is_real = meet_three(recenter(rows, origins) * units)

@@ -7,6 +7,8 @@ index decides: all processors make one mesh.
 
 mesh                 The mesh: vertices, and faces of mixed degree in compressed rows.
 topology             Half-edges, edges and boundary of a mesh.
+defects              Why faces are no mesh, and what repairs it.
+orientation          Which faces are to be turned over, so that neighbours agree.
 vertex_fans          The corners around vertices in counter-clockwise order.
 curvature            Normals and principal curvatures at the vertices of a mesh.
 triangulation        Cutting polygons into triangles along short diagonals.

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import FloatArray, IntArray, norm, read_only, sum_by, unit
 from ..errors import InputError, name_ids
+from .defects import repeated_corner
 from .topology import Topology, build_topology
 
 
@@ -55,7 +56,7 @@ class Mesh:
     def __init__(
         self, vertices: ArrayLike, faces: IntArray | Iterable[Sequence[int] | IntArray]
     ) -> None:
-        corners, offsets = _compress(faces)
+        corners, offsets = compress_faces(faces)
         points = np.array(vertices, np.float64)
         _check_elements(points, corners, offsets)
         topology = build_topology(corners, offsets, len(points))
@@ -130,10 +131,28 @@ def with_vertices(mesh: Mesh, vertices: FloatArray) -> Mesh:
     return result
 
 
-def _compress(
+def compress_faces(
     faces: IntArray | Iterable[Sequence[int] | IntArray],
 ) -> tuple[IntArray, IntArray]:
-    """Corners and offsets of faces; a plain (F, k) array is not split into rows."""
+    """Faces in compressed rows; a plain (F, k) array is not split into rows.
+
+    Parameters
+    ----------
+    faces : sequence of sequences of int, or (F, k) int array
+        Vertex ids of each face.
+
+    Returns
+    -------
+    corners : (H,) int array
+        Vertex of each corner, face after face.
+    offsets : (F + 1,) int array
+        First corner of each face, and H.
+
+    Raises
+    ------
+    InputError
+        If an index is no whole number.
+    """
     if isinstance(faces, np.ndarray) and faces.ndim == 2:
         table = cast("NDArray[Any]", faces)
         corners = _whole_numbers(table.ravel())
@@ -177,8 +196,8 @@ def _check_elements(points: FloatArray, corners: IntArray, offsets: IntArray) ->
     order = np.lexsort((corners, corner_faces))
     repeated = (np.diff(corners[order]) == 0) & (np.diff(corner_faces[order]) == 0)
     if repeated.any():
-        bad = name_ids(np.unique(corner_faces[order][1:][repeated]).tolist())
-        raise InputError(f"faces {bad} have a repeated corner; remove the duplicate")
+        faces = np.unique(corner_faces[order][1:][repeated])
+        raise repeated_corner(corners, offsets, faces)
 
 
 def face_centroids(mesh: Mesh) -> FloatArray:

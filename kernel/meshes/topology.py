@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import BoolArray, IntArray, read_only
-from ..errors import InputError, name_ids
+from .defects import crowded_edge, disagreeing_normals, repeated_face, split_vertex
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,8 @@ def build_topology(corners: IntArray, offsets: IntArray, n_vertices: int) -> Top
     next_corners = np.arange(1, len(corners) + 1)
     next_corners[offsets[1:] - 1] = offsets[:-1]
     heads = corners[next_corners]
-    twins = _match_half_edges(corners, heads, corner_faces, n_vertices)
+    twins = _match_half_edges(corners, heads, offsets, n_vertices)
+    _check_pillows(corners, offsets, twins, corner_faces)
     _check_vertex_fans(corners, next_corners, twins, corner_faces, n_vertices)
 
     edge_corners = np.flatnonzero(twins > np.arange(len(corners)))
@@ -85,7 +86,7 @@ def build_topology(corners: IntArray, offsets: IntArray, n_vertices: int) -> Top
 
 
 def _match_half_edges(
-    tails: IntArray, heads: IntArray, corner_faces: IntArray, n_vertices: int
+    tails: IntArray, heads: IntArray, offsets: IntArray, n_vertices: int
 ) -> IntArray:
     undirected = np.minimum(tails, heads) * n_vertices + np.maximum(tails, heads)
     order = np.argsort(undirected, kind="stable")
@@ -94,21 +95,15 @@ def _match_half_edges(
     crowded = np.flatnonzero(same[1:] & same[:-1])
     if len(crowded):
         first = order[crowded[0]]
-        faces = np.unique(corner_faces[undirected == undirected[first]])
-        raise InputError(
-            f"edge {int(tails[first])}-{int(heads[first])} is non-manifold: it has more than "
-            f"two faces {name_ids(faces.tolist())}; split the mesh there"
-        )
+        owners = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
+        faces = np.unique(owners[undirected == undirected[first]])
+        raise crowded_edge(tails, offsets, (int(tails[first]), int(heads[first])), faces)
     pairs = np.flatnonzero(same)
     left, right = order[pairs], order[pairs + 1]
-    aligned = np.flatnonzero(tails[left] == tails[right])
-    if len(aligned):
-        a, b = int(left[aligned[0]]), int(right[aligned[0]])
-        raise InputError(
-            f"faces [{corner_faces[a]}, {corner_faces[b]}] run along edge "
-            f"{int(tails[a])}-{int(heads[a])} in the same direction: unify the face normals "
-            "(the mesh may be non-orientable)"
-        )
+    is_aligned = tails[left] == tails[right]
+    if is_aligned.any():
+        links = np.stack([left, right], 1)
+        raise disagreeing_normals(tails, offsets, links, is_aligned)
     twins = np.full(len(tails), -1, np.int64)
     twins[left], twins[right] = right, left
     return twins
@@ -141,10 +136,21 @@ def _check_vertex_fans(
     if (fans > 1).any():
         vertex = int(np.flatnonzero(fans > 1)[0])
         faces = np.unique(corner_faces[corners == vertex])
-        raise InputError(
-            f"vertex {vertex} is non-manifold: faces {name_ids(faces.tolist())} meet there "
-            "without sharing an edge; duplicate the vertex"
-        )
+        raise split_vertex(vertex, faces)
+
+
+def _check_pillows(
+    corners: IntArray, offsets: IntArray, twins: IntArray, corner_faces: IntArray
+) -> None:
+    """Two faces with the same corners close up, but are one face and the same turned over."""
+    other = np.where(twins < 0, -1, corner_faces[twins])
+    least = np.minimum.reduceat(other, offsets[:-1])
+    is_single = (least >= 0) & (least == np.maximum.reduceat(other, offsets[:-1]))
+    faces = np.flatnonzero(is_single)
+    if len(faces):
+        error = repeated_face(corners, offsets, np.unique([faces, least[faces]]))
+        if error:
+            raise error
 
 
 def previous_corners(topology: Topology) -> IntArray:

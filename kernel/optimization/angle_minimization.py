@@ -94,17 +94,8 @@ class EdgeProducts:
 def couple_pencils(mesh: Mesh, circles: Circles, weights: FloatArray) -> PencilCoupling:
     """Products of neighbouring pencils, from differences of centres only.
 
-    Parameters
-    ----------
-    circles : Circles
-        Circle of each face, in the coordinates local to the face.
-    weights : (E,) float array
-        Weight of each interior edge.
-
-    Returns
-    -------
-    PencilCoupling
-        Independent of scale and of where the model sits.
+    The circles are in the coordinates local to their faces; (E,) weights. Independent of scale
+    and of where the model sits.
     """
     faces = mesh.topology.edge_faces
     a, b = faces.T
@@ -124,15 +115,7 @@ def couple_pencils(mesh: Mesh, circles: Circles, weights: FloatArray) -> PencilC
 
 
 def edge_products(coupling: PencilCoupling, angles: FloatArray) -> EdgeProducts:
-    """Products ``<<S, S'>>`` at given unknowns.
-
-    Parameters
-    ----------
-    coupling : PencilCoupling
-        Products of the pencil rows.
-    angles : (F,) float array
-        Unknown t of each face.
-    """
+    """Products ``<<S, S'>>`` at given unknowns t, (F,)."""
     pp, pq, qp, qq = coupling.products
     cosine, sine = np.cos(angles), np.sin(angles)
     ca, cb = cosine[coupling.faces].T
@@ -150,32 +133,15 @@ EdgeEnergy = Callable[[FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
 
 
 def signed_density(products: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Density ``1 - g`` of stage 1.
-
-    Parameters
-    ----------
-    products : (E,) float array
-
-    Returns
-    -------
-    tuple of three (E,) float arrays
-        Density, first and second derivative by g.
-    """
+    """Density ``1 - g`` of stage 1, with first and second derivative by g, each (E,)."""
     return 1 - products, np.full_like(products, -1.0), np.zeros_like(products)
 
 
 def angle_density(target: float) -> EdgeEnergy:
     """Density ``(g |g| - cos² α)²`` of stage 2: the paper's, told from a spike by its sign.
 
-    Parameters
-    ----------
-    target : float
-        Target angle α, in radians.
-
-    Returns
-    -------
-    callable
-        Takes (E,) values of g; returns density, first and second derivative by g.
+    Takes (E,) values of g; returns density, first and second derivative by g. The target α is
+    in radians.
 
     References
     ----------
@@ -183,9 +149,7 @@ def angle_density(target: float) -> EdgeEnergy:
     """
     aim = np.cos(target) ** 2
 
-    def _density(
-        products: FloatArray,
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _density(products: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         size, side = np.abs(products), np.sign(products)
         excess = products * size - aim
         return excess**2, 4 * size * excess, 4 * side * excess + 8 * products**2
@@ -194,9 +158,7 @@ def angle_density(target: float) -> EdgeEnergy:
 
 
 def minimize_angles(
-    sphere_mesh: SphereMesh,
-    target_angle: float = 0.0,
-    edge_weights: ArrayLike | None = None,
+    sphere_mesh: SphereMesh, target_angle: float = 0.0, edge_weights: ArrayLike | None = None
 ) -> tuple[SphereMesh, AngleReport]:
     """Spheres through the faces' circles that meet their neighbours most smoothly.
 
@@ -255,17 +217,10 @@ def minimize_angles(
 
 
 def pencil_angles(sphere_mesh: SphereMesh, circles: Circles) -> FloatArray:
-    """Unknowns t of the members of the circle pencils nearest to given spheres.
+    """Unknowns t, (F,), of the members of the circle pencils nearest to given spheres.
 
-    Parameters
-    ----------
-    circles : Circles
-        Circle of each face, local to the face.
-
-    Returns
-    -------
-    (F,) float array
-        Angles ``atan2(<<S,Q>>, <<S,P>>)``: exact where the sphere contains the circle.
+    Angles ``atan2(<<S,Q>>, <<S,P>>)``, the circles local to their faces: exact where the sphere
+    contains the circle.
     """
     planes, great_spheres = circle_pencils(circles)
     rows = sphere_mesh.local_spheres
@@ -275,19 +230,7 @@ def pencil_angles(sphere_mesh: SphereMesh, circles: Circles) -> FloatArray:
 def check_angle_options(
     mesh: Mesh, target: float, edge_weights: ArrayLike | None
 ) -> FloatArray:
-    """Check what is asked of the angles.
-
-    Parameters
-    ----------
-    target : float
-        Target angle, in radians.
-    edge_weights : (E,) array_like of float, optional
-        Weight of each interior edge; 1 by default.
-
-    Returns
-    -------
-    (E,) float array
-        The weights.
+    """Weight of each interior edge, (E,): 1 by default. The target angle is in radians.
 
     Raises
     ------

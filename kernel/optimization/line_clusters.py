@@ -83,7 +83,7 @@ def _one_cluster_more(
         highs = np.minimum(highs, ends - 1)
         counts = highs - lows + 1
         firsts = np.cumsum(counts) - counts
-        starts = np.arange(counts.sum()) - np.repeat(firsts - lows, counts)
+        starts: IntArray = np.arange(int(counts.sum())) - np.repeat(firsts - lows, counts)
         found = least[starts] + sums.cost(starts, np.repeat(ends, counts))
         costs[ends] = np.minimum.reduceat(found, firsts)
         ties = np.flatnonzero(found == np.repeat(costs[ends], counts))

@@ -11,6 +11,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray, dot, unit
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_normals
+from ..solvers.weighted_graphs import piece_labels
 
 Family = Literal["first", "second"]
 
@@ -57,18 +58,10 @@ def strip_weights(mesh: Mesh, family: Family) -> FloatArray:
 
 
 def strip_weights_along(mesh: Mesh, direction: FloatArray) -> FloatArray:
-    """Weights that join faces along a direction in space.
+    """Weights (E,) that join faces along a direction in space, (3,) or (F, 3).
 
-    Parameters
-    ----------
-    direction : (3,) or (F, 3) float array
-        Direction in which strips run, for all faces or for each.
-
-    Returns
-    -------
-    (E,) float array
-        1 on edges that cross the direction at more than 45 degrees, 0 on the others, and where
-        the direction stands upright on the mesh.
+    1 on edges that cross the direction at more than 45 degrees, 0 on the others, and where the
+    direction stands upright on the mesh.
 
     Raises
     ------
@@ -102,17 +95,12 @@ def _family_of_sides(
     mesh: Mesh, pairs: IntArray, sides: IntArray, other_sides: IntArray
 ) -> IntArray:
     """Whether even sides of each face belong to the second family, 0 or 1 (F,)."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    count = mesh.n_faces
     a, b = pairs.T
     # Two nodes per face, for its even and its odd sides; an edge joins the sides it is, and
     # the sides that it is not.
     rows = np.concatenate([2 * a + sides, 2 * a + 1 - sides])
     columns = np.concatenate([2 * b + other_sides, 2 * b + 1 - other_sides])
-    graph = coo_array((np.ones(len(rows)), (rows, columns)), shape=(2 * count, 2 * count))
-    _, labels = connected_components(graph, directed=False)
+    labels = piece_labels(rows, columns, 2 * mesh.n_faces)
     even, odd = labels[::2], labels[1::2]
     twisted = np.flatnonzero((even == odd) & (mesh.degrees == 4))
     if len(twisted):

@@ -22,13 +22,7 @@ from ..sphere_meshes.fit import face_planes
 from ..sphere_meshes.sphere_mesh import SphereMesh, intersection_angles, vertex_error
 from ..spheres.circles import circle_pencils, face_circles, pencil_spheres
 from ..spheres.rows import recenter, rescale
-from ..tolerances import (
-    COMMON_VERTEX,
-    ENERGY_CHANGE,
-    RESTING_MODEL,
-    STAGE_CHANGE,
-    STEP_MODEL,
-)
+from ..tolerances import COMMON_VERTEX, ENERGY_CHANGE, RESTING_MODEL, STAGE_CHANGE, STEP_MODEL
 from .angle_minimization import check_angle_options, minimize_angles, pencil_angles
 from .energies.freedom import Boundary, Freedom, Interior, vertex_freedom
 from .energies.minimize import energy_problem, minimize_energy
@@ -131,21 +125,7 @@ def optimize_spheres(
     weights: EnergyWeights | None = None,
     conditions: Conditions | None = None,
 ) -> tuple[SphereMesh, Optimization]:
-    """Minimise energy (6).
-
-    Parameters
-    ----------
-    weights : EnergyWeights, optional
-        Weights of the terms.
-    conditions : Conditions, optional
-        What has to be respected.
-
-    Returns
-    -------
-    sphere_mesh : SphereMesh
-        The optimum, on moved vertices if they may move.
-    optimization : Optimization
-        Stages and what came out.
+    """Minimise energy (6): the optimum, on moved vertices if they may move, and how it went.
 
     Raises
     ------
@@ -187,18 +167,8 @@ def move_vertices(
 ) -> tuple[SphereMesh, Optimization]:
     """Minimise energy (6) with vertices that move onto their spheres.
 
-    Parameters
-    ----------
-    conditions : Conditions
-        What has to be respected; its tolerance bounds every displacement.
-
-    Returns
-    -------
-    sphere_mesh : SphereMesh
-        The optimum, on moved vertices.
-    optimization : Optimization
-        Where its `vertex_miss` exceeds `COMMON_VERTEX`, the vertices could not reach common
-        spheres within the tolerance.
+    The tolerance bounds every displacement. Where `vertex_miss` exceeds `COMMON_VERTEX`, the
+    vertices could not reach common spheres within it.
 
     Raises
     ------

@@ -43,19 +43,10 @@ Fault = tuple[str, BoolArray]
 
 
 def rejection_reasons(panels: Panels, found: Found) -> dict[int, str]:
-    """Why panels cannot be made.
+    """Why panels cannot be made, by panel; those that can be made do not occur.
 
-    Parameters
-    ----------
-    panels : Panels
-        P panels with H corners, sound or not.
-
-    Returns
-    -------
-    dict of int to str
-        Reason by panel; panels that can be made do not occur. Where one fault brings others
-        with it, the reason is the cause: every fault is looked for in every panel, and they
-        are ranked (`_faults`).
+    Where one fault brings others with it, the reason is the cause: every fault is looked for in
+    every panel, and they are ranked (`_faults`).
     """
     faults = _faults(panels, found)
     sound = ~np.any([bad for _, bad in faults], axis=0)
@@ -93,14 +84,8 @@ def _faults(panels: Panels, found: Found) -> list[Fault]:
             "thickness",
             is_thin,
         ),
-        (
-            "the thickness leaves no corner on the outer face",
-            _any_corner(~found.outer_corners),
-        ),
-        (
-            "the thickness leaves no corner on the inner face",
-            _any_corner(~found.inner_corners),
-        ),
+        ("the thickness leaves no corner on the outer face", _any_corner(~found.outer_corners)),
+        ("the thickness leaves no corner on the inner face", _any_corner(~found.inner_corners)),
     ]
     sides = found.references[panels.next_corners] - found.references
     has_sides = panels.thickness > 0 or panels.joint_gap > 0
@@ -118,10 +103,7 @@ def _faults(panels: Panels, found: Found) -> list[Fault]:
                 ),
             ),
             (f"a cutting plane leans over the {name} face: cut it by bisectors", leaning),
-            (
-                f"the {name} face reaches more than 80 degrees from its middle: split it",
-                steep,
-            ),
+            (f"the {name} face reaches more than 80 degrees from its middle: split it", steep),
         ]
     return faults
 

@@ -40,16 +40,8 @@ class CongruentPanels:
 def congruent_panels(panels: Panels, tolerance: float = SAME_PANEL) -> CongruentPanels:
     """Find panels that are the same up to a rigid motion.
 
-    Parameters
-    ----------
-    tolerance : float
-        How far corners and middles of edges of the same shape may lie apart, in mean edges of
-        all panels.
-
-    Returns
-    -------
-    CongruentPanels
-        Shapes and motions. Mirror images differ, and so do panels of different moulds.
+    The tolerance is how far corners and middles of edges of the same shape may lie apart, in
+    mean edges of all panels. Mirror images differ, and so do panels of different moulds.
 
     Raises
     ------

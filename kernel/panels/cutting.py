@@ -30,11 +30,8 @@ EdgeMode = Literal["bisector", "intersection"]
 def flatten_nearly_plane(sphere_mesh: SphereMesh) -> SphereMesh:
     """Replace spheres that bulge less than a workshop can tell by planes.
 
-    Returns
-    -------
-    SphereMesh
-        The same, with A = 0 where the bulge ``L² / 8r`` of a face of size L is below
-        `PLANE_SAGITTA` L. To be applied before cutting, so that neighbours agree.
+    A = 0 where the bulge ``L² / 8r`` of a face of size L is below `PLANE_SAGITTA` L. To be
+    applied before cutting, so that neighbours agree.
     """
     mesh = sphere_mesh.mesh
     corners = local_corners(mesh)
@@ -136,18 +133,10 @@ def _cut_edges(sphere_mesh: SphereMesh, edges: EdgeMode, joint_gap: float = 0.0)
 
 
 def edge_arcs(sphere_mesh: SphereMesh, edges: EdgeMode) -> Arcs:
-    """Arc of each half-edge on the sphere of its face.
+    """Arc of each half-edge on the sphere of its face, cut as in `cutting_planes`.
 
-    Parameters
-    ----------
-    edges : {"bisector", "intersection"}
-        In which planes the arcs lie, see `cutting_planes`.
-
-    Returns
-    -------
-    Arcs
-        H arcs in model coordinates, from corner to corner. The two arcs of an interior edge
-        differ by its gap; where two spheres meet in a circle and are cut there, they coincide.
+    H arcs in model coordinates, from corner to corner. The two arcs of an interior edge differ
+    by its gap; where two spheres meet in a circle and are cut there, they coincide.
 
     References
     ----------
@@ -163,18 +152,10 @@ def edge_arcs(sphere_mesh: SphereMesh, edges: EdgeMode) -> Arcs:
 
 
 def edge_gaps(sphere_mesh: SphereMesh, edges: EdgeMode) -> FloatArray:
-    """Largest distance between the two arcs of each interior edge.
+    """Largest distance (E,) between the two arcs of each interior edge, see `cutting_planes`.
 
-    Parameters
-    ----------
-    edges : {"bisector", "intersection"}
-        How panels are cut, see `cutting_planes`.
-
-    Returns
-    -------
-    (E,) float array
-        The largest of the gaps at the two ends and in the middle of each edge, in model units;
-        NaN where an arc does not exist.
+    The largest of the gaps at the two ends and in the middle of each edge, in model units; NaN
+    where an arc does not exist.
 
     References
     ----------
@@ -204,21 +185,12 @@ def edge_gaps(sphere_mesh: SphereMesh, edges: EdgeMode) -> FloatArray:
 def gap_report(
     sphere_mesh: SphereMesh, edges: EdgeMode, face_ids: IntArray
 ) -> dict[str, float]:
-    """Summary of the gaps between the arcs of neighbouring panels.
+    """Summary of the gaps between the arcs of neighbouring panels, of the faces (P,) made.
 
-    Parameters
-    ----------
-    edges : {"bisector", "intersection"}
-        How panels are cut.
-    face_ids : (P,) int array
-        Faces whose panels are made; edges of others do not count.
-
-    Returns
-    -------
-    dict of str to float
-        ``max`` and ``mean`` in model units, ``relative_to_edge`` the maximum over the mean
-        edge length, ``edges`` the number of edges measured; zeros if there are none. Edges
-        whose arcs exist with a joint only are not measured.
+    ``max`` and ``mean`` in model units,
+    ``relative_to_edge`` the maximum over the mean edge length, ``edges`` the number of edges
+    measured; zeros if there are none. Edges of other faces, and those whose arcs exist with a
+    joint only, are not measured.
     """
     is_made = np.zeros(sphere_mesh.mesh.n_faces, bool)
     is_made[face_ids] = True
@@ -311,13 +283,7 @@ def cut_panels(
 
 
 def thickness_report(panels: Panels) -> dict[str, float]:
-    """Summary of the thicknesses of panels.
-
-    Returns
-    -------
-    dict of str to float
-        ``min``, ``mean`` and ``max`` in model units; zeros without panels.
-    """
+    """``min``, ``mean`` and ``max`` of the thicknesses, in model units; 0 without panels."""
     found = panels.thicknesses if panels.n_panels else np.zeros(1)
     return {"min": float(found.min()), "mean": float(found.mean()), "max": float(found.max())}
 

@@ -17,13 +17,7 @@ from ..spheres.arcs import (
 from ..spheres.incidence import normals
 from ..spheres.rows import center_radius, offset
 from .mould_blanks import PanelCaps, panel_caps
-from .panels import (
-    Panels,
-    corner_points,
-    opposite_corners,
-    panel_arcs,
-    panel_areas,
-)
+from .panels import Panels, corner_points, opposite_corners, panel_arcs, panel_areas
 
 
 @dataclass(frozen=True)
@@ -106,13 +100,7 @@ def panel_radii(panels: Panels) -> PanelRadii:
 
 
 def panel_bulges(panels: Panels) -> list[str]:
-    """To which side panels bulge, seen along the face normals.
-
-    Returns
-    -------
-    list of str
-        ``out`` for domes, ``in`` for dishes, ``flat`` for planes.
-    """
+    """To which side panels bulge, along the face normals: ``out``, ``in`` or ``flat``."""
     words = {-1.0: "out", 0.0: "flat", 1.0: "in"}
     signs: list[float] = np.sign(panels.design_spheres[:, 0]).tolist()
     return [words[sign] for sign in signs]
@@ -142,13 +130,10 @@ _LAYERS, _LAYER_WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
 def panel_volumes(panels: Panels) -> FloatArray:
-    """Volumes between the outer and inner faces.
+    """Volumes (P,) between the outer and inner faces, in cubed model units.
 
-    Returns
-    -------
-    (P,) float array
-        Volumes, in cubed model units: the areas of the parallel layers between the two faces,
-        integrated over the thickness with 16 Gauss points.
+    The areas of the parallel layers between the two faces, integrated over the thickness with
+    16 Gauss points.
     """
     total = np.zeros(panels.n_panels)
     for node, weight in zip(_LAYERS, _LAYER_WEIGHTS, strict=True):

@@ -73,12 +73,7 @@ class MouldBlanks:
 
 
 def panel_caps(panels: Panels) -> PanelCaps:
-    """Smallest cap of each panel's mould over which both of its faces lie.
-
-    Returns
-    -------
-    PanelCaps
-        The caps, in the coordinates local to each panel.
+    """Smallest cap of each panel's mould over which both of its faces lie; local to it.
 
     Raises
     ------
@@ -119,10 +114,7 @@ def panel_caps(panels: Panels) -> PanelCaps:
 
 
 def mould_blanks(
-    panels: Panels,
-    same: CongruentPanels,
-    size_step: float = 0.0,
-    caps: PanelCaps | None = None,
+    panels: Panels, same: CongruentPanels, size_step: float = 0.0, caps: PanelCaps | None = None
 ) -> MouldBlanks:
     """How many blanks of which size every mould must give.
 

@@ -41,18 +41,9 @@ class MouldCaps:
 
 
 def mould_caps(panels: Panels) -> MouldCaps:
-    """The caps of moulds.
+    """The caps of moulds, in the order of their labels.
 
-    Parameters
-    ----------
-    panels : Panels
-        Panels, with and without moulds.
-
-    Returns
-    -------
-    MouldCaps
-        Moulds in the order of their labels. A mould serves panels that bulge out and in; these
-        lie on it upside down.
+    A mould serves panels that bulge out and in; these lie on it upside down.
     """
     found = panel_caps(panels)
     members = np.flatnonzero(panels.labels >= 0)

@@ -82,13 +82,7 @@ class Panels:
 
     @property
     def element_ids(self) -> IntArray:
-        """Face of each panel.
-
-        Returns
-        -------
-        (P,) int array
-            Those of `face_ids`.
-        """
+        """Face of each panel, (P,)."""
         return self.face_ids
 
     @property
@@ -98,35 +92,17 @@ class Panels:
 
     @property
     def degrees(self) -> IntArray:
-        """Number of corners of each panel, (P,).
-
-        Returns
-        -------
-        (P,) int array
-            Number of corners of each panel, (P,).
-        """
+        """Number of corners of each panel, (P,)."""
         return np.diff(self.offsets)
 
     @property
     def corner_panels(self) -> IntArray:
-        """Panel of each corner, (H,).
-
-        Returns
-        -------
-        (H,) int array
-            Panel of each corner, (H,).
-        """
+        """Panel of each corner, (H,)."""
         return np.repeat(np.arange(self.n_panels), self.degrees)
 
     @property
     def next_corners(self) -> IntArray:
-        """Following corner in the same panel, (H,).
-
-        Returns
-        -------
-        (H,) int array
-            Following corner in the same panel, (H,).
-        """
+        """Following corner in the same panel, (H,)."""
         return _following(self.offsets)
 
 
@@ -143,25 +119,11 @@ def corner_points(
     offsets: IntArray,
     references: FloatArray,
 ) -> tuple[FloatArray, BoolArray]:
-    """Points in which spheres meet two consecutive cutting planes, nearest to references.
+    """Points (H, 3) where spheres meet two consecutive cutting planes, nearest to references.
 
-    Parameters
-    ----------
-    rows : (H, 5) float array
-        Unit row of the panel of each corner, local.
-    plane_normals, plane_offsets : (H, 3), (H,) float array
-        Cutting planes of the edges that leave the corners.
-    offsets : (P + 1,) int array
-        First corner of each panel.
-    references : (H, 3) float array
-        Points near the corners.
-
-    Returns
-    -------
-    points : (H, 3) float array
-        Corners; the reference where there is none.
-    exists : (H,) bool array
-        Whether the line of the planes meets the sphere.
+    Of each corner the local unit row (H, 5) of its panel, and the cutting plane of the edge
+    that leaves it; the first corner of each panel (P + 1,). The reference where there is none;
+    also whether the line of the planes meets the sphere.
 
     Notes
     -----
@@ -191,13 +153,10 @@ def corner_points(
 
 
 def opposite_corners(panels: Panels) -> IntArray:
-    """The other panel's side of each edge.
+    """The other panel's side of each edge, (H,).
 
-    Returns
-    -------
-    (H,) int array
-        Corner from which the neighbour's edge leaves; -1 on the boundary and where the panel
-        beyond is not among these.
+    The corner from which the neighbour's edge leaves; -1 on the boundary and where the panel
+    beyond is not among these.
     """
     result = np.full(len(panels.edge_ids), -1)
     order = np.argsort(panels.edge_ids, kind="stable")
@@ -209,30 +168,16 @@ def opposite_corners(panels: Panels) -> IntArray:
 
 
 def neighbor_ids(panels: Panels) -> list[str | None]:
-    """Panel beyond each edge, by name.
+    """Name of the panel beyond each of H edges.
 
-    Returns
-    -------
-    list of str or None
-        H names; None on the boundary and where the panel beyond is not among these.
+    None on the boundary and where the panel beyond is not among these.
     """
     names = dict(zip(panels.face_ids.tolist(), panels.ids, strict=True))
     return [names.get(face) for face in panels.neighbors.tolist()]
 
 
 def scale_panels(panels: Panels, factor: float) -> Panels:
-    """Panels in another unit of length.
-
-    Parameters
-    ----------
-    factor : float
-        Positive number of new units in an old one.
-
-    Returns
-    -------
-    Panels
-        The same panels; every length is multiplied by the factor.
-    """
+    """Panels in another unit of length: every length is multiplied by the factor."""
     return replace(
         panels,
         origins=panels.origins * factor,
@@ -249,18 +194,7 @@ def scale_panels(panels: Panels, factor: float) -> Panels:
 
 
 def move_origins(panels: Panels, origins: FloatArray) -> Panels:
-    """The same panels in coordinates local to other points.
-
-    Parameters
-    ----------
-    origins : (P, 3) float array
-        New origins, in model coordinates, near the old ones.
-
-    Returns
-    -------
-    Panels
-        Panels at the same place.
-    """
+    """The same panels in coordinates local to other points (P, 3), near the old origins."""
     shifts = origins - panels.origins
     corner_shifts = shifts[panels.corner_panels]
     return replace(
@@ -276,30 +210,14 @@ def move_origins(panels: Panels, origins: FloatArray) -> Panels:
 
 
 def panel_arcs(panels: Panels, face: Literal["outer", "inner"] = "outer") -> Arcs:
-    """Edges of the outer or inner faces, in local coordinates.
-
-    Parameters
-    ----------
-    face : {"outer", "inner"}
-
-    Returns
-    -------
-    Arcs
-        H arcs, arc h from corner h to the next.
-    """
+    """Edges of the outer or inner faces: H local arcs, arc h from corner h to the next."""
     if face == "outer":
         return _face_arcs(panels, panels.spheres, panels.corners)
     return _face_arcs(panels, panels.inner_spheres, panels.inner_corners)
 
 
 def boundaries(panels: Panels) -> list[tuple[FloatArray, Arcs]]:
-    """Faces of panels and their edges: outer ones, and inner ones if there is a thickness.
-
-    Returns
-    -------
-    list of ((P, 5) float array, Arcs)
-        Spheres, and H arcs on them.
-    """
+    """Faces of panels (P, 5) and their H edges: outer, and inner if there is a thickness."""
     outer = panels.spheres, panel_arcs(panels)
     if panels.thickness == 0:
         return [outer]
@@ -312,11 +230,5 @@ def _face_arcs(panels: Panels, rows: FloatArray, corners: FloatArray) -> Arcs:
 
 
 def panel_areas(panels: Panels) -> FloatArray:
-    """Areas of the outer faces, in closed form.
-
-    Returns
-    -------
-    (P,) float array
-        Areas, in squared model units.
-    """
+    """Areas of the outer faces, (P,), in closed form, in squared model units."""
     return patch_areas(panels.spheres, panel_arcs(panels), panels.corner_panels)

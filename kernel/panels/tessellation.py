@@ -48,12 +48,9 @@ class PanelTriangles:
 
 
 def surface_rows(panels: Panels) -> FloatArray:
-    """All surfaces that bound panels, oriented outwards.
+    """All surfaces that bound panels, oriented outwards: unit rows (2P + H, 5), local.
 
-    Returns
-    -------
-    (2P + H, 5) float array
-        Unit rows local to the panels: the outer faces, the inner faces, the side walls.
+    The outer faces, the inner faces, the side walls.
     """
     walls = np.zeros((len(panels.corners), 5))
     walls[:, 1:4] = -panels.plane_normals
@@ -302,18 +299,9 @@ def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def cut_ears(outline: FloatArray) -> IntArray:
-    """Triangulate a simple polygon by its ears.
+    """Triangulate a simple polygon (n, 2), counter-clockwise, by its ears: (n - 2, 3).
 
-    Parameters
-    ----------
-    outline : (n, 2) float array
-        Corners, counter-clockwise.
-
-    Returns
-    -------
-    (n - 2, 3) int array
-        Triangles, counter-clockwise. A polygon that crosses itself, and has no ear left, is
-        closed by triangles that may overlap.
+    A polygon that crosses itself, and has no ear left, is closed by triangles that may overlap.
 
     Examples
     --------

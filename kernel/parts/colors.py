@@ -23,19 +23,7 @@ _CHROMA: Final = 0.11
 
 
 def mould_name(label: int, count: int) -> str:
-    """Name of a mould, for layers and schedules.
-
-    Parameters
-    ----------
-    label : int
-        Mould, from 0; -1 for a panel without mould.
-    count : int
-        Number of moulds.
-
-    Returns
-    -------
-    str
-        ``Mould 01`` for the first; ``Panels`` for panels without mould.
+    """Name of a mould, for layers and schedules; ``Panels`` for panels without mould (-1).
 
     Examples
     --------
@@ -50,38 +38,13 @@ def mould_name(label: int, count: int) -> str:
 
 
 def mould_number(label: int, count: int) -> str:
-    """Number of a mould, as its name has it.
-
-    Parameters
-    ----------
-    label : int
-        Mould, from 0; -1 for a panel without mould.
-    count : int
-        Number of moulds.
-
-    Returns
-    -------
-    str
-        ``01`` for the first; ``-`` for panels without mould.
-    """
+    """Number of a mould, as its name has it: ``01`` for the first; ``-`` for -1, no mould."""
     width = max(2, len(str(count)))
     return f"{label + 1:0{width}d}" if label >= 0 else "-"
 
 
 def mould_color(label: int, count: int) -> Color:
-    """Colour of a mould.
-
-    Parameters
-    ----------
-    label : int
-        Mould, from 0 (the sharpest); -1 for panels without one.
-    count : int
-        Number of moulds.
-
-    Returns
-    -------
-    tuple of int
-        Red, green and blue, 0 to 255 (sRGB).
+    """Colour of a mould, 0 the sharpest of `count` and -1 none: sRGB from 0 to 255.
 
     Notes
     -----

@@ -41,17 +41,7 @@ def rejected_report(rejected: Iterable[RejectedPart]) -> list[dict[str, str]]:
 
 
 def findings_report(findings: Sequence[Finding]) -> dict[str, Any]:
-    """Findings as plain values.
-
-    Parameters
-    ----------
-    findings : sequence of Finding
-
-    Returns
-    -------
-    dict
-        ``counts`` by code, ``errors`` and ``notes``: lists of code, id, message and size.
-    """
+    """``counts`` by code, ``errors`` and ``notes``: lists of code, id, message and size."""
     counts = Counter(finding.code for finding in findings)
     return {
         "counts": dict(sorted(counts.items())),

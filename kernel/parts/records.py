@@ -62,17 +62,9 @@ class RejectedPart:
 
 
 def part_ids(letter: str, count: int) -> tuple[str, ...]:
-    """Stable names of the parts of a mesh, one per face or edge.
+    """Stable names of parts: ``P`` for panels, ``B`` for beams, and a number.
 
-    Parameters
-    ----------
-    letter : str
-        ``P`` for panels, ``B`` for beams.
-
-    Returns
-    -------
-    tuple of str
-        The letter and a number, with as many digits as the last needs, at least four.
+    The number has as many digits as the last needs, at least four.
 
     Examples
     --------
@@ -84,13 +76,7 @@ def part_ids(letter: str, count: int) -> tuple[str, ...]:
 
 
 def select_parts(parts: PartsT, keep: BoolArray) -> PartsT:
-    """Some of the parts, in the same order.
-
-    Parameters
-    ----------
-    keep : (n,) bool array
-        Which ones.
-    """
+    """Some of the parts, in the same order."""
     return parts if keep.all() else cast("PartsT", _select(parts, keep))
 
 
@@ -117,21 +103,9 @@ def _select(value: object, keep: BoolArray) -> object:
 def reject_parts(
     parts: PartsT, reasons: Mapping[int, str], code: str
 ) -> tuple[PartsT, tuple[RejectedPart, ...]]:
-    """Take out the parts that cannot be made.
+    """Take out the parts that cannot be made, by row: the others, and those taken out.
 
-    Parameters
-    ----------
-    reasons : mapping of int to str
-        Why, by row.
-    code : str
-        Number of the finding.
-
-    Returns
-    -------
-    parts : PartsT
-        The others.
-    rejected : tuple of RejectedPart
-        Those taken out, in order.
+    The code is the number of the finding.
     """
     rejected = tuple(
         RejectedPart(parts.ids[row], int(parts.element_ids[row]), reason, code)
@@ -143,13 +117,7 @@ def reject_parts(
 
 
 def finite_parts(parts: Parts) -> BoolArray:
-    """Which parts have finite numbers only, but for fields of `MAY_BE_NAN`.
-
-    Returns
-    -------
-    (n,) bool array
-        Whether all numbers of the part, its corners included, are finite.
-    """
+    """Which parts, their corners included, have finite numbers only, but for `MAY_BE_NAN`."""
     result = np.ones(len(parts.ids), bool)
     for field in fields(parts):
         value: object = vars(parts)[field.name]

@@ -9,6 +9,7 @@ from ..arrays import FloatArray, IntArray
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_centroids, shortest_edge
 from ..meshes.vertex_fans import vertex_fans
+from ..solvers.weighted_graphs import piece_labels
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.minkowski import minkowski
 from ..spheres.rows import recenter, rescale
@@ -190,15 +191,11 @@ def _irregular_count(mesh: Mesh) -> int:
 
 def _boundary_count(mesh: Mesh) -> int:
     """Number of closed lines that the boundary consists of."""
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import connected_components
-
     outer = np.flatnonzero(mesh.topology.twins < 0)
     ends = mesh.corners[outer], mesh.corners[mesh.topology.next_corners[outer]]
-    shape = (mesh.n_vertices, mesh.n_vertices)
-    graph = csr_array((np.ones(len(outer)), ends), shape=shape)
     # Every vertex elsewhere is a component of its own.
-    return connected_components(graph, directed=False)[0] - (mesh.n_vertices - len(outer))
+    components = int(piece_labels(*ends, mesh.n_vertices).max()) + 1
+    return components - (mesh.n_vertices - len(outer))
 
 
 def _too_large(edge_length: float) -> InputError:

@@ -176,16 +176,7 @@ def remeshing_report(
     planarized: PlanarizationReport | None,
     distance: dict[str, float],
 ) -> RemeshingReport:
-    """The report of a net.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        Its mesh in the end, with the same faces.
-    edge_length : float
-        Length of the edges asked for.
-    planarized : PlanarizationReport, optional
-    """
+    """The report of a net whose mesh in the end has the same faces."""
     degrees: Counter[int] = Counter(mesh.degrees.tolist())
     return RemeshingReport(
         faces={
@@ -217,13 +208,7 @@ def remeshing_report(
 
 
 def planarization_report(start: SphereMesh, result: Planarization) -> PlanarizationReport:
-    """The report of a planarisation.
-
-    Parameters
-    ----------
-    result : Planarization
-        On the same faces.
-    """
+    """The report of a planarisation: both meshes have the same faces."""
     after = result.sphere_mesh
     nodes = measure_nodes(after)
     values = [_quality(start, measure_nodes(start)), _quality(after, nodes)]
@@ -286,17 +271,9 @@ def _spread(angles: FloatArray) -> dict[str, float | None]:
 
 
 def angle_report(angles: FloatArray) -> dict[str, float | None]:
-    """Median, 95th percentile and largest of the angles that exist.
+    """Median, 95th percentile and largest of the angles that exist: from radians to degrees.
 
-    Parameters
-    ----------
-    angles : (n,) float array
-        Radians; NaN where there is none.
-
-    Returns
-    -------
-    dict
-        ``median``, ``p95`` and ``max`` in degrees.
+    Keys ``median``, ``p95`` and ``max``. Angles (n,) that do not exist are NaN.
     """
     known = np.degrees(angles[np.isfinite(angles)])
     if len(known) == 0:
@@ -306,34 +283,13 @@ def angle_report(angles: FloatArray) -> dict[str, float | None]:
 
 
 def sphere_radii(curvatures: FloatArray) -> FloatArray:
-    """Radii of spheres.
-
-    Parameters
-    ----------
-    curvatures : (n,) float array
-
-    Returns
-    -------
-    (n,) float array
-        Positive; infinite for planes.
-    """
+    """Radii of spheres (n,) of given curvatures: positive; infinite for planes."""
     with np.errstate(divide="ignore"):
         return 1 / np.abs(curvatures)
 
 
 def radius_report(radii: FloatArray) -> dict[str, float | None]:
-    """Least and median radius.
-
-    Parameters
-    ----------
-    radii : (n,) float array
-        Radii, infinite for planes.
-
-    Returns
-    -------
-    dict
-        ``min`` and ``median``; None where infinite.
-    """
+    """Least and median radius, ``min`` and ``median``; None where infinite, as for planes."""
     ordered = np.sort(radii)
     return {"min": finite(ordered[0]), "median": finite(ordered[len(ordered) // 2])}
 

@@ -7,5 +7,5 @@ conjugate_gradients  Truncated conjugate gradients for the steps of a descent.
 products             Multiplication by ``JᵀJ`` without forming it.
 factorization        Direct solution of sparse systems.
 symmetric            Symmetric systems with one unknown per face and one entry per edge.
-weighted_graphs      Weighted graphs for the spanning trees and shortest paths of scipy.
+weighted_graphs      Pieces of graphs; weighted graphs for the trees and paths of scipy.
 """

@@ -49,29 +49,12 @@ class Layout:
 
     @property
     def starts(self) -> IntArray:
-        """First unknown of each group, and their number.
-
-        Returns
-        -------
-        (groups + 1,) int array
-            Ascending.
-        """
+        """First unknown of each group, ascending, and their number: (groups + 1,)."""
         sizes = np.multiply(self.counts, self.widths)
         return np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
 
     def split(self, vector: FloatArray) -> tuple[FloatArray, ...]:
-        """Views of a flat vector, one table per group.
-
-        Parameters
-        ----------
-        vector : (n,) float array
-            One number per unknown.
-
-        Returns
-        -------
-        tuple of (count, width) float arrays
-            In the order of the groups.
-        """
+        """Views (count, width) of a flat vector, a table per group, in their order."""
         starts = self.starts
         return tuple(
             vector[starts[i] : starts[i + 1]].reshape(count, width)
@@ -79,13 +62,7 @@ class Layout:
         )
 
     def columns(self, block: Block) -> IntArray:
-        """Columns that a block fills.
-
-        Returns
-        -------
-        (m, width) int array
-            Indices into the flat vector.
-        """
+        """Columns (m, width) of the flat vector that a block fills."""
         width = self.widths[block.group]
         first = self.starts[block.group] + width * block.ids
         return first[:, None] + np.arange(width)
@@ -112,16 +89,9 @@ class JacobianPattern:
 
 
 def jacobian_pattern(layout: Layout, terms: Sequence[Sequence[Block]]) -> JacobianPattern:
-    """Pattern of the Jacobian of several terms.
+    """Pattern of the Jacobian of several terms, built once.
 
-    Parameters
-    ----------
-    terms : sequence of sequences of Block
-
-    Returns
-    -------
-    JacobianPattern
-        Built once; blocks of empty groups are left out.
+    Blocks of empty groups are left out.
     """
     blocks = tuple(
         tuple(block for block in term if layout.counts[block.group]) for term in terms
@@ -137,17 +107,10 @@ def jacobian_pattern(layout: Layout, terms: Sequence[Sequence[Block]]) -> Jacobi
 def jacobian_matrix(
     pattern: JacobianPattern, entries: Sequence[Sequence[FloatArray]]
 ) -> SparseArray:
-    """The Jacobian as a sparse matrix.
+    """The Jacobian as a sparse matrix (m, n); entries that happen to be zero are kept.
 
-    Parameters
-    ----------
-    entries : sequence of sequences of (m, width) float arrays
-        Values of the blocks of each term, as in `JacobianPattern.blocks`.
-
-    Returns
-    -------
-    (m, n) csr_array
-        Entries that happen to be zero are kept.
+    The entries are the values (m, width) of the blocks of each term, as in
+    `JacobianPattern.blocks`.
     """
     from scipy.sparse import csr_array
 
@@ -166,17 +129,9 @@ def jacobian_matrix(
 def diagonal_blocks(
     pattern: JacobianPattern, entries: Sequence[Sequence[FloatArray]]
 ) -> tuple[FloatArray, ...]:
-    """Blocks on the diagonal of ``JᵀJ``.
+    """Blocks on the diagonal of ``JᵀJ``: (count, width, width), one table per group.
 
-    Parameters
-    ----------
-    entries : sequence of sequences of (m, width) float arrays
-        Values of the blocks of each term.
-
-    Returns
-    -------
-    tuple of (count, width, width) float arrays
-        One table per group.
+    The entries are the values (m, width) of the blocks of each term.
     """
     layout = pattern.layout
     results = tuple(
@@ -196,17 +151,7 @@ def diagonal_blocks(
 
 
 def block_diagonal(blocks: FloatArray) -> SparseArray:
-    """The matrix with given blocks on its diagonal.
-
-    Parameters
-    ----------
-    blocks : (count, width, width) float array
-
-    Returns
-    -------
-    (count width, count width) bsr_array
-        All else is zero.
-    """
+    """The matrix with given blocks (count, width, width) on its diagonal; all else is zero."""
     from scipy.sparse import bsr_array
 
     count, width = blocks.shape[:2]

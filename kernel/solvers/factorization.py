@@ -17,34 +17,14 @@ Solver: TypeAlias = Callable[[FloatArray], FloatArray]
 
 
 def factorize(matrix: SparseArray) -> Solver:
-    """Factorise a square matrix.
-
-    Parameters
-    ----------
-    matrix : (n, n) sparse array
-        An invertible matrix.
-
-    Returns
-    -------
-    callable
-        Solves with this matrix.
-    """
+    """Factorise an invertible matrix: a function that solves with it."""
     from scipy.sparse.linalg import splu
 
     return _solver(splu(matrix.tocsc()))
 
 
 def factorize_symmetric(matrix: SparseArray) -> Solver:
-    """Factorise a symmetric positive definite matrix.
-
-    Parameters
-    ----------
-    matrix : (n, n) sparse array
-
-    Returns
-    -------
-    callable
-        Solves with this matrix.
+    """Factorise a symmetric positive definite matrix: a function that solves with it.
 
     Notes
     -----
@@ -73,19 +53,7 @@ def _solver(factors: SparseArray) -> Solver:
 def solve_definite(matrix: SparseArray, shift: float, right: FloatArray) -> FloatArray:
     """Solve ``(H + shift I) x = b`` by factorisation.
 
-    Parameters
-    ----------
-    matrix : (n, n) sparse array
-        Symmetric, positive semidefinite H.
-    shift : float
-        Positive.
-    right : (n,) float array
-        Vector b.
-
-    Returns
-    -------
-    (n,) float array
-        The solution.
+    H is symmetric, positive semidefinite, the shift positive.
 
     Notes
     -----
@@ -101,20 +69,7 @@ def solve_definite(matrix: SparseArray, shift: float, right: FloatArray) -> Floa
 
 
 def solve_by_cholmod(matrix: SparseArray, right: FloatArray) -> FloatArray:
-    """Solve ``H x = b`` by CHOLMOD; needs scikit-sparse 0.4.
-
-    Parameters
-    ----------
-    matrix : (n, n) csc_array
-        Symmetric, positive definite H.
-    right : (n,) float array
-        Vector b.
-
-    Returns
-    -------
-    (n,) float array
-        The solution.
-    """
+    """Solve ``H x = b`` by CHOLMOD, H positive definite; needs scikit-sparse 0.4."""
     from scipy.sparse import csc_matrix
     from sksparse.cholmod import cholesky  # pyright: ignore
 

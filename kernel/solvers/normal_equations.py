@@ -12,13 +12,7 @@ import numpy as np
 
 from ..arrays import FloatArray, dot
 from ..tolerances import STEP_MODEL
-from .blocks import (
-    JacobianPattern,
-    Layout,
-    block_diagonal,
-    diagonal_blocks,
-    jacobian_matrix,
-)
+from .blocks import JacobianPattern, Layout, block_diagonal, diagonal_blocks, jacobian_matrix
 from .conjugate_gradients import truncated_step
 from .factorization import SparseArray, solve_definite
 from .levenberg_marquardt import DampedStep
@@ -56,24 +50,9 @@ class Linearization:
 
 
 def linearization(
-    pattern: JacobianPattern,
-    residuals: FloatArray,
-    entries: Sequence[Sequence[FloatArray]],
+    pattern: JacobianPattern, residuals: FloatArray, entries: Sequence[Sequence[FloatArray]]
 ) -> Linearization:
-    """Collect what a step needs.
-
-    Parameters
-    ----------
-    residuals : (m,) float array
-        Residuals.
-    entries : sequence of sequences of (m, width) float arrays
-        Derivatives, block by block.
-
-    Returns
-    -------
-    Linearization
-        Ready for `damped_step`.
-    """
+    """Collect what a step needs: residuals (m,), and derivatives (m, width) block by block."""
     return Linearization(
         pattern.layout,
         jacobian_matrix(pattern, entries),
@@ -87,18 +66,9 @@ def damped_step(
 ) -> DampedStep:
     """Step that minimises ``|r + J x|² + μ σ |x|²``.
 
-    Parameters
-    ----------
-    damping : float
-        μ; the scale σ is the mean of the diagonal of ``JᵀJ``.
-    share : float
-        Gain of the model that a step may leave out, as in `truncated_step`.
-
-    Returns
-    -------
-    DampedStep
-        Step and the energy of the linear model after it. Unknowns on which no residual depends
-        do not move.
+    The damping is μ; the scale σ is the mean of the diagonal of ``JᵀJ``; `share` is the gain of
+    the model that a step may leave out, as in `truncated_step`. Also the energy of the linear
+    model after the step. Unknowns on which no residual depends do not move.
     """
     jacobian, multiply = problem.jacobian, normal_product(problem.jacobian)
     traces = [float(np.trace(blocks, axis1=1, axis2=2).sum()) for blocks in problem.blocks]

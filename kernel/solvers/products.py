@@ -15,17 +15,9 @@ Product: TypeAlias = Callable[[FloatArray], FloatArray]
 
 
 def normal_product(matrix: SparseArray) -> Product:
-    """Multiplication by ``JᵀJ``.
+    """Multiplication by ``JᵀJ``: (n,) vector x to ``Jᵀ (J x)``.
 
-    Parameters
-    ----------
-    matrix : (m, n) csr_array
-
-    Returns
-    -------
-    callable
-        (n,) vector x to ``Jᵀ (J x)``. With numba installed, J is read once instead of twice;
-        the sums run in the same order.
+    With numba installed, J (csr) is read once instead of twice; the sums run in the same order.
     """
     if importlib.util.find_spec("numba") is None:
         return normal_product_by_scipy(matrix)
@@ -33,33 +25,13 @@ def normal_product(matrix: SparseArray) -> Product:
 
 
 def normal_product_by_scipy(matrix: SparseArray) -> Product:
-    """`normal_product` in two passes.
-
-    Parameters
-    ----------
-    matrix : (m, n) csr_array
-
-    Returns
-    -------
-    callable
-        (n,) vector x to ``Jᵀ (J x)``.
-    """
+    """`normal_product` in two passes."""
     transposed = matrix.T
     return lambda vector: transposed @ (matrix @ vector)
 
 
 def normal_product_by_numba(matrix: SparseArray) -> Product:
-    """`normal_product` row by row, compiled.
-
-    Parameters
-    ----------
-    matrix : (m, n) csr_array
-
-    Returns
-    -------
-    callable
-        (n,) vector x to ``Jᵀ (J x)``.
-    """
+    """`normal_product` row by row, compiled."""
     sweep = _sweep()
     # Unsigned indices spare numba the question whether they count from the end.
     columns, starts = matrix.indices.view(np.uint32), matrix.indptr.astype(np.uint64)

@@ -31,19 +31,9 @@ class SymmetricPattern:
 
 
 def symmetric_pattern(pairs: IntArray, size: int) -> SymmetricPattern:
-    """Pattern of the matrices whose entries sit on the diagonal and on pairs.
+    """Pattern of the (n, n) matrices whose entries sit on the diagonal and on pairs (m, 2).
 
-    Parameters
-    ----------
-    pairs : (m, 2) int array
-        Pairs of different unknowns, in any order.
-    size : int
-        Number n of unknowns.
-
-    Returns
-    -------
-    SymmetricPattern
-        Built once, used by every solve.
+    The unknowns of a pair differ, in any order. Built once, used by every solve.
     """
     a, b = pairs.T
     rows = np.concatenate([np.arange(size), a, b])
@@ -58,20 +48,9 @@ def solve_symmetric(
 ) -> FloatArray:
     """Solve by conjugate gradients with the diagonal as preconditioner.
 
-    Parameters
-    ----------
-    diagonal : (n,) float array
-        Diagonal, no entry zero.
-    mixed : (m,) float array
-        Entries of the pairs.
-    right : (n,) float array
-        Right side.
-
-    Returns
-    -------
-    (n,) float array
-        Solution to a relative residual of `LINEAR_SOLVE`. For an indefinite matrix it is some
-        vector: the caller accepts a step only if its energy falls.
+    Of the matrix the diagonal (n,), no entry zero, and the entries (m,) of the pairs. The
+    relative residual is `LINEAR_SOLVE`. For an indefinite matrix the result is some vector: the
+    caller accepts a step only if its energy falls.
     """
     from scipy.sparse import csr_array
     from scipy.sparse.linalg import LinearOperator, cg

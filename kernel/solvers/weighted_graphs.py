@@ -1,4 +1,4 @@
-"""Weighted graphs as sparse matrices that every version of scipy walks."""
+"""Pieces of graphs, and weighted graphs that every version of scipy walks."""
 
 import numpy as np
 
@@ -9,25 +9,23 @@ from .factorization import SparseArray
 def weighted_graph(
     weights: FloatArray, tails: IntArray, heads: IntArray, count: int
 ) -> SparseArray:
-    """The graph with these edges; weights of equal edges add up.
+    """The graph with these edges (E,); weights, not 0, of equal edges add up.
 
-    Parameters
-    ----------
-    weights : (E,) float array
-        Weight of each edge, not 0.
-    tails, heads : (E,) int array
-        The vertices that it joins.
-    count : int
-        Number of vertices.
-
-    Returns
-    -------
-    (count, count) csr_array
-        With indices of 32 bits: spanning trees and shortest paths of scipy before 1.17.1 take
-        no others.
+    Its indices have 32 bits: spanning trees and shortest paths of scipy before 1.17.1 take no
+    others.
     """
     from scipy.sparse import csr_array
 
     ends = tails.astype(np.int32), heads.astype(np.int32)
     graph: SparseArray = csr_array((weights, ends), shape=(count, count))
     return graph
+
+
+def piece_labels(tails: IntArray, heads: IntArray, count: int) -> IntArray:
+    """Connected piece of each of `count` vertices, numbered by their first vertices."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    graph = coo_array((np.ones(len(tails)), (tails, heads)), shape=(count, count))
+    labels: IntArray = np.asarray(connected_components(graph, directed=False)[1], np.int64)
+    return labels

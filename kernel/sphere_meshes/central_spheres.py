@@ -12,13 +12,8 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray, dot, sum_by, unit
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_centroids, local_corners, mean_edge_length
-from ..solvers.weighted_graphs import weighted_graph
-from ..spheres.circles import (
-    Circles,
-    circle_pencils,
-    face_circles,
-    pencil_spheres,
-)
+from ..solvers.weighted_graphs import piece_labels, weighted_graph
+from ..spheres.circles import Circles, circle_pencils, face_circles, pencil_spheres
 from ..spheres.minkowski import minkowski
 from ..spheres.rows import recenter
 from ..tolerances import CIRCULAR
@@ -28,19 +23,11 @@ NAMED_FACES = 4
 
 
 def edge_spheres(mesh: Mesh) -> FloatArray:
-    """Sphere of each interior edge, through the circumcircles of its two faces.
+    """Sphere of each interior edge of a circular mesh, through the circles of its two faces.
 
-    Parameters
-    ----------
-    mesh : Mesh
-        A circular mesh, of any face degrees.
-
-    Returns
-    -------
-    (E, 5) float array
-        Unit rows, planes included, in the coordinates local to the edge: seen from the middle
-        of its two vertices, with the axes of the model. N agrees with the normal of the first
-        face. Where both faces have the same circle, its plane.
+    Unit rows (E, 5), planes included, in the coordinates local to the edge: seen from the
+    middle of its two vertices, with the axes of the model. N agrees with the normal of the
+    first face. Where both faces have the same circle, its plane.
 
     Raises
     ------
@@ -68,19 +55,10 @@ def edge_spheres(mesh: Mesh) -> FloatArray:
 def bisectors(s: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Both spheres that bisect the angles of two spheres.
 
-    Parameters
-    ----------
-    s, t : (..., 5) float array
-        Unit rows of spheres or planes that meet, seen from near their circle.
-
-    Returns
-    -------
-    acute : (..., 5) float array
-        Unit rows ``ε s + t`` of the bisectors of the smaller angle, with ε the sign of
-        ``<<s, t>>``. Orthogonal rows count as ε = +1: then both angles are the smaller one.
-    obtuse : (..., 5) float array
-        Unit rows ``ε s - t`` of the bisectors of the larger angle, orthogonal to the first.
-        NaN where the spheres are the same or do not meet: then nothing is bisected.
+    Of unit rows (..., 5) that meet, seen from near their circle: ``ε s + t`` for the smaller
+    angle, with ε the sign of ``<<s, t>>``, orthogonal rows counting as ε = +1, since then both
+    angles are the smaller one; and ``ε s - t`` for the larger angle, orthogonal to the first.
+    NaN where the spheres are the same or do not meet: then nothing is bisected.
 
     Notes
     -----
@@ -151,19 +129,11 @@ def principal_spheres(mesh: Mesh) -> tuple[SphereMesh, SphereMesh]:
 def central_spheres(mesh: Mesh) -> SphereMesh:
     """Discrete central spheres: the Möbius-invariant mean of the curvatures at each face.
 
-    Parameters
-    ----------
-    mesh : Mesh
-        A circular mesh, of any face degrees.
-
-    Returns
-    -------
-    SphereMesh
-        On quads the sphere that bisects the smaller angle of the two principal spheres (see
-        `principal_spheres`, also for the boundary). On other faces the sphere S through the
-        circle with the largest sum of ``<<S, s>>²`` over the spheres s of the edges. Exact on
-        meshes inscribed in a sphere; commutes with Möbius maps. Only a face without a
-        neighbour on another circle gets its plane, which does not.
+    On quads of a circular mesh the sphere that bisects the smaller angle of the two principal
+    spheres (see `principal_spheres`, also for the boundary). On other faces the sphere S
+    through the circle with the largest sum of ``<<S, s>>²`` over the spheres s of the edges.
+    Exact on meshes inscribed in a sphere; commutes with Möbius maps. Only a face without a
+    neighbour on another circle gets its plane, which does not.
 
     Raises
     ------
@@ -269,8 +239,7 @@ def _direction_labels(mesh: Mesh) -> IntArray:
     Each quad has two nodes, one per direction; along a spanning tree of the quads they fall
     apart into two sets per piece.
     """
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import connected_components, minimum_spanning_tree
+    from scipy.sparse.csgraph import minimum_spanning_tree
 
     topology, count = mesh.topology, mesh.n_faces
     pairs, edges = np.unique(np.sort(topology.edge_faces, axis=1), axis=0, return_index=True)
@@ -282,8 +251,9 @@ def _direction_labels(mesh: Mesh) -> IntArray:
     left, right = topology.edge_faces[tree].T
     starts = np.concatenate([left, left + count])
     ends = np.concatenate([right + swaps * count, right + (1 - swaps) * count])
-    cover = csr_array((np.ones(len(starts)), (starts, ends)), shape=(2 * count, 2 * count))
-    sets = np.asarray(connected_components(cover, directed=False)[1])
-    pieces = connected_components(graph, directed=False)[1]
+    sets, pieces = (
+        piece_labels(starts, ends, 2 * count),
+        piece_labels(pairs[:, 0], pairs[:, 1], count),
+    )
     _, roots, piece = np.unique(pieces, return_index=True, return_inverse=True)
     return (sets[:count] != sets[roots[piece]]).astype(np.int64)

@@ -15,12 +15,7 @@ from .sphere_mesh import SphereMesh
 
 
 def face_planes(mesh: Mesh) -> SphereMesh:
-    """The plane of every face.
-
-    Returns
-    -------
-    SphereMesh
-        Rows with A = 0: the plane through the centroid across the vector area.
+    """The plane of every face: through the centroid across the vector area, A = 0.
 
     Raises
     ------
@@ -37,20 +32,12 @@ def face_planes(mesh: Mesh) -> SphereMesh:
 
 
 def fit_spheres(mesh: Mesh, ring: int = 1) -> SphereMesh:
-    """Sphere of every face that fits its vertices and those of the faces around it.
+    """Sphere of every face that fits its vertices and those of `ring` rings of faces around it.
 
-    Parameters
-    ----------
-    ring : int
-        How many rings of faces, joined along edges, take part around each face.
-
-    Returns
-    -------
-    SphereMesh
-        On circular faces the best sphere through the circle, else the best of all spheres, by
-        least squares of the sphere equation under Pratt's norm ``|B|² - 4 A C = 1``. Exact on
-        vertices of one sphere or plane, and covariant under similarities. A circular face
-        without vertices around it gets its plane.
+    Rings are joined along edges. On circular faces the best sphere through the circle, else the
+    best of all spheres, by least squares of the sphere equation under Pratt's norm
+    ``|B|² - 4 A C = 1``. Exact on vertices of one sphere or plane, and covariant under
+    similarities. A circular face without vertices around it gets its plane.
 
     Raises
     ------

@@ -29,15 +29,8 @@ from .sphere_mesh import SphereMesh
 def map_mesh(mesh: Mesh, transform: ArrayLike) -> Mesh:
     """Image of a mesh: of its vertices, with straight sides between them.
 
-    Parameters
-    ----------
-    transform : (5, 5) array_like of float
-
-    Returns
-    -------
-    Mesh
-        Vertices and faces keep their ids. Where right and left change places each face starts
-        at the same vertex and runs the other way, so its normal stays on the same side.
+    Vertices and faces keep their ids. Where right and left change places each face starts at
+    the same vertex and runs the other way, so its normal stays on the same side.
 
     Raises
     ------
@@ -51,16 +44,8 @@ def map_mesh(mesh: Mesh, transform: ArrayLike) -> Mesh:
 def map_sphere_mesh(sphere_mesh: SphereMesh, transform: ArrayLike) -> SphereMesh:
     """Image of a sphere mesh: spheres, vertices and the angles between the spheres.
 
-    Parameters
-    ----------
-    transform : (5, 5) array_like of float
-
-    Returns
-    -------
-    SphereMesh
-        Vertices and faces keep their ids, N agrees with the normal of the face as before, and
-        neighbours meet at the same angles. Edges are numbered anew where faces run the other
-        way.
+    Vertices and faces keep their ids, N agrees with the normal of the face as before, and
+    neighbours meet at the same angles. Edges are numbered anew where faces run the other way.
 
     Raises
     ------

@@ -170,20 +170,8 @@ def change_model(
 def sphere_bundle(mesh: Mesh, center: ArrayLike, radius: float) -> SphereMesh:
     """Sphere mesh whose spheres all pass through one point: an inversion of planar faces.
 
-    Parameters
-    ----------
-    mesh : Mesh
-        Planar faces of any degree.
-    center : (3,) array_like of float
-        The point, not on a face.
-    radius : float
-        Radius of the sphere that stays in place.
-
-    Returns
-    -------
-    SphereMesh
-        Vertices and faces keep their ids; faces run the other way round, so that outside stays
-        outside.
+    The centre lies on no face; the sphere of the given radius about it stays in place. Vertices
+    and faces keep their ids; faces run the other way round, so that outside stays outside.
 
     Raises
     ------

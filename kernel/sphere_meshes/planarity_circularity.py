@@ -8,13 +8,9 @@ from ..spheres.circles import face_circles
 
 
 def planarity(mesh: Mesh) -> FloatArray:
-    """How far the corners of each face lie off its plane.
+    """How far (F,) the corners of each face lie off its plane, in model units.
 
-    Returns
-    -------
-    (F,) float array
-        Largest distance of a corner from the plane through the centroid across the vector
-        area, in model units; zero for triangles.
+    The plane passes through the centroid across the vector area; zero for triangles.
     """
     faces = mesh.topology.corner_faces
     heights = np.abs(dot(local_corners(mesh), face_normals(mesh)[faces]))
@@ -22,12 +18,9 @@ def planarity(mesh: Mesh) -> FloatArray:
 
 
 def circularity(mesh: Mesh) -> FloatArray:
-    """How far the corners of each face lie off its best-fit circle.
+    """How far (F,) the corners of each face lie off its best-fit circle, in model units.
 
-    Returns
-    -------
-    (F,) float array
-        Largest distance of a corner from the circle, in model units; zero for triangles.
+    Zero for triangles.
 
     Raises
     ------

@@ -14,18 +14,10 @@ from .sphere_mesh import SphereMesh
 def smoothed_spheres(mesh: Mesh) -> SphereMesh:
     """Spheres through the circles of the faces and an apex each, placed by smoothing.
 
-    Parameters
-    ----------
-    mesh : Mesh
-        A mesh of any face degrees; faces without a circumcircle take the best circle.
-
-    Returns
-    -------
-    SphereMesh
-        Spheres through circle and apex. Each apex is joined with the corners of its face;
-        the apexes minimise ``sum |L v|²``, with L the mean of the neighbours minus the vertex,
-        over the apexes and the interior vertices of the mesh, which stay fixed. Planes where
-        a mesh has no interior vertex.
+    Faces without a circumcircle take the best circle. Each apex is joined with the corners of
+    its face; the apexes minimise ``sum |L v|²``, with L the mean of the neighbours minus the
+    vertex, over the apexes and the interior vertices of the mesh, which stay fixed. Planes
+    where a mesh has no interior vertex.
 
     Raises
     ------

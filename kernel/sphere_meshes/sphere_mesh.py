@@ -10,6 +10,7 @@ from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_centroids, local_corners
 from ..spheres.incidence import evaluate, signed_distance
 from ..spheres.minkowski import angle, minkowski
+from ..spheres.row_checks import check_rows
 from ..spheres.rows import recenter
 from ..tolerances import EPSILON
 
@@ -52,7 +53,7 @@ class SphereMesh:
 
     def __init__(self, mesh: Mesh, spheres: ArrayLike) -> None:
         rows = np.array(spheres, np.float64)
-        _check_rows(rows, mesh.n_faces)
+        check_rows(rows, mesh.n_faces, "face")
         _fill(self, mesh, _localize(mesh, rows))
 
     @classmethod
@@ -75,7 +76,7 @@ class SphereMesh:
         InputError
             As the constructor.
         """
-        _check_rows(local_spheres, mesh.n_faces)
+        check_rows(local_spheres, mesh.n_faces, "face")
         result = cls.__new__(cls)
         _fill(result, mesh, local_spheres)
         return result
@@ -93,14 +94,6 @@ def _fill(target: SphereMesh, mesh: Mesh, local_spheres: FloatArray) -> None:
     object.__setattr__(target, "mesh", mesh)
     object.__setattr__(target, "spheres", read_only(spheres))
     object.__setattr__(target, "local_spheres", read_only(local_spheres))
-
-
-def _check_rows(rows: FloatArray, n_faces: int) -> None:
-    if rows.shape != (n_faces, 5):
-        raise InputError(f"spheres must have shape ({n_faces}, 5), not {rows.shape}")
-    bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
-    if len(bad):
-        raise InputError(f"the spheres of faces {name_ids(bad.tolist())} are not finite")
 
 
 def _localize(mesh: Mesh, rows: FloatArray) -> FloatArray:

@@ -47,15 +47,8 @@ class SupportType:
 def support_type(sphere_mesh: SphereMesh, tolerance: float = SUPPORT_MISS) -> SupportType:
     """Find the sphere, plane or point orthogonal to all spheres of a mesh.
 
-    Parameters
-    ----------
-    tolerance : float
-        Largest residual at which there is said to be one.
-
-    Returns
-    -------
-    SupportType
-        Kind, ω and residual; independent of units, place and numbering.
+    The tolerance is the largest residual at which there is said to be one. Kind, ω and residual
+    are independent of units, place and numbering.
 
     Notes
     -----

@@ -12,6 +12,7 @@ The Minkowski product ``<<s, t>> = B·B' - 2 (A C' + A' C)`` of two unit rows is
 the angle between their normals at a common point: +1 is smooth contact, -1 a spike.
 
 rows             Rows of spheres, planes and points: making, kind, origin, scale, offset.
+row_checks       Rows that users give: checked, seen from points, and made unit.
 minkowski        The Minkowski product, and the angle at which spheres meet.
 incidence        Points and lines against spheres: distances, normals, feet, crossings.
 circles          Circles: intersections of spheres, through points, and their pencils.

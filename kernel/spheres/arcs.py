@@ -59,21 +59,10 @@ class ArcCircles:
 def sphere_arcs(
     rows: FloatArray, plane_normals: FloatArray, starts: FloatArray, ends: FloatArray
 ) -> Arcs:
-    """Shorter arcs in which planes cut spheres, between two points of both.
+    """Shorter arcs in which planes cut spheres, between two points of both, each (H, 3).
 
-    Parameters
-    ----------
-    rows : (H, 5) float array
-        Unit rows; planes give straight edges.
-    plane_normals : (H, 3) float array
-        Unit normals of the cutting planes.
-    starts, ends : (H, 3) float array
-        Points on the sphere and on the plane.
-
-    Returns
-    -------
-    Arcs
-        The arcs; `rises` points along N where the plane stands upright on the sphere.
+    Unit rows (H, 5), where planes give straight edges, and unit normals (H, 3) of the cutting
+    planes; `rises` points along N where the plane stands upright on the sphere.
 
     Notes
     -----
@@ -98,18 +87,7 @@ def sphere_arcs(
 
 
 def arc_points(arcs: Arcs, parameters: FloatArray) -> FloatArray:
-    """Points of arcs.
-
-    Parameters
-    ----------
-    parameters : (n,) float array
-        Values of τ in [-1, 1]; the ends and the middle are exact.
-
-    Returns
-    -------
-    (H, n, 3) float array
-        Points.
-    """
+    """Points (H, n, 3) of arcs at n values of τ in [-1, 1]; ends and middle are exact."""
     middle = (arcs.starts + arcs.ends)[:, None] / 2
     half_chord = (arcs.ends - arcs.starts)[:, None] / 2
     square = _bulges(arcs)[:, None] ** 2
@@ -134,13 +112,7 @@ def _bulges(arcs: Arcs) -> FloatArray:
 
 
 def arc_lengths(arcs: Arcs) -> FloatArray:
-    """Lengths of arcs.
-
-    Returns
-    -------
-    (H,) float array
-        Lengths; for a straight edge the length of the chord.
-    """
+    """Lengths of arcs, (H,); for a straight edge the length of the chord."""
     bulge = np.abs(_bulges(arcs))
     small = bulge < 1e-4
     safe = np.where(small, 1.0, bulge)
@@ -149,13 +121,7 @@ def arc_lengths(arcs: Arcs) -> FloatArray:
 
 
 def segment_areas(arcs: Arcs) -> FloatArray:
-    """Areas between arcs and their chords.
-
-    Returns
-    -------
-    (H,) float array
-        Areas with the sign of the sagitta; 0 for straight edges.
-    """
+    """Areas between arcs and their chords, (H,), with the sign of the sagitta."""
     bulge = _bulges(arcs)
     chords = arcs.ends - arcs.starts
     square = bulge**2
@@ -168,13 +134,7 @@ def segment_areas(arcs: Arcs) -> FloatArray:
 
 
 def arc_circles(arcs: Arcs) -> ArcCircles:
-    """Centre, axis, radius and sweep of each arc.
-
-    Returns
-    -------
-    ArcCircles
-        The circles; straight edges have infinite radius and centre.
-    """
+    """Centre, axis, radius and sweep of each arc; radius and centre infinite if straight."""
     middle = (arcs.starts + arcs.ends) / 2
     half = norm(arcs.ends - arcs.starts) / 2
     sagittas = arcs.sagittas
@@ -189,13 +149,7 @@ def arc_circles(arcs: Arcs) -> ArcCircles:
 
 
 def circle_axes(arcs: Arcs, circles: ArcCircles) -> tuple[FloatArray, FloatArray]:
-    """Unit vectors from the centres to the starts, and along the arcs at their starts.
-
-    Returns
-    -------
-    x, y : (H, 3) float array
-        The vectors.
-    """
+    """Unit vectors (H, 3) from the centres to the starts, and along the arcs there."""
     half = circles.sweeps[:, None] / 2
     along = unit(arcs.ends - arcs.starts)
     outward = np.copysign(1.0, arcs.sagittas)[:, None] * arcs.rises
@@ -208,21 +162,11 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
 def patch_areas(rows: FloatArray, arcs: Arcs, arc_rows: IntArray) -> FloatArray:
-    """Areas of the pieces of spheres that lie to the left of closed chains of arcs.
+    """Areas (P,) of the pieces of spheres that lie to the left of closed chains of arcs.
 
-    Parameters
-    ----------
-    rows : (P, 5) float array
-        Unit rows in coordinates whose origin is near the piece; planes included.
-    arcs : Arcs
-        H arcs on these spheres, counter-clockwise about N.
-    arc_rows : (H,) int array
-        Row of each arc.
-
-    Returns
-    -------
-    (P,) float array
-        Areas; negative where the boundary runs clockwise.
+    Unit rows (P, 5) in coordinates whose origin is near the piece, planes included; H arcs on
+    them, counter-clockwise about N, and the row of each. Negative where the boundary runs
+    clockwise.
 
     Notes
     -----
@@ -243,10 +187,7 @@ def patch_areas(rows: FloatArray, arcs: Arcs, arc_rows: IntArray) -> FloatArray:
 def arc_tangents(arcs: Arcs) -> tuple[FloatArray, FloatArray]:
     """Directions in which arcs leave their starts and reach their ends.
 
-    Returns
-    -------
-    at_starts, at_ends : (H, 3) float array
-        Unit vectors, both in the sense from start to end.
+    Unit vectors (H, 3), both in the sense from start to end.
     """
     along, square = unit(arcs.ends - arcs.starts), _bulges(arcs)[:, None] ** 2
     # Half of the sweep, by the tangent of a quarter of it.
@@ -255,18 +196,10 @@ def arc_tangents(arcs: Arcs) -> tuple[FloatArray, FloatArray]:
 
 
 def arc_reaches(arcs: Arcs, directions: FloatArray) -> FloatArray:
-    """How far arcs reach in a direction.
+    """How far arcs reach in a direction (H, 3), a unit vector in the plane of the arc.
 
-    Parameters
-    ----------
-    directions : (H, 3) float array
-        Unit vectors in the planes of the arcs.
-
-    Returns
-    -------
-    (H,) float array
-        Largest coordinate of a point of the arc along the direction, from the origin: that of
-        an end, or of the point of the circle that lies in that direction if the arc has it.
+    Largest coordinate (H,) of a point of the arc along the direction, from the origin: that of
+    an end, or of the point of the circle that lies in that direction if the arc has it.
     """
     ends = np.maximum(dot(arcs.starts, directions), dot(arcs.ends, directions))
     outward = np.copysign(1.0, arcs.sagittas)[:, None] * arcs.rises

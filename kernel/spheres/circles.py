@@ -46,17 +46,10 @@ class Circles:
 
 
 def pencil_kind(s: FloatArray, t: FloatArray) -> IntArray:
-    """Kind of the pencil that two different spheres span.
+    """Kind of the pencil that two different spheres span: values of `PencilKind`.
 
-    Parameters
-    ----------
-    s, t : (..., 5) float array
-        Rows of any scale.
-
-    Returns
-    -------
-    (...) int array
-        Values of `PencilKind`, by the sign of ``<<s,s>> <<t,t>> - <<s,t>>²`` up to rounding.
+    By the sign of ``<<s,s>> <<t,t>> - <<s,t>>²`` up to rounding, for rows (..., 5) of any
+    scale.
 
     References
     ----------
@@ -78,19 +71,12 @@ def pencil_kind(s: FloatArray, t: FloatArray) -> IntArray:
 
 
 def intersection_circles(s: FloatArray, t: FloatArray) -> Circles:
-    """Circles in which spheres meet.
+    """Circles in which spheres meet, by unit rows (..., 5).
 
-    Parameters
-    ----------
-    s, t : (..., 5) float array
-        Unit rows; planes are allowed, but not two parallel planes or concentric spheres.
-
-    Returns
-    -------
-    Circles
-        The normal points along ``A B' - A' B``: for spheres of the same orientation from the
-        centre of s to that of t. It changes sign when s and t swap. For two planes (a line,
-        no circle) all entries are NaN.
+    Planes are allowed, but not two parallel planes or concentric spheres. The normal points
+    along ``A B' - A' B``: for spheres of the same orientation from the centre of s to that of
+    t. It changes sign when s and t swap. For two planes (a line, no circle) all entries are
+    NaN.
 
     Notes
     -----
@@ -116,14 +102,10 @@ def intersection_circles(s: FloatArray, t: FloatArray) -> Circles:
 
 
 def circle_pencils(circles: Circles) -> tuple[FloatArray, FloatArray]:
-    """Orthogonal unit rows that span the spheres through real circles.
+    """Orthogonal unit rows (..., 5) that span the spheres through real circles.
 
-    Returns
-    -------
-    planes : (..., 5) float array
-        P, the planes of the circles.
-    great_spheres : (..., 5) float array
-        Q, the spheres with centre in the plane; N points to their centre.
+    P, the planes of the circles, and Q, the spheres with centre in the plane; N points to their
+    centre.
     """
     radii = np.sqrt(circles.radii_squared)
     centers, unit_normals = circles.centers, circles.normals
@@ -141,35 +123,18 @@ def circle_pencils(circles: Circles) -> tuple[FloatArray, FloatArray]:
 def pencil_spheres(
     planes: FloatArray, great_spheres: FloatArray, angles: FloatArray
 ) -> FloatArray:
-    """Members ``cos t P + sin t Q`` of circle pencils.
+    """Members ``cos t P + sin t Q`` of circle pencils: unit rows (..., 5).
 
-    Parameters
-    ----------
-    planes, great_spheres : (..., 5) float array
-        Rows P and Q of `circle_pencils`.
-    angles : (...) float array
-        Parameters t; 0 is the plane, ``asin(ρ κ)`` the sphere of curvature κ.
-
-    Returns
-    -------
-    (..., 5) float array
-        Unit rows.
+    P and Q are those of `circle_pencils`. The parameter t is 0 for the plane, ``asin(ρ κ)`` for
+    the sphere of curvature κ.
     """
     return np.cos(angles)[..., None] * planes + np.sin(angles)[..., None] * great_spheres
 
 
 def sphere_through_points(points: FloatArray) -> FloatArray:
-    """Spheres or planes through four points.
+    """Spheres or planes through four points (..., 4, 3), no four on a circle.
 
-    Parameters
-    ----------
-    points : (..., 4, 3) float array
-        Points, no four on a circle.
-
-    Returns
-    -------
-    (..., 5) float array
-        Unit rows; the orientation is arbitrary.
+    Unit rows (..., 5); the orientation is arbitrary.
     """
     center = points.mean(axis=-2, keepdims=True)
     size = norm(points - center).max(axis=-1)[..., None, None]
@@ -189,19 +154,9 @@ def sphere_through_points(points: FloatArray) -> FloatArray:
 def angle_through_points(
     planes: FloatArray, great_spheres: FloatArray, points: FloatArray
 ) -> FloatArray:
-    """Spheres of circle pencils through a further point each.
+    """Spheres of circle pencils through a further point (..., 3) each, off the circle.
 
-    Parameters
-    ----------
-    planes, great_spheres : (..., 5) float array
-        Rows P and Q of `circle_pencils`.
-    points : (..., 3) float array
-        Points off their circle.
-
-    Returns
-    -------
-    (...) float array
-        Parameters t in (-π/2, π/2] of the spheres.
+    P and Q are those of `circle_pencils`. Their parameters t in (-π/2, π/2].
     """
     angles = np.arctan2(-evaluate(planes, points), evaluate(great_spheres, points))
     angles = np.where(angles > np.pi / 2, angles - np.pi, angles)
@@ -211,13 +166,9 @@ def angle_through_points(
 def face_circles(mesh: Mesh) -> tuple[Circles, FloatArray]:
     """Best-fit circle of each face, in the coordinates local to the face.
 
-    Returns
-    -------
-    circles : Circles
-        F circles, oriented by the face: in the plane through the centroid across the vector
-        area, by linear least squares. Exact for triangles and circular faces.
-    miss : (F,) float array
-        Largest distance of a corner from the circle, in model units.
+    F circles, oriented by the face: in the plane through the centroid across the vector area,
+    by linear least squares; exact for triangles and circular faces. Also the largest distance
+    of a corner from the circle, (F,), in model units.
 
     Raises
     ------

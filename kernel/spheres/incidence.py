@@ -6,18 +6,9 @@ from ..arrays import BoolArray, FloatArray, dot, norm
 
 
 def evaluate(rows: FloatArray, points: FloatArray) -> FloatArray:
-    """Left side ``A |x|² - B·x + C`` of the sphere equation.
+    """Left side ``A |x|² - B·x + C`` of the sphere equation, rows (..., 5) at points (..., 3).
 
-    Parameters
-    ----------
-    rows : (..., 5) float array
-    points : (..., 3) float array
-        Points, broadcast against the rows.
-
-    Returns
-    -------
-    (...) float array
-        Zero on the sphere, negative on the side to which N points.
+    Zero on the sphere, negative on the side to which N points.
 
     References
     ----------
@@ -27,53 +18,23 @@ def evaluate(rows: FloatArray, points: FloatArray) -> FloatArray:
 
 
 def normals(rows: FloatArray, points: FloatArray) -> FloatArray:
-    """Gradient field ``N(p) = B - 2 A p``: the unit normal where p lies on a unit row.
+    """Gradient field ``N(p) = B - 2 A p``, (..., 3): the unit normal where p is on a unit row.
 
-    Parameters
-    ----------
-    rows : (..., 5) float array
-    points : (..., 3) float array
-
-    Returns
-    -------
-    (..., 3) float array
-        Vectors; of length 1 exactly on the sphere.
+    Of length 1 exactly on the sphere.
     """
     return rows[..., 1:4] - 2 * rows[..., :1] * points
 
 
 def signed_distance(rows: FloatArray, points: FloatArray) -> FloatArray:
-    """Distance of points from unit rows, positive on the side to which N points.
+    """Distance of points (..., 3) from unit rows, positive on the side to which N points.
 
-    Parameters
-    ----------
-    rows : (..., 5) float array
-        Unit rows, planes included.
-    points : (..., 3) float array
-
-    Returns
-    -------
-    (...) float array
-        Exact signed distances, without a division by A.
+    Exact, without a division by A; planes included.
     """
     return -2 * evaluate(rows, points) / (1 + norm(normals(rows, points)))
 
 
 def project(rows: FloatArray, points: FloatArray) -> FloatArray:
-    """Nearest points of unit rows.
-
-    Parameters
-    ----------
-    rows : (..., 5) float array
-        Unit rows, planes included.
-    points : (..., 3) float array
-        Points; not the centre of their sphere.
-
-    Returns
-    -------
-    (..., 3) float array
-        Points on the spheres.
-    """
+    """Nearest points (..., 3) of unit rows, planes included; no point may be a centre."""
     gradient = normals(rows, points)
     length = norm(gradient)
     step = 2 * evaluate(rows, points) / (length * (length + 1))
@@ -83,23 +44,10 @@ def project(rows: FloatArray, points: FloatArray) -> FloatArray:
 def meet_lines(
     rows: FloatArray, points: FloatArray, directions: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
-    """Where lines meet spheres, nearest to a point of the line.
+    """Where lines ``p + s u`` meet spheres (n, 5), nearest to p; planes included.
 
-    Parameters
-    ----------
-    rows : (n, 5) float array
-        Rows, planes included.
-    points : (n, 3) float array
-        Points p of the lines ``p + s u``.
-    directions : (n, 3) float array
-        Unit directions u.
-
-    Returns
-    -------
-    parameters : (n,) float array
-        The root s of least magnitude, in the form without cancellation; 0 where there is none.
-    exists : (n,) bool array
-        Whether the line meets the sphere.
+    With unit directions u the root s (n,) of least magnitude, in the form without cancellation;
+    0 where there is none. Also whether the line meets the sphere.
     """
     slope = dot(normals(rows, points), directions)
     value = evaluate(rows, points)

@@ -7,17 +7,9 @@ from ..tolerances import EPSILON
 
 
 def minkowski(s: FloatArray, t: FloatArray) -> FloatArray:
-    """Minkowski product ``B·B' - 2 (A C' + A' C)`` of rows.
+    """Minkowski product ``B·B' - 2 (A C' + A' C)`` of rows (..., 5), broadcast.
 
-    Parameters
-    ----------
-    s, t : (..., 5) float array
-        Rows, broadcast against each other.
-
-    Returns
-    -------
-    (...) float array
-        For unit rows the cosine of the oriented angle of intersection.
+    For unit rows the cosine of the oriented angle of intersection.
 
     Notes
     -----
@@ -34,15 +26,7 @@ def minkowski(s: FloatArray, t: FloatArray) -> FloatArray:
 def minkowski_gradient(rows: FloatArray) -> FloatArray:
     """Derivative of the Minkowski product by its other factor: polar hyperplane of the rows.
 
-    Parameters
-    ----------
-    rows : (..., 5) float array
-        Rows ``(A, B, C)``.
-
-    Returns
-    -------
-    (..., 5) float array
-        ``(-2 C, B, -2 A)``.
+    ``(-2 C, B, -2 A)`` for rows ``(A, B, C)``, (..., 5).
     """
     return rows[..., [4, 1, 2, 3, 0]] * np.array([-2.0, 1.0, 1.0, 1.0, -2.0])
 
@@ -50,15 +34,8 @@ def minkowski_gradient(rows: FloatArray) -> FloatArray:
 def angle(s: FloatArray, t: FloatArray) -> FloatArray:
     """Oriented angle between unit rows, in [0, π]; accurate at smooth contact and at spikes.
 
-    Parameters
-    ----------
-    s, t : (..., 5) float array
-        Unit rows, seen from a point near their intersection (see `recenter`).
-
-    Returns
-    -------
-    (...) float array
-        Angles in radians: 0 smooth, π a spike. Spheres that do not meet get 0 or π.
+    The rows (..., 5) are seen from a point near their intersection (see `recenter`). Radians: 0
+    smooth, π a spike. Spheres that do not meet get 0 or π.
 
     Notes
     -----
@@ -70,17 +47,7 @@ def angle(s: FloatArray, t: FloatArray) -> FloatArray:
 
 
 def is_orthogonal(s: FloatArray, t: FloatArray) -> BoolArray:
-    """Whether spheres meet at a right angle: ``<<s, t>> = 0`` up to rounding.
-
-    Parameters
-    ----------
-    s, t : (..., 5) float array
-        Real rows of any scale.
-
-    Returns
-    -------
-    (...) bool array
-        True where they do.
+    """Whether real spheres of any scale meet at a right angle: ``<<s, t>> = 0`` up to rounding.
 
     References
     ----------

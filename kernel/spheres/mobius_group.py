@@ -27,16 +27,7 @@ from .rows import Kind, kind, normalize
 
 
 def check_transform(transform: ArrayLike) -> FloatArray:
-    """Refuse a matrix that is no Möbius map.
-
-    Parameters
-    ----------
-    transform : (5, 5) array_like of float
-
-    Returns
-    -------
-    (5, 5) float array
-        The matrix.
+    """Refuse a matrix that is no Möbius map, (5, 5).
 
     Raises
     ------
@@ -108,17 +99,8 @@ def similarity(
 def inversion(center: ArrayLike, radius: float) -> FloatArray:
     """Inversion in a sphere: ``x -> c + r² (x - c) / |x - c|²``.
 
-    Parameters
-    ----------
-    center : (3,) array_like of float
-        Centre c, which is sent to infinity.
-    radius : float
-        Radius r of the sphere that stays in place.
-
-    Returns
-    -------
-    (5, 5) float array
-        The transform, its own inverse.
+    The transform (5, 5), its own inverse: the centre c is sent to infinity, the sphere of
+    radius r stays in place.
 
     Raises
     ------
@@ -142,17 +124,9 @@ def inversion(center: ArrayLike, radius: float) -> FloatArray:
 
 
 def reflection(row: ArrayLike) -> FloatArray:
-    """Reflection ``s -> s - 2 <<s, w>> w`` in a sphere (an inversion) or plane.
+    """Reflection ``s -> s - 2 <<s, w>> w`` in a sphere (an inversion) or plane w of any scale.
 
-    Parameters
-    ----------
-    row : (5,) array_like of float
-        Real row w of any scale.
-
-    Returns
-    -------
-    (5, 5) float array
-        The transform, its own inverse.
+    The transform (5, 5), its own inverse.
 
     Raises
     ------
@@ -179,17 +153,9 @@ def _reflect_in(unit_row: FloatArray) -> FloatArray:
 
 
 def rotation_about(vector: ArrayLike) -> FloatArray:
-    """Rotation about an axis through the origin.
+    """Rotation matrix (3, 3) about an axis through the origin.
 
-    Parameters
-    ----------
-    vector : (3,) array_like of float
-        Axis times angle, in radians, counter-clockwise seen against the axis.
-
-    Returns
-    -------
-    (3, 3) float array
-        Orthogonal matrix of determinant 1.
+    The vector is the axis times the angle, in radians, counter-clockwise seen against the axis.
 
     Raises
     ------
@@ -204,17 +170,7 @@ def rotation_about(vector: ArrayLike) -> FloatArray:
 
 
 def compose(transforms: Sequence[ArrayLike]) -> FloatArray:
-    """Maps one after another.
-
-    Parameters
-    ----------
-    transforms : sequence of (5, 5) array_like of float
-        Transforms, applied first to last; none of them give the identity.
-
-    Returns
-    -------
-    (5, 5) float array
-        The transform.
+    """Maps (5, 5) one after another, applied first to last; none of them give the identity.
 
     Raises
     ------
@@ -238,16 +194,7 @@ def compose(transforms: Sequence[ArrayLike]) -> FloatArray:
 
 
 def inverse(transform: ArrayLike) -> FloatArray:
-    """The map that undoes another.
-
-    Parameters
-    ----------
-    transform : (5, 5) array_like of float
-
-    Returns
-    -------
-    (5, 5) float array
-        ``J Mᵀ J``, exactly.
+    """The map that undoes another: ``J Mᵀ J``, exactly.
 
     Raises
     ------
@@ -259,15 +206,6 @@ def inverse(transform: ArrayLike) -> FloatArray:
 
 def read_transform(transform: ArrayLike) -> LocalMap:
     """A checked transform in the form in which it maps geometry without loss of digits.
-
-    Parameters
-    ----------
-    transform : (5, 5) array_like of float
-
-    Returns
-    -------
-    LocalMap
-        Its origin, image, scale, rotation and bend.
 
     Raises
     ------

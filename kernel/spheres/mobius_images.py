@@ -19,19 +19,10 @@ from .rows import recenter
 
 
 def map_spheres(rows: FloatArray, transform: ArrayLike) -> FloatArray:
-    """Images of spheres, planes and points seen as rows.
+    """Images of spheres, planes and points seen as rows (..., 5), in model coordinates.
 
-    Parameters
-    ----------
-    rows : (..., 5) float array
-        Rows of any scale, in model coordinates.
-    transform : (5, 5) array_like of float
-
-    Returns
-    -------
-    (..., 5) float array
-        Rows of the same norm, oriented so that sides are kept; exactly A = 0 where a sphere
-        passes, within rounding, through the point sent to infinity.
+    Rows of the same norm, oriented so that sides are kept; exactly A = 0 where a sphere passes,
+    within rounding, through the point sent to infinity.
 
     Raises
     ------
@@ -49,17 +40,7 @@ def map_spheres(rows: FloatArray, transform: ArrayLike) -> FloatArray:
 
 
 def sent_to_infinity(points: FloatArray, transform: ArrayLike) -> BoolArray:
-    """Which points have no image in space.
-
-    Parameters
-    ----------
-    points : (..., 3) float array
-    transform : (5, 5) array_like of float
-
-    Returns
-    -------
-    (...) bool array
-        True for the centre of an inversion, up to rounding.
+    """Which points (..., 3) have no image in space: up to rounding the centre of an inversion.
 
     Raises
     ------
@@ -71,17 +52,7 @@ def sent_to_infinity(points: FloatArray, transform: ArrayLike) -> BoolArray:
 
 
 def map_points(points: FloatArray, transform: ArrayLike) -> FloatArray:
-    """Images of points.
-
-    Parameters
-    ----------
-    points : (..., 3) float array
-    transform : (5, 5) array_like of float
-
-    Returns
-    -------
-    (..., 3) float array
-        Points.
+    """Images of points (..., 3).
 
     Raises
     ------
@@ -97,18 +68,9 @@ def map_points(points: FloatArray, transform: ArrayLike) -> FloatArray:
 
 
 def map_circles(circles: Circles, transform: ArrayLike) -> Circles:
-    """Images of real circles.
+    """Images of real circles, in model coordinates.
 
-    Parameters
-    ----------
-    circles : Circles
-        Real circles, in model coordinates.
-    transform : (5, 5) array_like of float
-
-    Returns
-    -------
-    Circles
-        Circles; going round about the normal stays going round about the normal.
+    Going round about the normal stays going round about the normal.
 
     Raises
     ------
@@ -149,18 +111,9 @@ def map_circles(circles: Circles, transform: ArrayLike) -> Circles:
 
 
 def map_arcs(arcs: Arcs, transform: ArrayLike) -> Arcs:
-    """Images of arcs, by their ends and their middle.
+    """Images of arcs, in model coordinates, by their ends and their middle.
 
-    Parameters
-    ----------
-    arcs : Arcs
-        H arcs, in model coordinates.
-    transform : (5, 5) array_like of float
-
-    Returns
-    -------
-    Arcs
-        Arcs from the images of the starts to those of the ends; `rises` points to the bulge.
+    From the images of the starts to those of the ends; `rises` points to the bulge.
 
     Raises
     ------
@@ -197,13 +150,7 @@ def map_arcs(arcs: Arcs, transform: ArrayLike) -> Arcs:
 
 
 def refuse_rows(is_bad: BoolArray, message: str) -> None:
-    """Raise an error that names rows.
-
-    Parameters
-    ----------
-    is_bad : (n,) bool array
-    message : str
-        With ``{}`` where the numbers of the bad rows go.
+    """Raise an error that names the bad rows where its message has ``{}``.
 
     Raises
     ------

@@ -52,31 +52,17 @@ class LocalMap:
 
     @property
     def reverses(self) -> bool:
-        """Whether right and left change places, as in every inversion.
-
-        Returns
-        -------
-        bool
-            True for an odd number of reflections.
-        """
+        """Whether right and left change places: an odd number of reflections, as inversions."""
         return bool(np.linalg.det(self.rotation) < 0)
 
 
 def make_local(
     origin: FloatArray, image: FloatArray, scale: float, rotation: FloatArray, bend: FloatArray
 ) -> LocalMap:
-    """A map from its bend vector.
+    """A map from its bend vector g, (3,), which sends a point `origin` to its `image`.
 
-    Parameters
-    ----------
-    origin, image : (3,) float array
-        A point and its image.
-    scale : float
-        Positive stretch at the origin.
-    rotation : (3, 3) float array
-        Nearly orthogonal; the nearest orthogonal matrix is taken.
-    bend : (3,) float array
-        The vector g.
+    The scale is the positive stretch at the origin; of the nearly orthogonal rotation (3, 3)
+    the nearest orthogonal matrix is taken.
     """
     strength = float(norm(bend))
     direction = bend / strength if strength > 0 else np.array([1.0, 0.0, 0.0])
@@ -90,20 +76,10 @@ def _mirror_matrix(direction: FloatArray) -> FloatArray:
 
 
 def bend_vectors(local: LocalMap, points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """How the map bends about other points than its origin.
+    """How the map bends about other points (..., 3) than its origin, in model coordinates.
 
-    Parameters
-    ----------
-    points : (..., 3) float array
-        Points, in model coordinates.
-
-    Returns
-    -------
-    vectors : (..., 3) float array
-        Bend direction plus strength times distance from the origin: vectors from the point
-        sent to infinity, of length 1 at the origin.
-    rounding : (...) float array
-        A length that is not to be told from 0.
+    Bend direction plus strength times distance from the origin: vectors (..., 3) from the point
+    sent to infinity, of length 1 at the origin. Also a length that is not to be told from 0.
     """
     offset = points - local.origin
     vectors = local.direction + local.strength * offset
@@ -124,17 +100,9 @@ def _move_origin(local: LocalMap, origin: FloatArray) -> LocalMap:
 
 
 def after(second: LocalMap, first: LocalMap) -> LocalMap:
-    """One map after another.
+    """One map after another: `first` is applied first.
 
-    Parameters
-    ----------
-    second, first : LocalMap
-        The maps; `first` is applied first.
-
-    Returns
-    -------
-    LocalMap
-        The composition, seen from a point far from all that is sent to infinity.
+    The composition is seen from a point far from all that is sent to infinity.
     """
     bends = [first.strength, first.scale * second.strength]
     reach = min((1 / bend for bend in bends if bend > 0), default=0.0)
@@ -174,17 +142,7 @@ def _follow(first: LocalMap, second: LocalMap) -> LocalMap:
 
 
 def point_images(local: LocalMap, points: FloatArray) -> FloatArray:
-    """Images of points that are not sent to infinity.
-
-    Parameters
-    ----------
-    points : (..., 3) float array
-
-    Returns
-    -------
-    (..., 3) float array
-        Images.
-    """
+    """Images of points (..., 3) that are not sent to infinity."""
     offset = points - local.origin
     vectors, _ = bend_vectors(local, points)
     square = dot(vectors, vectors)[..., None]
@@ -195,16 +153,7 @@ def point_images(local: LocalMap, points: FloatArray) -> FloatArray:
 def turn_vectors(local: LocalMap, points: FloatArray, vectors: FloatArray) -> FloatArray:
     """Directions at points turned as the map turns them there, without its stretch.
 
-    Parameters
-    ----------
-    points : (..., 3) float array
-    vectors : (..., 3) float array
-        Vectors at the points.
-
-    Returns
-    -------
-    (..., 3) float array
-        Vectors of the same length at the images.
+    Vectors (..., 3) at points (..., 3) become vectors of the same length at the images.
     """
     along, _ = bend_vectors(local, points)
     along = unit(along)
@@ -214,20 +163,10 @@ def turn_vectors(local: LocalMap, points: FloatArray, vectors: FloatArray) -> Fl
 
 
 def row_images(local: LocalMap, rows: FloatArray, points: FloatArray) -> FloatArray:
-    """Images of rows seen from points, seen from the images of the points.
+    """Images of rows (..., 5) seen from points (..., 3), seen from the images of the points.
 
-    Parameters
-    ----------
-    rows : (..., 5) float array
-        Rows seen from the points.
-    points : (..., 3) float array
-        Points that are not sent to infinity.
-
-    Returns
-    -------
-    (..., 5) float array
-        Rows of the same norm; exactly A = 0 where the sphere passes, within rounding, through
-        the point sent to infinity.
+    No point is sent to infinity. Rows of the same norm; exactly A = 0 where the sphere passes,
+    within rounding, through the point sent to infinity.
     """
     vectors, _ = bend_vectors(local, points)
     square = dot(vectors, vectors)
@@ -249,19 +188,10 @@ def row_images(local: LocalMap, rows: FloatArray, points: FloatArray) -> FloatAr
 
 
 def offset_images(local: LocalMap, points: FloatArray, offsets: FloatArray) -> FloatArray:
-    """What small steps from points become, seen from the images of the points.
+    """What small steps from points become, seen from the images of the points, each (..., 3).
 
-    Parameters
-    ----------
-    points : (..., 3) float array
-        Points that are not sent to infinity.
-    offsets : (..., 3) float array
-        Steps from the points.
-
-    Returns
-    -------
-    (..., 3) float array
-        Image of point plus step, minus image of the point, without cancellation.
+    Image of point plus step, minus image of the point, without cancellation; no point is sent
+    to infinity.
     """
     vectors, _ = bend_vectors(local, points)
     moved = vectors + local.strength * offsets

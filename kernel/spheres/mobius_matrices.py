@@ -15,13 +15,7 @@ _FROM_PENTASPHERICAL = np.linalg.inv(_TO_PENTASPHERICAL)
 
 
 def to_matrix(local: LocalMap) -> FloatArray:
-    """Lorentz matrix of a map on pentaspherical coordinates.
-
-    Returns
-    -------
-    (5, 5) float array
-        The matrix, whose last entry is positive.
-    """
+    """Lorentz matrix (5, 5) of a map on pentaspherical coordinates, the last entry positive."""
     bend = local.strength * local.direction
     inner = np.zeros((5, 5))
     inner[0] = np.concatenate([[1.0], bend, [local.strength**2]]) / local.scale
@@ -41,17 +35,9 @@ def _translation(shift: FloatArray) -> FloatArray:
 
 
 def read_matrix(transform: FloatArray) -> LocalMap:
-    """The map that a Lorentz matrix stands for.
+    """The map that a Lorentz matrix stands for; M and -M are the same map.
 
-    Parameters
-    ----------
-    transform : (5, 5) float array
-        A Lorentz matrix; M and -M are the same map.
-
-    Returns
-    -------
-    LocalMap
-        Exactly a Möbius map, whatever the rounding of the matrix.
+    Exactly a Möbius map, whatever the rounding of the matrix.
 
     Raises
     ------

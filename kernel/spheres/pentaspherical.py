@@ -10,34 +10,13 @@ SIGNATURE = np.diag([1.0, 1.0, 1.0, 1.0, -1.0])
 
 
 def pentaspherical(rows: FloatArray) -> FloatArray:
-    """Pentaspherical coordinates ``(B, C - A, C + A)``, of signature (+, +, +, +, -).
-
-    Parameters
-    ----------
-    rows : (..., 5) float array
-
-    Returns
-    -------
-    (..., 5) float array
-        Coordinates with the same Minkowski product.
-    """
+    """Pentaspherical coordinates ``(B, C - A, C + A)``, of signature (+, +, +, +, -)."""
     a, c = rows[..., :1], rows[..., 4:]
     return np.concatenate([rows[..., 1:4], c - a, c + a], axis=-1)
 
 
 def from_pentaspherical(coordinates: FloatArray) -> FloatArray:
-    """Rows of pentaspherical coordinates.
-
-    Parameters
-    ----------
-    coordinates : (..., 5) float array
-        Coordinates ``(B, C - A, C + A)``.
-
-    Returns
-    -------
-    (..., 5) float array
-        Rows.
-    """
+    """Rows of pentaspherical coordinates ``(B, C - A, C + A)``, (..., 5)."""
     minus, plus = coordinates[..., 3:4], coordinates[..., 4:5]
     return np.concatenate(
         [(plus - minus) / 2, coordinates[..., :3], (plus + minus) / 2], axis=-1
@@ -45,33 +24,16 @@ def from_pentaspherical(coordinates: FloatArray) -> FloatArray:
 
 
 def stereographic(points: FloatArray) -> FloatArray:
-    """Stereographic image of points of space on the unit 3-sphere, from the north pole.
-
-    Parameters
-    ----------
-    points : (..., 3) float array
-
-    Returns
-    -------
-    (..., 4) float array
-        Points of norm 1.
-    """
+    """Stereographic image (..., 4) of points on the unit 3-sphere, from the north pole."""
     square = dot(points, points)[..., None]
     return np.concatenate([2 * points, square - 1], axis=-1) / (square + 1)
 
 
 def inverse_stereographic(points: FloatArray) -> FloatArray:
-    """Central projection from the north pole of the 3-sphere back to space.
+    """Central projection from the north pole of the 3-sphere back to space, (..., 3).
 
-    Parameters
-    ----------
-    points : (..., 4) float array
-        Points of R⁴; of the unit 3-sphere, or poles of spheres (then centres come out).
-
-    Returns
-    -------
-    (..., 3) float array
-        Points; infinite for the north pole itself.
+    Of points (..., 4) of the unit 3-sphere, or poles of spheres (then centres come out);
+    infinite for the north pole itself.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         return points[..., :3] / (1 - points[..., 3:])
@@ -80,17 +42,8 @@ def inverse_stereographic(points: FloatArray) -> FloatArray:
 def pole(rows: FloatArray) -> tuple[FloatArray, BoolArray]:
     """Pole, with respect to the unit 3-sphere, of the stereographic image of a sphere.
 
-    Parameters
-    ----------
-    rows : (..., 5) float array
-        Rows of any scale.
-
-    Returns
-    -------
-    pole : (..., 4) float array
-        ``(B, C - A) / (C + A)``; where the pole is at infinity, its direction.
-    is_infinite : (...) bool array
-        Where ``C + A = 0``: the image is a great sphere.
+    ``(B, C - A) / (C + A)``, (..., 4), for rows of any scale; where ``C + A = 0`` the image is
+    a great sphere and the pole at infinity: its direction, and True.
 
     References
     ----------

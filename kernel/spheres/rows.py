@@ -21,17 +21,9 @@ class Kind(IntEnum):
 
 
 def kind(rows: FloatArray) -> IntArray:
-    """Classify rows as sphere, plane, point or imaginary sphere.
+    """Classify rows (..., 5) of any scale as sphere, plane, point or imaginary sphere.
 
-    Parameters
-    ----------
-    rows : (..., 5) float array
-        Rows of any scale.
-
-    Returns
-    -------
-    (...) int array
-        Values of `Kind`. A point is a row whose norm vanishes up to rounding.
+    Values of `Kind`. A point is a row whose norm vanishes up to rounding.
     """
     a, b, c = rows[..., 0], rows[..., 1:4], rows[..., 4]
     discriminant = dot(b, b) - 4 * a * c
@@ -44,18 +36,9 @@ def kind(rows: FloatArray) -> IntArray:
 
 
 def from_center_radius(center: FloatArray, radius_squared: FloatArray) -> FloatArray:
-    """Rows with A = 1, the paper's standard lift: N points to the centre.
+    """Rows with A = 1, the paper's standard lift: N points to the centre; of norm ``4 r²``.
 
-    Parameters
-    ----------
-    center : (..., 3) float array
-    radius_squared : (...) float array
-        Squared radii; zero for points, negative for imaginary spheres.
-
-    Returns
-    -------
-    (..., 5) float array
-        Rows; their norm is ``4 r²``.
+    Squared radii are zero for points, negative for imaginary spheres.
 
     References
     ----------
@@ -68,20 +51,7 @@ def from_center_radius(center: FloatArray, radius_squared: FloatArray) -> FloatA
 
 
 def from_plane(normal: FloatArray, distance: FloatArray) -> FloatArray:
-    """Rows of the planes ``n·x = d``.
-
-    Parameters
-    ----------
-    normal : (..., 3) float array
-        Unit normals.
-    distance : (...) float array
-        Signed distances of the origin, along the normal.
-
-    Returns
-    -------
-    (..., 5) float array
-        Unit rows with A = 0.
-    """
+    """Unit rows (..., 5) with A = 0 of the planes ``n·x = d``, with unit normals n."""
     normal = np.asarray(normal, float)
     distance = np.broadcast_to(np.asarray(distance, float), normal.shape[:-1])
     zero = np.zeros((*normal.shape[:-1], 1))
@@ -89,35 +59,19 @@ def from_plane(normal: FloatArray, distance: FloatArray) -> FloatArray:
 
 
 def lift_points(points: FloatArray) -> FloatArray:
-    """Rows of points, seen as spheres of radius zero.
+    """Rows of points, seen as spheres of radius zero: A = 1 and norm zero.
 
-    Parameters
-    ----------
-    points : (..., 3) float array
-
-    Returns
-    -------
-    (..., 5) float array
-        Rows with A = 1 and norm zero; ``<<s, p>> / -2`` is `evaluate` of s at p.
+    ``<<s, p>> / -2`` is `evaluate` of s at p.
     """
     points = np.asarray(points, float)
     return from_center_radius(points, np.zeros(points.shape[:-1]))
 
 
 def center_radius(rows: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Centres and squared radii, for display and for writers.
+    """Centres and squared radii of rows of any scale, for display and for writers.
 
-    Parameters
-    ----------
-    rows : (..., 5) float array
-        Rows of any scale.
-
-    Returns
-    -------
-    center : (..., 3) float array
-        ``B / 2A``; infinite for planes.
-    radius_squared : (...) float array
-        ``(|B|² - 4 A C) / 4 A²``; infinite for planes, negative for imaginary spheres.
+    ``B / 2A``, infinite for planes; and ``(|B|² - 4 A C) / 4 A²``, infinite for planes,
+    negative for imaginary spheres.
     """
     a, b = rows[..., 0], rows[..., 1:4]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -129,17 +83,7 @@ def center_radius(rows: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def normalize(rows: FloatArray) -> FloatArray:
-    """Rows scaled to norm +1 (real) or -1 (imaginary); the orientation is kept.
-
-    Parameters
-    ----------
-    rows : (..., 5) float array
-        Rows of any scale.
-
-    Returns
-    -------
-    (..., 5) float array
-        Rows with ``<<s, s>> = ±1``.
+    """Rows of any scale scaled to norm +1 (real) or -1 (imaginary); the orientation is kept.
 
     Raises
     ------
@@ -154,18 +98,9 @@ def normalize(rows: FloatArray) -> FloatArray:
 
 
 def recenter(rows: FloatArray, origin: FloatArray) -> FloatArray:
-    """The same spheres in coordinates whose origin is another point.
+    """The same spheres in coordinates whose origin is another point (..., 3) of the old ones.
 
-    Parameters
-    ----------
-    rows : (..., 5) float array
-    origin : (..., 3) float array
-        New origins, in the old coordinates.
-
-    Returns
-    -------
-    (..., 5) float array
-        Rows of the same norm; to go back, recentre at the negative of `origin`.
+    Rows of the same norm; to go back, recentre at the negative of `origin`.
     """
     b = normals(rows, origin)
     c = evaluate(rows, origin)
@@ -174,37 +109,15 @@ def recenter(rows: FloatArray, origin: FloatArray) -> FloatArray:
 
 
 def rescale(rows: FloatArray, factor: float) -> FloatArray:
-    """Unit rows of the spheres scaled from the origin.
-
-    Parameters
-    ----------
-    rows : (..., 5) float array
-        Unit rows.
-    factor : float
-        Positive factor.
-
-    Returns
-    -------
-    (..., 5) float array
-        Unit rows ``(A / factor, B, C factor)``.
-    """
+    """Unit rows ``(A / factor, B, C factor)`` of the spheres scaled from the origin."""
     return rows * np.array([1 / factor, 1.0, 1.0, 1.0, factor])
 
 
 def offset(rows: FloatArray, distance: FloatArray | float) -> FloatArray:
     """Parallel surfaces at a signed distance along N: concentric spheres, parallel planes.
 
-    Parameters
-    ----------
-    rows : (..., 5) float array
-        Unit rows.
-    distance : (...) float array or float
-        Signed distances along N; less than the radius where N points to the centre.
-
-    Returns
-    -------
-    (..., 5) float array
-        Unit rows ``(A, B, C + δ - A δ²) / (1 - 2 A δ)``, oriented as before.
+    Unit rows ``(A, B, C + δ - A δ²) / (1 - 2 A δ)``, oriented as before; the distance is less
+    than the radius where N points to the centre.
 
     Raises
     ------

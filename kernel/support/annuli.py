@@ -72,13 +72,7 @@ class Annuli:
 
     @property
     def element_ids(self) -> IntArray:
-        """Edge of each annulus.
-
-        Returns
-        -------
-        (B,) int array
-            Those of `edge_ids`.
-        """
+        """Edge of each annulus, (B,)."""
         return self.edge_ids
 
     @property
@@ -88,13 +82,10 @@ class Annuli:
 
 
 def corner_mismatch(annuli: Annuli) -> FloatArray:
-    """How far the ends of the annuli that meet at a node are apart.
+    """How far the ends of the annuli that meet at a node are apart, (B, 2).
 
-    Returns
-    -------
-    (B, 2) float array
-        Distance of the corners of each end from the mean of those at the node, the larger of
-        outer and inner, in model units.
+    Distance of the corners of each end from the mean of those at the node, the larger of outer
+    and inner, in model units.
     """
     nodes = annuli.edge_vertices.ravel()
     # Differences to one end per node keep their digits far from the origin.
@@ -110,10 +101,7 @@ def corner_mismatch(annuli: Annuli) -> FloatArray:
 def twist_angles(annuli: Annuli) -> FloatArray:
     """Angles by which the planes of annuli miss node axes: 0 where a node has no torsion.
 
-    Returns
-    -------
-    (B, 2) float array
-        Angles in [0, π/2] at both ends, in radians.
+    (B, 2) radians in [0, π/2], at both ends.
     """
     sines = np.abs(dot(annuli.node_axes, annuli.frames[:, None, 2]))
     return np.arcsin(np.minimum(sines, 1.0))
@@ -122,21 +110,12 @@ def twist_angles(annuli: Annuli) -> FloatArray:
 def end_depths(annuli: Annuli) -> FloatArray:
     """Lengths of the ends, along the lines that the beams of a node share.
 
-    Returns
-    -------
-    (B, 2) float array
-        From outer to inner corner, in model units.
+    (B, 2), from outer to inner corner, in model units.
     """
     return norm(annuli.corners[:, :, 1] - annuli.corners[:, :, 0])
 
 
 def mean_end_depth(annuli: Annuli) -> float:
-    """Mean length of the ends of the annuli.
-
-    Returns
-    -------
-    float
-        From outer to inner corner, in model units; 0 without annuli.
-    """
+    """Mean length of the ends, from outer to inner corner, in model units; 0 without annuli."""
     lengths = end_depths(annuli)
     return float(lengths.mean()) if lengths.size else 0.0

@@ -17,21 +17,10 @@ NO_CUT: Final = "B101"
 
 
 def standing_reasons(annuli: Annuli, is_real: BoolArray, max_tilt: float) -> dict[int, str]:
-    """Why annuli cannot stand, whatever their depth; of several reasons the first.
+    """Why annuli, without inner arcs, cannot stand, whatever their depth; the first reason.
 
-    Parameters
-    ----------
-    annuli : Annuli
-        B annuli, without inner arcs.
-    is_real : (B,) bool array
-        Whether their circles are real and meet the lines of both ends.
-    max_tilt : float
-        Largest angle to the bisecting plane, in radians.
-
-    Returns
-    -------
-    dict of int to str
-        Reason by row; annuli that stand do not occur.
+    By row; annuli that stand do not occur. `is_real` (B,) tells whether their circles are real
+    and meet the lines of both ends; the tilt is the angle to the bisecting plane, in radians.
     """
     reasons: dict[int, str] = {}
     for row in np.flatnonzero(~is_real).tolist():
@@ -55,17 +44,9 @@ def standing_reasons(annuli: Annuli, is_real: BoolArray, max_tilt: float) -> dic
 
 
 def inner_reasons(annuli: Annuli, size: float) -> dict[int, str]:
-    """Why annuli have no inner arc; of several reasons the first.
+    """Why annuli have no inner arc; of several reasons the first, by row.
 
-    Parameters
-    ----------
-    size : float
-        Mean edge of the mesh.
-
-    Returns
-    -------
-    dict of int to str
-        Reason by row; sound annuli do not occur.
+    The size is the mean edge of the mesh. Sound annuli do not occur.
     """
     reasons: dict[int, str] = {}
     deep = np.flatnonzero(-2 * annuli.outer[:, 0] * annuli.depth >= 1).tolist()

@@ -21,12 +21,7 @@ from ..spheres.incidence import evaluate, meet_lines, normals
 from ..spheres.minkowski import minkowski
 from ..spheres.rows import recenter
 from ..tolerances import BEAM_TILT, DEGENERATE
-from .annuli import (
-    Annuli,
-    corner_mismatch,
-    end_depths,
-    twist_angles,
-)
+from .annuli import Annuli, corner_mismatch, end_depths, twist_angles
 from .annulus_checks import NO_ANNULUS, inner_reasons, standing_reasons
 from .node_axes import SupportStructure, arc_planes, support_structure
 

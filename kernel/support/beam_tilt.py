@@ -10,11 +10,8 @@ from ..sphere_meshes.sphere_mesh import SphereMesh
 def beam_tilt(sphere_mesh: SphereMesh) -> FloatArray:
     """Angle between the plane in which two spheres meet and the plane that bisects them.
 
-    Returns
-    -------
-    (E,) float array
-        Radians over the interior edges, from 0 (upright) to π/2 (tangential). Where spheres
-        share no circle, because they are the same or one is a plane, the beam is upright.
+    (E,) radians over the interior edges, from 0 (upright) to π/2 (tangential). Where spheres
+    share no circle, because they are the same or one is a plane, the beam is upright.
 
     References
     ----------

@@ -92,16 +92,9 @@ class SupportStructure:
 def arc_planes(sphere_mesh: SphereMesh) -> ArcPlanes:
     """Planes of the circles in which neighbouring spheres meet.
 
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
-        The sphere mesh, its nearly plane faces flattened (`flatten_nearly_plane`).
-
-    Returns
-    -------
-    ArcPlanes
-        The planes. Two planes meet in a line: theirs is the plane through the edge that
-        bisects them. A sphere and a plane meet in a circle of that plane.
+    Nearly plane faces are flattened before (`flatten_nearly_plane`). Two planes meet in a line:
+    theirs is the plane through the edge that bisects them. A sphere and a plane meet in a
+    circle of that plane.
 
     References
     ----------
@@ -134,11 +127,8 @@ def arc_planes(sphere_mesh: SphereMesh) -> ArcPlanes:
 def support_structure(sphere_mesh: SphereMesh) -> SupportStructure:
     """Node axes, and how far the nodes are from being free of torsion.
 
-    Returns
-    -------
-    SupportStructure
-        The nodes. Spheres that bulge less than a workshop can tell count as planes, as they
-        do for panels (`flatten_nearly_plane`).
+    Spheres that bulge less than a workshop can tell count as planes, as they do for panels
+    (`flatten_nearly_plane`).
 
     Notes
     -----
@@ -230,13 +220,7 @@ def _fourth_value(rows: FloatArray, corners: IntArray, n_vertices: int) -> Float
 
 
 def node_reasons(structure: SupportStructure) -> dict[int, str]:
-    """Why nodes are not valid; of several reasons the first.
-
-    Returns
-    -------
-    dict of int to str
-        Reason by vertex; valid nodes do not occur.
-    """
+    """Why nodes are not valid, by vertex: of several reasons the first."""
     reasons: dict[int, str] = {}
     is_unused = ~structure.directions.any(axis=1)
     for vertex in np.flatnonzero(is_unused).tolist():
@@ -255,12 +239,9 @@ def node_reasons(structure: SupportStructure) -> dict[int, str]:
 
 
 def axis_lean(structure: SupportStructure) -> FloatArray:
-    """Angles between the axes and the normals of the vertices.
+    """Angles (V,) between the axes and the normals of the vertices, in [0, π/2].
 
-    Returns
-    -------
-    (V,) float array
-        Angles in [0, π/2], in radians; 0 for unused vertices.
+    In radians; 0 for unused vertices.
     """
     inward, normal = structure.directions, -structure.normals
     return 2 * np.arctan2(norm(inward - normal), norm(inward + normal))
@@ -327,12 +308,7 @@ def support_report(sphere_mesh: SphereMesh, structure: SupportStructure) -> Node
 
 
 def node_name(vertex: int) -> str:
-    """Stable name of a node.
-
-    Returns
-    -------
-    str
-        ``N0000`` for the first.
+    """Stable name of a node: ``N0000`` for the first.
 
     Examples
     --------

@@ -26,20 +26,11 @@ SCANS = 4
 def rim_axes(mesh: Mesh, directions: FloatArray, planes: FloatArray) -> FloatArray:
     """Turn the axes of sides of the boundary until their beams are flat.
 
-    Parameters
-    ----------
-    directions : (V, 3) float array
-        Unit axes; where one plane is given, the direction of it nearest to the normal.
-    planes : (V, 3) float array
-        Unit normal of the only plane of a node; zero where there is none, NaN where several
-        leave one direction.
-
-    Returns
-    -------
-    (V, 3) float array
-        Axes. Sides that would need an axis to lean by more than `RIM_LEAN` from the direction
-        given, sides with an edge of no length, and boundaries without corners that no axes fit,
-        stay as they are.
+    Unit axes (V, 3): where one plane is given, the direction of it nearest to the normal. The
+    planes (V, 3) are unit normals of the only plane of a node; zero where there is none, NaN
+    where several leave one direction. Sides that would need an axis to lean by more than
+    `RIM_LEAN` from the direction given, sides with an edge of no length, and boundaries without
+    corners that no axes fit, stay as they are.
     """
     result = directions.copy()
     is_given = np.asarray(planes.any(axis=1))

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray, dot, norm, read_only, unit
 from ..errors import InputError
-from ..tolerances import EPSILON
+from ..tolerances import EPSILON, PARAMETER_SLACK
 
 _GRID = 17
 """Points each way of the grid in which a search for the nearest point begins."""
@@ -99,11 +99,22 @@ class SurfaceJet(NamedTuple):
 
 
 class SurfaceCurvature(NamedTuple):
-    """Normals (N, 3), and the larger and smaller principal curvature (N,) towards them."""
+    """Principal curvatures of a surface at points.
+
+    Attributes
+    ----------
+    normals : (N, 3) float array
+        Unit normals.
+    first, second : (N,) float array
+        The larger and the smaller principal curvature, towards the normals.
+    directions : (N, 2, 3) float array
+        Unit principal directions of the two; with the normal they are right-handed.
+    """
 
     normals: FloatArray
     first: FloatArray
     second: FloatArray
+    directions: FloatArray
 
 
 def evaluate_nurbs(surface: NurbsSurface, u: FloatArray, v: FloatArray) -> SurfaceJet:
@@ -112,7 +123,7 @@ def evaluate_nurbs(surface: NurbsSurface, u: FloatArray, v: FloatArray) -> Surfa
     Parameters
     ----------
     u, v : (N,) float array
-        Parameters in its domain.
+        Parameters in its domain; what lies outside by rounding counts as its end.
 
     Raises
     ------
@@ -123,11 +134,7 @@ def evaluate_nurbs(surface: NurbsSurface, u: FloatArray, v: FloatArray) -> Surfa
     ----------
     L. Piegl, W. Tiller, The NURBS Book, algorithms A2.2, A2.3 and A4.4.
     """
-    (low_u, high_u), (low_v, high_v) = surface.domain
-    if not ((low_u <= u) & (u <= high_u) & (low_v <= v) & (v <= high_v)).all():
-        raise InputError(
-            f"parameters must lie in [{low_u:g}, {high_u:g}] and [{low_v:g}, {high_v:g}]"
-        )
+    u, v = _clipped(surface, u, v)
     p, q = surface.degrees
     first_u, basis_u = _basis(surface.knots_u, p, u)
     first_v, basis_v = _basis(surface.knots_v, q, v)
@@ -152,6 +159,20 @@ def evaluate_nurbs(surface: NurbsSurface, u: FloatArray, v: FloatArray) -> Surfa
     mixed = h_u[:, 3:] * d_v + h_v[:, 3:] * d_u + h_uv[:, 3:] * points
     d_uv = (h_uv[:, :3] - mixed) / weight
     return SurfaceJet(points + origin, d_u, d_v, d_uu, d_uv, d_vv)
+
+
+def _clipped(surface: NurbsSurface, u: FloatArray, v: FloatArray) -> FloatArray:
+    """Parameters (2, N) in the domain."""
+    parameters, (low, high) = np.stack([u, v]), surface.domain.T[:, :, None]
+    inside = np.clip(parameters, low, high)
+    # Trims of a file end at a domain up to the digits of the larger of its ends.
+    slack = PARAMETER_SLACK * np.maximum(high - low, np.maximum(np.abs(low), np.abs(high)))
+    if not (np.abs(parameters - inside) <= slack).all():
+        (low_u, high_u), (low_v, high_v) = surface.domain
+        raise InputError(
+            f"parameters must lie in [{low_u:g}, {high_u:g}] and [{low_v:g}, {high_v:g}]"
+        )
+    return inside
 
 
 def _center(surface: NurbsSurface) -> FloatArray:
@@ -220,7 +241,8 @@ def nurbs_curvatures(surface: NurbsSurface, u: FloatArray, v: FloatArray) -> Sur
     -------
     SurfaceCurvature
         Unit normals along ``x_u × x_v`` and the principal curvatures, positive where the
-        surface bends to the normal; NaN at singular points, such as the poles of a sphere.
+        surface bends to the normal, with their directions; NaN at singular points, such as the
+        poles of a sphere (see `shape_at`).
 
     Raises
     ------
@@ -243,42 +265,62 @@ def nurbs_curvatures(surface: NurbsSurface, u: FloatArray, v: FloatArray) -> Sur
         s_11 = l_uu / a**2
         s_12 = (l_uv - b * l_uu / a) / (a * c)
         s_22 = (l_vv - 2 * b * l_uv / a + (b / a) ** 2 * l_uu) / c**2
-        mean, half = (s_11 + s_22) / 2, np.hypot((s_11 - s_22) / 2, s_12)
-    is_regular = np.isfinite(mean + half)
-    normals = np.where(is_regular[:, None], normals, np.nan)
+    return principal_values(normals, along, np.stack([s_11, s_12, s_22], 1))
+
+
+def principal_values(
+    normals: FloatArray, along: FloatArray, forms: FloatArray
+) -> SurfaceCurvature:
+    """Eigenvalues and eigenvectors of second fundamental forms.
+
+    Parameters
+    ----------
+    normals, along : (N, 3) float array
+        Unit normals and the first axes of orthonormal tangent frames; NaN is allowed.
+    forms : (N, 3) float array
+        Entries 11, 12 and 22 of the forms in these frames.
+
+    Returns
+    -------
+    SurfaceCurvature
+        NaN wherever an entry is not finite.
+    """
+    across = np.cross(normals, along)
+    half, twist = (forms[:, 0] - forms[:, 2]) / 2, forms[:, 1]
+    mean, radius = (forms[:, 0] + forms[:, 2]) / 2, np.hypot(half, twist)
+    angle = np.arctan2(twist, half)[:, None] / 2
+    first = np.cos(angle) * along + np.sin(angle) * across
+    directions = np.stack([first, np.cross(normals, first)], 1)
+    is_regular = np.isfinite(mean + radius)
     return SurfaceCurvature(
-        normals,
-        np.where(is_regular, mean + half, np.nan),
-        np.where(is_regular, mean - half, np.nan),
+        np.where(is_regular[:, None], normals, np.nan),
+        np.where(is_regular, mean + radius, np.nan),
+        np.where(is_regular, mean - radius, np.nan),
+        np.where(is_regular[:, None, None], directions, np.nan),
     )
 
 
 def nearest_parameters(
-    surface: NurbsSurface, points: FloatArray
+    surface: NurbsSurface, points: FloatArray, seeds: FloatArray | None = None
 ) -> tuple[FloatArray, FloatArray]:
     """Parameters of the points of a surface nearest to given points on or near it.
 
     Parameters
     ----------
     points : (N, 3) float array
+    seeds : (N, 2) float array, optional
+        Parameters to begin at; without them, those of the nearest point of a grid.
 
     Returns
     -------
     parameters : (N, 2) float array
-        u and v in the domain, from Gauss-Newton steps that begin at the nearest point of a
-        grid.
+        u and v in the domain, from Gauss-Newton steps.
     distances : (N,) float array
         Distances from the surface there, in model units.
     """
-    from scipy.spatial import cKDTree
-
     low, high = surface.domain.T
-    share = np.stack(np.meshgrid(*[np.linspace(0, 1, _GRID)] * 2, indexing="ij"), -1)
-    grid = np.clip(low + share.reshape(-1, 2) * (high - low), low, high)
-    origin = _center(surface)
-    seeds = evaluate_nurbs(surface, *grid.T).points - origin
-    _, nearest = cKDTree(seeds).query(points - origin)
-    parameters = grid[nearest]
+    parameters = _nearest_of_grid(surface, points) if seeds is None else seeds
+    parameters = np.clip(parameters, low, high)
     for _ in range(_STEPS):
         jet = evaluate_nurbs(surface, *parameters.T)
         miss = points - jet.points
@@ -296,3 +338,15 @@ def nearest_parameters(
             break
     found = evaluate_nurbs(surface, *parameters.T).points
     return parameters, norm(points - found)
+
+
+def _nearest_of_grid(surface: NurbsSurface, points: FloatArray) -> FloatArray:
+    from scipy.spatial import cKDTree
+
+    low, high = surface.domain.T
+    share = np.stack(np.meshgrid(*[np.linspace(0, 1, _GRID)] * 2, indexing="ij"), -1)
+    grid = np.clip(low + share.reshape(-1, 2) * (high - low), low, high)
+    origin = _center(surface)
+    seeds = evaluate_nurbs(surface, *grid.T).points - origin
+    _, nearest = cKDTree(seeds).query(points - origin)
+    return grid[nearest]

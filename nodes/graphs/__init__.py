@@ -5,6 +5,7 @@ cache        Structural keys, and the results found by them.
 encoding     What steps are given, as JSON: values, wires, sliders, lists to map over.
 errors       What can go wrong with graphs, as types, and how a mistyped name is answered.
 file         Graphs as JSON: versioned, in a stable order, and without code.
+files        The files of a run: where paths lead, and that nothing read is written over.
 graph        The lazy graph: nodes wired together, run as far as a target needs.
 kinds        The table of types: which values an input takes, and which wires.
 mermaid      The picture of a graph, as text.

@@ -135,7 +135,7 @@ def file_state(path: str | os.PathLike[str]) -> FileState:
     """
     try:
         status = Path(path).stat()
-    except OSError:
+    except (OSError, ValueError):  # a ValueError is about what can be no path
         return None
     return status.st_size, status.st_mtime_ns
 

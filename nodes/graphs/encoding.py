@@ -5,7 +5,7 @@ import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import singledispatch
-from typing import Any, NamedTuple, cast
+from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -129,28 +129,157 @@ def decode(value: Value, names: Names) -> Value:
         return value
     tagged = cast("dict[str, Value]", value)
     tag = next((tag for tag in tagged if tag in _DECODERS), "")
-    if not tag or not tagged.keys() <= {tag, "dtype"}:
+    if not tag or not tagged.keys() <= {tag, "dtype" if tag == "array" else tag}:
         raise GraphError(
-            f"cannot read {json.dumps(tagged)[:60]}: expected a value or one of "
-            f"{', '.join(_DECODERS)}"
+            f"cannot read {_shown(tagged)}: expected a value or one of {', '.join(_DECODERS)}"
         )
     try:
         return _DECODERS[tag](tagged, names)
-    except (AttributeError, TypeError, ValueError) as error:
+    except (AttributeError, TypeError, ValueError, ArithmeticError) as error:
         if isinstance(error, GraphError):
             raise
-        raise GraphError(f"cannot read {json.dumps(tagged)[:60]}: {error}") from error
+        raise GraphError(f"cannot read {_shown(tagged)}: {error}") from error
 
+
+def _array(tagged: dict[str, Value], names: Names) -> NDArray[Any]:
+    """An array, if every item is a number of its kind: the type may not change what is said."""
+    name = tagged.get("dtype", "float64")
+    if name not in _DTYPES:
+        raise ValueError(f'"dtype" must be one of {", ".join(_DTYPES)}')
+    items = np.array(decode(tagged["array"], names))
+    if items.dtype.kind not in "biuf" and items.size:
+        raise ValueError("an array holds numbers alone")
+    with np.errstate(all="ignore"):
+        # Integers from the list itself: beside others, those of 64 bits would become floats.
+        array = np.array(decode(tagged["array"], names), name)
+        is_exact = array.dtype.kind == "f" or bool((array == items).all())
+    if not is_exact or (np.isfinite(items) & ~np.isfinite(array)).any():
+        raise ValueError(f"a number does not fit into {name}")
+    return array
+
+
+def _float(tagged: dict[str, Value], _: Names) -> float:
+    if tagged["float"] not in ("inf", "-inf", "nan"):
+        raise ValueError("expected inf, -inf or nan")
+    return float(tagged["float"])
+
+
+def _shown(value: Value) -> str:
+    return json.dumps(value)[:60]
+
+
+_DTYPES: Final = (
+    "float64", "float32", "float16", "int64", "int32", "int16", "int8", "uint64", "uint32",
+    "uint16", "uint8", "bool",
+)  # fmt: skip
 
 _DECODERS: dict[str, Callable[[dict[str, Value], Names], Value]] = {
     "wire": lambda tagged, names: names.wire(tagged["wire"]),
     "param": lambda tagged, names: names.slider(tagged["param"]),
     "each": lambda tagged, names: Each(decode(tagged["each"], names)),
-    "array": lambda tagged, names: np.array(
-        decode(tagged["array"], names), np.dtype(tagged.get("dtype", "float64"))
-    ),
+    "array": _array,
     "mapping": lambda tagged, names: {
         key: decode(item, names) for key, item in tagged["mapping"].items()
     },
-    "float": lambda tagged, _: float(tagged["float"]),
+    "float": _float,
 }
+
+
+MOST_BYTES: Final = 2**26
+_MOST_VALUES: Final = 1_000_000
+_DEEPEST: Final = 64
+_LONGEST_NAME: Final = 200
+_LONGEST_INTEGER: Final = 20
+"""Digits and sign of the integers of 64 bits."""
+_TWICE, _OVERLONG = object(), object()
+
+
+def parse_json(text: str) -> Value:
+    """The value of a JSON text, without what JSON allows and nobody means.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    object
+        Objects, lists, texts, finite numbers, integers of 64 bits, booleans and None.
+
+    Raises
+    ------
+    GraphError
+        If it is none, a name stands twice in an object, a number is not finite or has too many
+        digits, or it is nested too deeply or too large; the message says where.
+    """
+    if len(text) > MOST_BYTES or sum(map(text.count, ",[{")) > _MOST_VALUES:
+        raise GraphError(
+            f"more than {_MOST_VALUES} values or {MOST_BYTES} characters: let a node read what "
+            "is large from a file of its own"
+        )
+    try:
+        content = json.loads(text, object_pairs_hook=_object, parse_int=_integer)
+    except json.JSONDecodeError as error:
+        raise GraphError(f"line {error.lineno}: not JSON: {error.msg}") from error
+    except RecursionError as error:
+        raise GraphError(f"nested too deeply: {_DEEPEST} levels at most") from error
+    _check_json(content)
+    return content
+
+
+def _object(pairs: list[tuple[str, Value]]) -> dict[Any, Value]:
+    content: dict[Any, Value] = dict(pairs)
+    if len(content) < len(pairs):
+        seen = set[str]()
+        content[_TWICE] = next(n for n, _ in pairs if n in seen or seen.add(n))
+    return content
+
+
+def _integer(digits: str) -> Value:
+    number = int(digits) if len(digits) <= _LONGEST_INTEGER else None
+    return number if number is not None and -(2**63) <= number < 2**64 else _OVERLONG
+
+
+def _check_json(content: Value) -> None:
+    """Refuse what JSON allows and nobody means, at any depth and without recursion."""
+    pending: list[tuple[str, Value, int]] = [("", content, 0)]
+    while pending:
+        at, value, depth = pending.pop()
+        if depth > _DEEPEST:
+            raise GraphError(f"{at[:60]}: nested too deeply: {_DEEPEST} levels at most")
+        if isinstance(value, dict):
+            items = cast("dict[Any, Value]", value)
+            _check_names(at or "the file", items)
+            pending += ((f"{at}.{n}" if at else n, x, depth + 1) for n, x in items.items())
+        elif isinstance(value, list):
+            several = cast("list[Value]", value)
+            if not all(type(x) in {int, float} and math.isfinite(x) for x in several):
+                pending += ((f"{at}[{i}]", x, depth + 1) for i, x in enumerate(several))
+        else:
+            fault = _fault(value)
+            if fault:
+                raise GraphError(f"{at}: {fault}")
+
+
+def _check_names(at: str, content: dict[Any, Value]) -> None:
+    for name, item in content.items():
+        if name is _TWICE:
+            raise GraphError(f"{at}: {str(item)[:60]!r} is given twice")
+        if len(name) > _LONGEST_NAME or not _is_text(name):
+            raise GraphError(f"{at}: {name[:60]!r} can be no name")
+
+
+def _fault(value: Value) -> str:
+    """What is wrong with a number or a text."""
+    if value is _OVERLONG:
+        return "a whole number has 64 bits at most"
+    if isinstance(value, float) and not math.isfinite(value):
+        return 'no finite number; infinities are {"float": "inf"}'
+    if isinstance(value, str) and not _is_text(value):
+        return "not Unicode text: half of a character stands alone"
+    return ""
+
+
+def _is_text(text: str) -> bool:
+    """Whether there is no half of a character, which JSON can escape and no file can hold."""
+    return text.isascii() or not any("\ud800" <= letter <= "\udfff" for letter in text)

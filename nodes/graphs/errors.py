@@ -54,7 +54,8 @@ def nearest(name: str, names: Iterable[str]) -> str:
     'there are mesh, ring'
     """
     known = list(names)
-    close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    is_quick = len(name) < 100 and len(known) < 1000
+    close = difflib.get_close_matches(name, known, n=1, cutoff=0.5) if is_quick else []
     if close:
         return f"did you mean {close[0]!r}?"
     if not known:

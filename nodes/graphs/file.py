@@ -2,6 +2,7 @@
 
 import json
 import os
+import stat
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -11,7 +12,7 @@ from typing import Any, Protocol, TypeVar, cast
 
 from ...fabrication.files import replacing
 from .annotations import Value
-from .encoding import Names, decode, encode
+from .encoding import MOST_BYTES, Names, decode, encode, parse_json
 from .errors import GraphError, nearest
 from .node import Node, find_node
 from .ports import Port
@@ -21,9 +22,10 @@ _Parsed = TypeVar("_Parsed")
 
 FORMAT = "spheremesh graph"
 VERSION = 1
+_LONGEST_MESSAGE = 400
 
-RENAMED_PORTS: dict[str, dict[str, str]] = {}
-"""Present names of ports by node and by the name in older graph files."""
+RENAMED_PORTS: dict[str, dict[str, str]] = {"cluster_radii": {"seed": ""}}
+"""Present names of ports by node and by the name in older graph files; empty if it has gone."""
 
 
 def encode_graph(
@@ -104,17 +106,14 @@ def decode_graph(text: str) -> dict[str, Any]:
     GraphError
         If it is no graph file of this version; the message says where.
     """
-    try:
-        content = json.loads(text)
-    except json.JSONDecodeError as error:
-        raise GraphError(f"line {error.lineno}: not JSON: {error.msg}") from error
+    content = parse_json(text)
     if not isinstance(content, dict) or cast("Any", content).get("format") != FORMAT:
         raise GraphError(f'not a graph file: "format" must be "{FORMAT}"')
     content = cast("dict[str, Any]", content)
-    if content.get("version") != VERSION:
-        raise GraphError(
-            f'"version" is {content.get("version")!r}, this spheremesh reads {VERSION}'
-        )
+    version = content.get("version")
+    if type(version) is not int or version != VERSION:
+        shown = repr(version)[:40]
+        raise GraphError(f'"version" is {shown}, this spheremesh reads {VERSION}')
     _entry(content, "title", str, "")
     _entry(content, "units", str, "")
     for name, facts in _entry(content, "params", dict, "").items():
@@ -122,6 +121,8 @@ def decode_graph(text: str) -> dict[str, Any]:
         _refuse_others(facts, ("value", "min", "max", "choices"), f"params.{name}")
         if "value" not in facts:
             raise GraphError(f'params.{name}: "value" is missing')
+        if not isinstance(facts.get("choices", []), list):
+            raise GraphError(f'params.{name}: "choices" must be a list')
     for name, step in _entry(content, "steps", dict, "").items():
         where = f"steps.{name}"
         _checked(step, dict, where)
@@ -154,10 +155,8 @@ def add_content(graph: _Graph, content: Mapping[str, Any]) -> None:
     for name, step in content["steps"].items():
         try:
             known = find_node(step["node"])
-            inputs = {
-                _present(known, port, known.inputs): decode(value, names)
-                for port, value in step["inputs"].items()
-            }
+            inputs = _present_inputs(known, step["inputs"])
+            inputs = {port: decode(value, names) for port, value in inputs.items()}
             graph.add(known.name, name, **inputs)
         except GraphError as error:
             raise GraphError(f"steps.{name}: {error}") from error
@@ -167,6 +166,19 @@ def add_content(graph: _Graph, content: Mapping[str, Any]) -> None:
                 f"{known.name}, this is {known.version}: results may differ",
                 stacklevel=2,
             )
+
+
+def _present_inputs(node: Node, inputs: Mapping[str, Value]) -> dict[str, Value]:
+    """Inputs by the present names of their ports."""
+    present: dict[str, Value] = {}
+    for old, value in inputs.items():
+        port = _present(node, old, node.inputs)
+        if not port:
+            continue
+        if port in present:
+            raise GraphError(f"{port!r} is given twice, once as {old!r}")
+        present[port] = value
+    return present
 
 
 def _wire(graph: _Graph, name: str) -> Step | Wire:
@@ -208,15 +220,28 @@ def read_graph(path: str | os.PathLike[str], parse: Callable[[str], _Parsed]) ->
     """
     name = os.fspath(path)
     try:
-        return parse(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise GraphError(f"{name}: {error.strerror}") from error
+        return parse(_text(Path(path)))
     except UnicodeDecodeError as error:
-        raise GraphError(f"{name}: not UTF-8 text") from error
-    except RecursionError as error:
-        raise GraphError(f"{name}: nested too deeply") from error
-    except GraphError as error:
-        raise GraphError(f"{name}: {error}") from error
+        raise GraphError(f"{name}: not UTF-8 text: byte {error.start} is none of it") from error
+    except (OSError, ValueError) as error:
+        text = getattr(error, "strerror", None) or str(error)
+        text = text if len(text) <= _LONGEST_MESSAGE else f"{text[:_LONGEST_MESSAGE]}..."
+        raise GraphError(f"{name}: {text}") from error
+
+
+def _text(path: Path) -> str:
+    """Text of a regular file: pipes and devices may never end."""
+    status = path.stat()
+    if not stat.S_ISREG(status.st_mode):
+        raise GraphError("not a file: save the graph to one")
+    with path.open("rb") as file:
+        data = file.read(MOST_BYTES + 1)
+    if len(data) > MOST_BYTES:
+        raise GraphError(
+            f"longer than {MOST_BYTES} bytes: let a node read what is large from a file "
+            "of its own"
+        )
+    return data.decode("utf-8")
 
 
 def _in_order(steps: dict[str, Any]) -> dict[str, Any]:
@@ -235,11 +260,18 @@ def _in_order(steps: dict[str, Any]) -> dict[str, Any]:
     except CycleError as error:
         cycle = " -> ".join(reversed(cast("list[str]", error.args[1])))
         raise GraphError(f"the steps form a cycle: {cycle}") from error
+    position = {name: i for i, name in enumerate(steps)}
     ordered: dict[str, Any] = {}
-    while len(ordered) < len(steps):
-        for name, step in steps.items():
-            if name not in ordered and needed[name] <= ordered.keys():
-                ordered[name] = step
+    for first in steps:
+        pending = [first]
+        while pending:
+            name = pending[-1]
+            missing = needed[name] - ordered.keys() if name not in ordered else ()
+            if missing:
+                pending.extend(sorted(missing, key=position.__getitem__, reverse=True))
+            else:
+                pending.pop()
+                ordered.setdefault(name, steps[name])
     return ordered
 
 

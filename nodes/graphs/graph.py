@@ -10,16 +10,19 @@ from typing import Any
 
 import numpy as np
 
+from ...fabrication.output_folder import OutputFolder
 from .annotations import Value
 from .cache import Cache, digest
 from .errors import GraphError, nearest
 from .file import add_content, decode_graph, encode_graph, read_graph, write_graph
+from .files import Folders
 from .mermaid import mermaid_text
 from .node import find_node, known_graph, replaced
-from .ports import UNITS, Port, check_range
+from .ports import UNITS, Port, check_range, check_slider
 from .results import own, snapshot
 from .run import OnStep, Run, output, run_steps
 from .wires import (
+    Each,
     Param,
     Place,
     Step,
@@ -29,6 +32,7 @@ from .wires import (
     check_owner,
     connect,
     connect_all,
+    output_wire,
     parents,
     sources,
 )
@@ -128,9 +132,11 @@ class Graph:
         if name in self._params:
             raise GraphError(f"there is a param {name!r} already; change it with set")
         check_name(name, "param")
+        if isinstance(value, Each | Param | Step | Wire):
+            raise GraphError(f"param {name}: a slider holds a value, no wire and no each(...)")
         value = _plain(value)
         port = Port(name=name, min=min, max=max, choices=tuple(choices))
-        check_range(value, port, f"param {name}")
+        check_slider(value, port)
         self._values[name] = value
         self._params[name] = Param(self, name, value, port)
         return self._params[name]
@@ -217,7 +223,7 @@ class Graph:
         *targets: Target,
         on_step: OnStep | None = None,
         read_from: str | os.PathLike[str] | None = None,
-        write_to: str | os.PathLike[str] | None = None,
+        write_to: str | os.PathLike[str] | OutputFolder | None = None,
     ) -> Value:
         """The values of targets; only the steps that they need and that have changed are run.
 
@@ -230,9 +236,10 @@ class Graph:
         on_step : callable, optional
             Called with the name of each step touched and ``"running"``, ``"done"``,
             ``"cached"`` or ``"failed"``.
-        read_from, write_to : path, optional
+        read_from, write_to : path or OutputFolder, optional
             Folders of the relative paths that nodes read and write; the working directory by
-            default. A file that a step has written is read where it was written.
+            default. A file that a step has written is read where it was written. An
+            `OutputFolder` also says where steps may write.
 
         Returns
         -------
@@ -243,6 +250,8 @@ class Graph:
         ------
         NodeError
             If a step fails; ``cause`` is what its function raised.
+        GraphError, InputError
+            If a step would write over a file that a step reads, or where it must not.
         """
         if not targets:
             raise GraphError(f"run needs a target; {nearest('', self._steps)}")
@@ -252,14 +261,14 @@ class Graph:
         steps = [t.step if isinstance(t, Wire) else t for t in wanted]
         names = [step.name for step in steps if isinstance(step, Step)]
         values = own(self._values, snapshot)
-        folders = _folder(read_from), _folder(write_to)
+        output_to = write_to if isinstance(write_to, OutputFolder) else _folder(write_to)
         run = Run(
             dict(self._steps),
             values,
             self.units,
             self._cache,
             on_step or (lambda _step, _state: None),
-            *folders,
+            Folders(_folder(read_from), output_to),
         )
         text = partial(encode_graph, self.title, self.units, self.params, run.steps)
         try:
@@ -292,7 +301,7 @@ class Graph:
         if step_name not in self._steps:
             raise GraphError(f"no step {step_name!r}; {nearest(step_name, self._steps)}")
         step = self._steps[step_name]
-        return getattr(step, port) if dot else step
+        return output_wire(step, port) if dot else step
 
     def slider(self, name: str) -> Param:
         """A slider by name.

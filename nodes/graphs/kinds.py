@@ -1,11 +1,11 @@
 """Kinds of annotations: which values an input takes, and which wires."""
 
 import os
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import MISSING, dataclass, fields, is_dataclass
 from numbers import Complex, Integral, Number, Real
 from pathlib import Path
-from typing import Any, Literal, cast, get_args
+from typing import Any, Literal, cast, get_args, get_type_hints
 
 import numpy as np
 
@@ -101,7 +101,56 @@ class _Row:
 
 
 def _row(target: Member) -> _Row:
-    return _ROWS.get(target.kind, _OTHERS)
+    return _RECORD if _is_record(target.kind) else _ROWS.get(target.kind, _OTHERS)
+
+
+def _is_record(kind: Hint) -> bool:
+    """Whether it is a report: a dataclass that is a mapping of its fields."""
+    return is_dataclass(kind) and _is_class(kind, Mapping)
+
+
+def record_fault(hint: Hint, value: Value) -> str:
+    """What keeps a mapping from being the report that an input takes.
+
+    Parameters
+    ----------
+    hint : type
+        Of the input.
+    value : object
+        What it was given.
+
+    Returns
+    -------
+    str
+        The end of a message; empty if no report is asked for or no mapping given.
+    """
+    kinds = [member.kind for member in members(hint) if _is_record(member.kind)]
+    if not kinds or not isinstance(value, dict) or accepts(hint, value):
+        return ""
+    given = cast("dict[str, Value]", value)
+    hints, needed = _record_fields(kinds[0])
+    faults = [f"misses {name!r}" for name in needed if name not in given]
+    faults += [f"has no entry {str(name)[:40]!r}" for name in given if name not in hints]
+    if not faults:
+        faults = [f"{n!r} is none" for n, item in given.items() if not accepts(hints[n], item)]
+    rest = f", ... {len(faults) - 8} more" if len(faults) > 8 else ""
+    return f": {kinds[0].__name__} {', '.join(faults[:8])}{rest}"
+
+
+def _record_fields(kind: type[Any]) -> tuple[dict[str, Hint], list[str]]:
+    """Types of the fields of a record, and the names of those without a default."""
+    needed = [f.name for f in fields(kind) if f.default is f.default_factory is MISSING]
+    return get_type_hints(kind), needed
+
+
+def _is_record_of(target: Member, value: Value) -> bool:
+    if not isinstance(value, dict):
+        return _is_instance(target, value)
+    given = cast("dict[str, Value]", value)
+    hints, needed = _record_fields(target.kind)
+    return set(needed) <= given.keys() <= hints.keys() and all(
+        accepts(hints[name], item) for name, item in given.items()
+    )
 
 
 def _number_row(kind: type) -> _Row:
@@ -248,6 +297,9 @@ def _is_class(kind: Hint, base: Hint) -> bool:
 
 
 _ANYTHING = _Row(lambda _, __: True, lambda _, __: True)
+_RECORD = _Row(
+    _is_record_of, _may_be_member, (dict,), lambda target, value: target.kind(**value)
+)
 _LIST = _Row(_is_list, _may_be_list)
 _ROWS: dict[Hint, _Row] = {
     Any: _ANYTHING,

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .annotations import Value, type_name
+from .cache import digest
 from .errors import GraphError
-from .kinds import accepts, is_bool
+from .kinds import accepts, is_bool, record_fault
 
 REQUIRED = inspect.Parameter.empty
 UNITS = ("mm", "cm", "m", "in", "ft")
@@ -84,7 +85,8 @@ def check_value(port: Port, value: object, where: str) -> None:
         If the type, the range or the choice is wrong; the message says what is allowed.
     """
     if not accepts(port.type, value):
-        raise GraphError(f"{where} = {_brief(value)}: must be {type_name(port.type)}")
+        fault = record_fault(port.type, value)
+        raise GraphError(f"{where} = {_brief(value)}: must be {type_name(port.type)}{fault}")
     check_range(value, port, where)
 
 
@@ -104,11 +106,14 @@ def check_range(value: object, port: Port, where: str) -> None:
     GraphError
         The message says what is allowed.
     """
-    if port.choices and value is not None and value not in port.choices:
+    is_array = isinstance(value, np.ndarray)
+    if port.choices and value is not None and (is_array or value not in port.choices):
         allowed = ", ".join(map(repr, port.choices))
         raise GraphError(f"{where} = {_brief(value)}: must be one of {allowed}")
     if not isinstance(value, int | float | np.integer | np.floating) or is_bool(value):
         return
+    if isinstance(value, int) and not -(2**63) <= value < 2**63:
+        raise GraphError(f"{where}: a whole number has 64 bits at most")
     low, high = port.min, port.max
     # written so that a NaN is outside of every range
     if (low is not None and not value >= low) or (high is not None and not value <= high):
@@ -117,6 +122,28 @@ def check_range(value: object, port: Port, where: str) -> None:
         )
         unit = f" {port.unit}" if port.unit else ""
         raise GraphError(f"{where} = {value}: must be {' and '.join(parts)}{unit}")
+
+
+def check_slider(value: object, port: Port) -> None:
+    """Refuse a slider whose range is none, or that holds what is no value.
+
+    Raises
+    ------
+    GraphError
+        The message names the slider.
+    """
+    where = f"param {port.name}"
+    for name, end in (("min", port.min), ("max", port.max)):
+        if end is not None and (not isinstance(end, int | float) or is_bool(end)):  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise GraphError(f"{where}: {name} = {_brief(end)}: must be a number")
+    for choice in port.choices:
+        if not isinstance(choice, bool | int | float | str | None):
+            raise GraphError(f"{where}: choice {_brief(choice)}: must be a number or a text")
+    check_range(value, port, where)
+    try:
+        digest(value)
+    except TypeError as error:
+        raise GraphError(f"{where}: {error}") from error
 
 
 def _brief(value: Value) -> str:

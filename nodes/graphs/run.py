@@ -10,6 +10,16 @@ from typing import Any, cast
 from .annotations import Value
 from .cache import Cache, Entry, digest, file_state
 from .errors import GraphError, NodeError
+from .files import (
+    FileUses,
+    Folders,
+    is_file,
+    is_wired,
+    is_writer,
+    is_written,
+    note_known_files,
+    paths_of,
+)
 from .kinds import convert
 from .node import NodeWarning, collected_messages, replaced
 from .ports import Port, check_value
@@ -34,9 +44,9 @@ class Run:
     on_step : callable
         Called with the name of a step and ``"running"``, ``"done"``, ``"cached"`` or
         ``"failed"``.
-    read_from, write_to : Path, optional
-        Folders of the relative paths that nodes read and write; the working directory by
-        default. What a step has written is read where it was written.
+    folders : Folders
+        Where the relative paths are that nodes read and write. What a step has written is read
+        where it was written.
     entries : dict of str to Entry
         Results at hand so far.
     given : dict of (str, str) to object
@@ -48,8 +58,7 @@ class Run:
     units: str
     cache: Cache
     on_step: OnStep
-    read_from: Path | None = None
-    write_to: Path | None = None
+    folders: Folders = field(default_factory=Folders)
     keys: dict[str, bytes] = field(default_factory=dict[str, bytes])
     entries: dict[str, Entry] = field(default_factory=dict[str, Entry])
     given: dict[tuple[str, str], Value] = field(default_factory=dict[tuple[str, str], Value])
@@ -75,13 +84,16 @@ def run_steps(run: Run, targets: Iterable[str]) -> None:
     for step in needed:
         for text in replaced(step.node):
             warnings.warn(f"step {step.name!r}: {text}", NodeWarning, stacklevel=3)
+    uses = FileUses(run.folders)
+    note_known_files(uses, needed, run.values)
     for step in needed:
         ports = step.node.inputs
-        files = [source for name, source in step.sources if _is_file(ports[name])]
+        files = [source for name, source in step.sources if is_file(ports[name])]
         # The state of a file is part of the key, so its path must be known before.
         _bring(run, [w.step.name for w in files if isinstance(w, Wire)])
+        _note_files(run, step, uses)
         run.keys[step.name] = _key(run, step)
-    writers = [step.name for step in needed if _is_writer(step)]
+    writers = [step.name for step in needed if is_writer(step)]
     _bring(run, [*wanted, *writers])
 
 
@@ -149,32 +161,21 @@ def _given(run: Run, step: Step, port: Port) -> Value:
     return run.given[at]
 
 
+def _note_files(run: Run, step: Step, uses: FileUses) -> None:
+    """Note the files whose paths come by wires; those of writers are read, but no inputs."""
+    for port in step.node.inputs.values():
+        given = _given(run, step, port) if is_file(port) else None
+        if is_wired(given) and (port.writes or not is_written(given)):
+            uses.note(step, port, _resolve(run, given))
+
+
 def _argument(run: Run, step: Step, port: Port) -> Value:
-    value = _resolve(run, _given(run, step, port))
-    folder = _folder(run, step, port)
-    return value if folder is None else _beside(folder, value)
-
-
-def _folder(run: Run, step: Step, port: Port) -> Path | None:
-    """Where the relative paths of an input are; None for the working directory."""
-    if not port.reads:
-        return run.write_to if port.writes else None
-    wires = sources(_given(run, step, port))
-    is_written = any(isinstance(wire, Wire) and _is_writer(wire.step) for wire in wires)
-    return run.write_to if is_written else run.read_from
-
-
-def _is_writer(step: Step) -> bool:
-    return any(port.writes for port in step.node.inputs.values())
-
-
-def _beside(folder: Path, value: Value) -> Value:
-    """Paths with relative ones taken from a folder."""
-    if value is None:
-        return None
-    if isinstance(value, list | tuple):
-        return [_beside(folder, path) for path in cast("list[Value]", value)]
-    return str(folder / value)
+    given = _given(run, step, port)
+    value = _resolve(run, given)
+    if not is_file(port):
+        return value
+    is_target = is_written(given) if port.reads else port.writes
+    return run.folders.target(value) if is_target else run.folders.source(value)
 
 
 def _resolve(run: Run, value: Value) -> Value:
@@ -204,8 +205,8 @@ def _key(run: Run, step: Step) -> bytes:
     for port in step.node.inputs.values():
         given = _given(run, step, port)
         parts.append(_key_part(run, given))
-        if _is_file(port):
-            paths = list(map(_absolute, _paths(_argument(run, step, port))))
+        if is_file(port):
+            paths = list(map(_absolute, paths_of(_argument(run, step, port))))
             parts.append(paths)
             parts.append([file_state(path) for path in paths] if port.reads else None)
     return digest(parts)
@@ -223,12 +224,12 @@ def _execute(run: Run, step: Step) -> Entry:
             run.on_step(step.name, "failed")
             name = step.node.name
             what = f"step {step.name!r}" + (f" (node {name})" if name != step.name else "")
-            text = _as_given(run, str(error)) or type(error).__name__
+            text = run.folders.as_given(str(error)) or type(error).__name__
             raise NodeError(f"{what} failed: {text}", step.name, name, error, text) from error
     written = _written(run, step, arguments)
     run.on_step(step.name, "done")
     states = tuple((path, file_state(path)) for path in map(_absolute, written))
-    texts = (_as_given(run, text) for text in messages)
+    texts = (run.folders.as_given(text) for text in messages)
     return Entry(own(_returned(value, written)), tuple(dict.fromkeys(texts)), states)
 
 
@@ -239,8 +240,8 @@ def _written(run: Run, step: Step, arguments: Mapping[str, Any]) -> dict[str, st
         for port in step.node.inputs.values()
         if port.writes
         for told, given in zip(
-            _paths(arguments[port.name]),
-            _paths(_resolve(run, _given(run, step, port))),
+            paths_of(arguments[port.name]),
+            paths_of(_resolve(run, _given(run, step, port))),
             strict=True,
         )
     }
@@ -257,11 +258,6 @@ def _returned(value: Value, written: Mapping[str, str]) -> Value:
         several = cast("list[Any] | tuple[Any, ...]", value)
         return remade(several, [_returned(item, written) for item in several])
     return value
-
-
-def _as_given(run: Run, text: str) -> str:
-    """A message without the folder of the run, which is none of the user's."""
-    return text if run.write_to is None else text.replace(f"{run.write_to}{os.sep}", "")
 
 
 def _call(step: Step, arguments: Mapping[str, Any]) -> Value:
@@ -295,19 +291,6 @@ def _call_each(step: Step, arguments: Mapping[str, Any]) -> Value:
     if not step.node.has_fields:
         return rows
     return step.node.result_type(*([row[i] for row in rows] for i in range(len(step.wires))))
-
-
-def _is_file(port: Port) -> bool:
-    return port.reads or port.writes
-
-
-def _paths(value: Value) -> list[str]:
-    """The files of a path port: none, one, or one for each item."""
-    if value is None:
-        return []
-    if isinstance(value, str | os.PathLike):
-        return [os.fspath(cast("str | os.PathLike[str]", value))]
-    return [path for item in value for path in _paths(item)]
 
 
 def _absolute(path: str) -> str:

@@ -1,6 +1,6 @@
 """What a graph is made of: sliders, steps, the wires between them, and the checks of these."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeAlias, cast
 
@@ -79,13 +79,7 @@ class Step:
     def __getattr__(self, port: str) -> Wire:
         if port.startswith("_"):
             raise AttributeError(port)
-        outputs = self.node.outputs
-        if port not in outputs:
-            raise UnknownPortError(
-                f"step {self.name!r} (node {self.node.name}) has no output {port!r}; "
-                f"{nearest(port, outputs)}"
-            )
-        return Wire(self, outputs[port])
+        return output_wire(self, port)
 
     @property
     def wires(self) -> tuple[Wire, ...]:  # numpydoc ignore=RT01
@@ -101,6 +95,23 @@ class Step:
     def is_mapped(self) -> bool:  # numpydoc ignore=RT01
         """Whether an input is a list to map over, so that the outputs are lists."""
         return any(isinstance(value, Each) for value in self.inputs.values())
+
+
+def output_wire(step: Step, port: str) -> Wire:
+    """An output of a step by name.
+
+    Raises
+    ------
+    UnknownPortError
+        If there is none; the message gives the nearest.
+    """
+    outputs = step.node.outputs
+    if port not in outputs:
+        raise UnknownPortError(
+            f"step {step.name!r} (node {step.node.name}) has no output {port!r}; "
+            f"{nearest(port, outputs)}"
+        )
+    return Wire(step, outputs[port])
 
 
 Target: TypeAlias = Step | Wire | Param | str
@@ -277,11 +288,16 @@ def _connect_each(place: Place, port: Port, items: Value) -> Value:
         items = _only_output(items, list[port.type], where)
     if isinstance(items, Wire):
         check_owner(place.graph, items)
+        if not fits(items.type, Iterable[Any]):
+            raise GraphError(f"{where}: each needs a list, {items} is {type_name(items.type)}")
         _check_wire(items, element_type(items.type), port, f"each of {where}")
         return items
     values = place.values[items.name] if isinstance(items, Param) else items
-    if isinstance(values, str | bytes) or not hasattr(values, "__len__"):
+    is_list = hasattr(values, "__len__") and getattr(values, "ndim", 1) > 0
+    if isinstance(values, str | bytes) or not is_list:
         raise GraphError(f"{where}: each needs a list, not {type(values).__name__}")
+    if any(isinstance(item, Each) for item in values):
+        raise GraphError(f"{where}: each within each; give one list")
     connected = [connect(place, port, item, f"[{i}]") for i, item in enumerate(values)]
     return items if isinstance(items, Param) else connected
 

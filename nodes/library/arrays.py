@@ -18,6 +18,9 @@ VertexAxes: TypeAlias = Annotated[FloatArray, ArrayFacts("axes of vertices", ("V
 VertexDirections: TypeAlias = Annotated[
     FloatArray, ArrayFacts("directions of vertices", ("V", 2, 3))
 ]
+VertexCurvatures: TypeAlias = Annotated[
+    FloatArray, ArrayFacts("principal curvatures of vertices", ("V", 2))
+]
 VertexDistances: TypeAlias = Annotated[FloatArray, ArrayFacts("distances of vertices", ("V",))]
 VertexAngles: TypeAlias = Annotated[
     FloatArray, ArrayFacts("angles of vertices", ("V",)), _DEGREES

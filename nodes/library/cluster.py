@@ -57,7 +57,7 @@ class Clusters(NamedTuple):
     report: MouldsReport
 
 
-@node
+@node(version="2")
 def cluster_radii(
     sphere_mesh: SphereMesh,
     k: Annotated[int, Port(min=1)],
@@ -132,7 +132,7 @@ def cluster_radii(
         warn(f"{len(reassigned)} faces are too large for their mould and moved to a larger one")
     if len(clusters.radii) < k:
         warn(
-            f"{len(clusters.radii)} moulds suffice: no more can be told apart by "
+            f"{len(clusters.radii)} of {k} moulds: no more can be told apart by "
             f"{same_sagitta:g} mm of sagitta over the largest blank"
         )
     report = MouldsReport(

@@ -200,10 +200,7 @@ def smooth_envelope(
 
 @node
 def conjugacy(
-    along_u: FloatArray,
-    along_v: FloatArray,
-    mixed: FloatArray,
-    lift: FloatArray | None = None,
+    along_u: FloatArray, along_v: FloatArray, mixed: FloatArray, lift: FloatArray | None = None
 ) -> Numbers:
     """How far a parametrisation or a net is from conjugate: distance of f_uv from a span.
 

@@ -1,18 +1,22 @@
 """Meshes to start from: read from files, or exactly circular nets."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
-from ...fabrication.mesh_files import reader, writer
+from ...fabrication.mesh_files import reader, surface_files, writer
+from ...fabrication.sizes import doubt_size
+from ...kernel.errors import InputError
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.surfaces import circular_nets as surfaces
 from ...kernel.surfaces import triangulated
-from ..graphs.node import node
+from ...kernel.surfaces.surface import Surface
+from ..graphs.node import node, warn
 from ..graphs.ports import Length, Port, ReadPath, WritePath
 from .arrays import VertexNormals
 
+FileUnits = Annotated[Literal["", "mm", "cm", "m", "in", "ft"], Port(graph_units=True)]
 Count = Annotated[int, Port(min=1, max=2000)]
 
 
@@ -24,17 +28,31 @@ class SampledSurface(NamedTuple):
 
 
 @node
-def read_mesh(path: ReadPath, layer: str = "", n_u: Count = 24, n_v: Count = 24) -> Mesh:
+def read_mesh(
+    path: ReadPath,
+    layer: str = "",
+    n_u: Count = 24,
+    n_v: Count = 24,
+    edge_length: Length | None = None,
+    units: FileUnits = "",
+) -> Mesh:
     """Read a mesh from a file.
 
     Parameters
     ----------
     path : path
-        An OBJ, OFF, PLY, STL or Rhino .3dm file; polygons are kept as they are.
+        An OBJ, OFF, PLY, STL or Rhino .3dm file; with ``spheremesh[formats]`` also VTK, VTU,
+        Gmsh, Nastran, glTF and others. Polygons are kept as they are. What was mended or left
+        out is a warning.
     layer : str
-        Only what is on this layer (.3dm) or in this group (OBJ), and below.
+        Only what is on this layer (.3dm) or in this group (OBJ), and below; several with
+        commas.
     n_u, n_v : int
-        Faces along u and v of each surface, where a .3dm holds surfaces and no meshes.
+        Rows of faces along u and v of each surface in a .3dm.
+    edge_length : float, optional
+        Length of the edges of faces on surfaces in a .3dm, instead of numbers of rows.
+    units : str
+        Units that the file must have, if it names any; in a graph, those of the graph.
 
     Returns
     -------
@@ -49,7 +67,64 @@ def read_mesh(path: ReadPath, layer: str = "", n_u: Count = 24, n_v: Count = 24)
     ...     read_mesh(write_mesh(vase_mesh(12, 6), f"{folder}/vase.obj")).n_faces
     72
     """
-    return reader.read_mesh(path, layer, n_u, n_v)
+    content = reader.read_content(path, layer, n_u, n_v, edge_length)
+    if units and content.units not in ("", units):
+        raise InputError(
+            f"cannot read {path}: it is drawn in {content.units}, not in {units}; use units "
+            f"{content.units!r}"
+        )
+    mesh = reader.content_mesh(content, path)
+    actual = content.units or units
+    for remark in (*content.remarks, doubt_size(mesh, actual) if actual else ""):
+        if remark:
+            warn(remark)
+    return mesh
+
+
+@node
+def read_surface(
+    path: ReadPath,
+    layer: str = "",
+    edge_length: Length | None = None,
+    n_u: Count = 24,
+    n_v: Count = 24,
+) -> Surface:
+    """Read the surfaces of a Rhino file with their exact normals and curvatures.
+
+    Parameters
+    ----------
+    path : path
+        A .3dm file with surfaces, polysurfaces or extrusions.
+    layer : str
+        Only what is on this layer, and below.
+    edge_length : float, optional
+        Length of the edges of the mesh on the surfaces, instead of numbers of rows.
+    n_u, n_v : int
+        Rows of faces along u and v of each surface.
+
+    Returns
+    -------
+    Surface
+        A mesh whose vertices lie on the surfaces, with the normals, principal curvatures and
+        directions of the surfaces there, in the units of the file.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import rhino3dm
+    >>> from spheremesh.nodes import read_surface
+    >>> ball = rhino3dm.Sphere(rhino3dm.Point3d(0, 0, 0), 2.0).ToNurbsSurface()
+    >>> model = rhino3dm.File3dm()
+    >>> with TemporaryDirectory() as folder:
+    ...     _ = model.Objects.AddSurface(ball), model.Write(f"{folder}/ball.3dm", 8)
+    ...     surface = read_surface(f"{folder}/ball.3dm", edge_length=0.5)
+    >>> surface.mesh.n_faces, surface.curvatures.mean().round(9)
+    (325, np.float64(-0.5))
+    """
+    content = surface_files.read_surface(path, layer, n_u, n_v, edge_length)
+    for remark in content.remarks:
+        warn(remark)
+    return content.surface
 
 
 @node

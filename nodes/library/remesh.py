@@ -356,10 +356,6 @@ def relax_congruence(
     """
     target = CongruenceQuality(max_complex, float(np.radians(max_axis_angle)))
     result = relax.relax_congruence(
-        mesh,
-        spheres,
-        lambda rows: directions.complex_share(mesh, rows),
-        target,
-        radius,
+        mesh, spheres, lambda rows: directions.complex_share(mesh, rows), target, radius
     )
     return Relaxed(result.spheres, reports.relaxation_report(result))

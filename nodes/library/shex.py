@@ -297,10 +297,7 @@ def tangent_sphere_shex(
         left_out=[{"vertex": vertex, "reason": reason} for vertex, reason in dual.left_out],
         crossing_faces=_name_faces(dual, crossing),
         far_corners=_name_faces(dual, far),
-        vertex_error={
-            "max": miss,
-            "relative_to_edge": miss / mean_edge_length(result.mesh),
-        },
+        vertex_error={"max": miss, "relative_to_edge": miss / mean_edge_length(result.mesh)},
         vertex_ids=dual.vertex_ids.tolist(),
     )
     if dual.left_out:

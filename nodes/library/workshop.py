@@ -8,6 +8,7 @@ import numpy as np
 from ...fabrication.audit.report import audit_model
 from ...fabrication.audit.subjects import AuditLimits
 from ...fabrication.model import Model
+from ...fabrication.sizes import model_extents
 from ...fabrication.solids.cadquery_assembly import beams_to_cadquery, to_cadquery
 from ...fabrication.step.check import check_part21
 from ...kernel.analysis import angle_summary
@@ -28,7 +29,7 @@ from .arrays import PanelLabels
 from .cluster import BlanksReport, MouldsReport
 from .fabricate import CutReport
 from .optimise import OptimumReport
-from .support import BeamsReport, LandingReport
+from .support import BeamsReport, DrillingReport, LandingReport
 
 Millimeters = Annotated[float, Port(unit="mm", min=0)]
 Degrees = Annotated[float, Port(unit="deg", min=0, max=180)]
@@ -78,7 +79,7 @@ class PanellingReport(Report):
     Attributes
     ----------
     input : dict
-        ``vertices``, ``faces`` and ``units``.
+        ``vertices``, ``faces``, ``units``, ``size`` along x, y and z, and ``mean_edge``.
     angles_deg : dict
         ``planar`` and ``spherical`` (what is built), and with moulds ``unclustered``.
     vertex_error, edge_gap : dict
@@ -170,7 +171,7 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     units: Units = "m",
     beams: Beams | None = None,
     annuli_report: AnnuliReport | None = None,
-    beams_report: BeamsReport | None = None,
+    beams_report: BeamsReport | DrillingReport | None = None,
     max_twist: Degrees = 1.0,
     max_length: Millimeters | None = None,
 ) -> Audit:
@@ -194,9 +195,9 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     units : str
     beams : Beams, optional
     annuli_report : AnnuliReport, optional
-    beams_report : BeamsReport, optional
+    beams_report : BeamsReport or DrillingReport, optional
         Reports of the nodes `annulus_support` and `beams`: what they rejected is among the
-        errors then.
+        errors then. That of `drilling_marks` rejects nothing.
     max_twist : float
         Largest angle between a beam and a node axis.
     max_length : float, optional
@@ -328,7 +329,13 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         found = {name: moulds[name] for name in found}
     miss = float(vertex_error(sphere_mesh).max())
     return PanellingReport(
-        input={"vertices": mesh.n_vertices, "faces": mesh.n_faces, "units": units},
+        input={
+            "vertices": mesh.n_vertices,
+            "faces": mesh.n_faces,
+            "units": units,
+            "size": model_extents(mesh),
+            "mean_edge": mean_edge_length(mesh),
+        },
         angles_deg=angles,
         vertex_error={"max": miss, "relative_to_edge": miss / mean_edge_length(mesh)},
         edge_gap=dict(cut["edge_gap"]),

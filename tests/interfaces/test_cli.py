@@ -87,7 +87,7 @@ def test_run_writes_the_files_of_a_target(panelled: Panelled, tmp_path: Path) ->
     arguments = ["run", str(out / "graph.json"), "-o", str(tmp_path), "--target", "table"]
     result = CliRunner().invoke(main, arguments)
     assert result.exit_code == 0, result.stderr
-    assert [path.name for path in tmp_path.iterdir()] == ["schedule.csv"]
+    assert [path.name for path in tmp_path.iterdir() if path.name[0] != "."] == ["schedule.csv"]
 
 
 def test_a_job_with_moved_sliders_tells_of_itself(panelled: Panelled, tmp_path: Path) -> None:
@@ -118,7 +118,7 @@ def test_values_of_targets_are_strict_json(tmp_path: Path) -> None:
     result = CliRunner().invoke(main, [*arguments, "-o", str(tmp_path / "out")])
     assert result.exit_code == 0, result.stderr
     assert json.loads(result.stdout) == {"few.radii": [None]}
-    assert "1 moulds suffice" in result.stderr
+    assert "1 of 2 moulds" in result.stderr
 
 
 def test_nodes_lists_and_explains() -> None:

@@ -10,30 +10,16 @@ from .setting import Group, Setting, Unknowns
 
 
 def blocks(setting: Setting) -> tuple[Block, ...]:
-    """What each residual depends on: the two faces of an edge.
-
-    Returns
-    -------
-    tuple of Block
-        One row per interior edge.
-    """
+    """What each residual depends on: the two faces of an edge; a row per interior edge."""
     first, second = setting.edge_faces.T
     return Block(Group.SPHERE, first), Block(Group.SPHERE, second)
 
 
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """``√w (g |g| - cos² α)`` over each edge, with ``g = <<S, S'>>`` the cosine of the angle.
+    """``√w (g |g| - cos² α)``, (E,), with ``g = <<S, S'>>`` the cosine of the angle.
 
-    Parameters
-    ----------
-    setting : Setting
-        What stays fixed; edge weights w and target angle α.
-
-    Returns
-    -------
-    (E,) float array
-        Residuals. Where neighbours meet at less than 90 degrees they are the paper's
-        ``g² - cos² α``; a spike, g = -1, counts 2 and not 0.
+    Where neighbours meet at less than 90 degrees they are the paper's ``g² - cos² α``, with
+    edge weights w and target angle α; a spike, g = -1, counts 2 and not 0.
 
     References
     ----------
@@ -45,13 +31,7 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
-    """Derivatives by the rows of the two faces.
-
-    Returns
-    -------
-    tuple of two (E, 5) float arrays
-        ``2 √w |g|`` times the derivatives of the product.
-    """
+    """Derivatives by the rows of the two faces, (E, 5): ``2 √w |g|`` times the product's."""
     first, second = _rows_at_middles(setting, unknowns)
     slope = 2 * np.sqrt(setting.edge_weights) * np.abs(minkowski(first, second))
     return tuple(

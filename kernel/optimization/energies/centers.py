@@ -12,12 +12,9 @@ from .setting import Setting, Unknowns
 
 
 def center_lines(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """Vectors ``D = A B' - A' B`` across the interior edges.
+    """Vectors ``D = A B' - A' B`` across the interior edges, (E, 3).
 
-    Returns
-    -------
-    (E, 3) float array
-        Normals of the planes in which neighbours meet, not of unit length.
+    Normals of the planes in which neighbours meet, not of unit length.
     """
     first, second = (unknowns.spheres[faces] for faces in setting.edge_faces.T)
     b, c = setting.edge_middles
@@ -27,18 +24,9 @@ def center_lines(setting: Setting, unknowns: Unknowns) -> FloatArray:
 def center_line_gradients(
     setting: Setting, unknowns: Unknowns, edges: IntArray, directions: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Derivatives of ``D·a`` by the rows of the two faces.
+    """Derivatives of ``D·a``, for vectors a (m, 3), by the rows of the two faces, (m, 5).
 
-    Parameters
-    ----------
-    edges : (m,) int array
-    directions : (m, 3) float array
-        Vectors a.
-
-    Returns
-    -------
-    tuple of two (m, 5) float arrays
-        The derivatives by C are zero.
+    Those by C are zero.
     """
     first, second = (unknowns.spheres[faces] for faces in setting.edge_faces[edges].T)
     b, c = (middles[edges] for middles in setting.edge_middles)

@@ -8,33 +8,15 @@ from .setting import Group, Setting, Unknowns
 
 
 def blocks(setting: Setting) -> tuple[Block, ...]:
-    """What each residual depends on: a vertex.
-
-    Returns
-    -------
-    tuple of Block
-        Three rows per vertex.
-    """
+    """What each residual depends on: a vertex, with three rows."""
     return (Block(Group.VERTEX, np.repeat(np.arange(setting.n_vertices), 3)),)
 
 
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:  # noqa: ARG001 - as all terms
-    """Displacement of each vertex.
-
-    Returns
-    -------
-    (3 V,) float array
-        Residuals, in mean edges.
-    """
+    """Displacement of each vertex, (3 V,), in mean edges."""
     return unknowns.displacements.ravel()
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  # noqa: ARG001
-    """Derivatives by the point of the vertex.
-
-    Returns
-    -------
-    tuple of one (3 V, 3) float array
-        Identities.
-    """
+    """Derivatives by the point of the vertex: identities (3 V, 3)."""
     return (np.tile(np.eye(3), (setting.n_vertices, 1)),)

@@ -8,23 +8,12 @@ from .setting import Group, Setting, Unknowns
 
 
 def blocks(setting: Setting) -> tuple[Block, ...]:
-    """What each residual depends on: the dual normal of a node.
-
-    Returns
-    -------
-    tuple of Block
-        One row per interior vertex.
-    """
+    """What each residual depends on: the dual normal of a node; a row per interior vertex."""
     return (Block(Group.NORMAL, np.arange(len(setting.node_vertices))),)
 
 
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:  # noqa: ARG001 - as all terms
-    """``|n|² - 1`` of each node.
-
-    Returns
-    -------
-    (N,) float array
-        Residuals.
+    """``|n|² - 1`` of each node, (N,).
 
     References
     ----------
@@ -34,11 +23,5 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:  # noqa: ARG0
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  # noqa: ARG001
-    """Derivatives by the dual normal.
-
-    Returns
-    -------
-    tuple of one (N, 3) float array
-        ``2 n``.
-    """
+    """Derivatives by the dual normal: ``2 n``, (N, 3)."""
     return (2 * unknowns.normals,)

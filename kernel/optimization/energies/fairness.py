@@ -8,13 +8,7 @@ from .setting import Group, Setting, Unknowns
 
 
 def blocks(setting: Setting) -> tuple[Block, ...]:
-    """What each residual depends on: an interior vertex and its neighbours.
-
-    Returns
-    -------
-    tuple of Block
-        Three rows per interior vertex.
-    """
+    """What each residual depends on: an interior vertex and its neighbours; three rows each."""
     rings = (setting.node_vertices, *setting.ring_vertices.T)
     return tuple(Block(Group.VERTEX, np.repeat(ids, 3)) for ids in rings)
 
@@ -22,10 +16,7 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
     """Umbrella vector of each interior vertex: the vertex minus the mean of its neighbours.
 
-    Returns
-    -------
-    (3 N,) float array
-        Residuals, in mean edges.
+    (3 N,), in mean edges.
 
     References
     ----------
@@ -41,12 +32,9 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  # noqa: ARG001
-    """Derivatives by the points of the vertex and of its neighbours.
+    """Derivatives by the points of the vertex and of its neighbours, (3 N, 3).
 
-    Returns
-    -------
-    tuple of (3 N, 3) float arrays
-        The identity, and minus one over the valence times it.
+    The identity, and minus one over the valence times it.
     """
     identity = np.eye(3)
     count = len(setting.node_vertices)

@@ -76,18 +76,7 @@ def vertex_freedom(mesh: Mesh, interior: Interior, boundary: Boundary) -> FloatA
 
 
 def project_displacements(freedom: Freedom, displacements: FloatArray) -> FloatArray:
-    """Nearest displacements within the bound.
-
-    Parameters
-    ----------
-    displacements : (V, 3) float array
-        Displacements in free directions.
-
-    Returns
-    -------
-    (V, 3) float array
-        None longer than the tolerance.
-    """
+    """Nearest displacements (V, 3), in free directions, within the bound."""
     length = norm(displacements)
     too_long = length > freedom.tolerance
     factor = np.ones_like(length)
@@ -97,18 +86,9 @@ def project_displacements(freedom: Freedom, displacements: FloatArray) -> FloatA
 
 
 def pushed_out(freedom: Freedom, displacements: FloatArray, push: FloatArray) -> BoolArray:
-    """Vertices at their bound that a push carries out of it.
+    """Vertices at their bound that a push carries out of it, (V or 0,).
 
-    Parameters
-    ----------
-    displacements : (V, 3) float array
-    push : (V or 0, 3) float array
-        A direction for each; empty where vertices take no part.
-
-    Returns
-    -------
-    (V or 0,) bool array
-        Which ones.
+    There is a push for each, (V or 0, 3), and none where vertices take no part.
     """
     where = displacements[: len(push)]
     return (norm(where) >= freedom.tolerance * (1 - AT_BOUND)) & (dot(push, where) > 0)
@@ -117,16 +97,8 @@ def pushed_out(freedom: Freedom, displacements: FloatArray, push: FloatArray) ->
 def free_directions(freedom: Freedom, displacements: FloatArray, held: BoolArray) -> FloatArray:
     """Free directions of a step: vertices that are held at their bound only move along it.
 
-    Parameters
-    ----------
-    displacements : (V, 3) float array
-    held : (V or 0,) bool array
-        Which vertices are held; empty where vertices take no part.
-
-    Returns
-    -------
-    (V or 0, 3, 3) float array
-        Orthogonal projections.
+    Orthogonal projections (V or 0, 3, 3); (V or 0,) vertices are held, empty where they take no
+    part.
     """
     outward = np.where(held[:, None], unit(displacements[: len(held)]), 0.0)
     return freedom.vertices[: len(held)] - outward[:, :, None] * outward[:, None, :]
@@ -137,19 +109,7 @@ def tangent_to_spheres(
 ) -> FloatArray:
     """Derivatives by what is left of a change of a row when the row is made unit again.
 
-    Parameters
-    ----------
-    freedom : Freedom
-        Which radii are fixed.
-    faces : (m,) int array
-        Face of each derivative.
-    derivatives : (m, 5) float array
-        Derivatives by the rows.
-
-    Returns
-    -------
-    (m, 5) float array
-        Derivatives of the composition with `moved`.
+    From derivatives (m, 5) by the rows of faces (m,) to those of the composition with `moved`.
     """
     rows = unknowns.spheres[faces]
     along = dot(derivatives, rows)[:, None]
@@ -171,15 +131,8 @@ def moved(
 ) -> Unknowns:
     """Unknowns after a step: unit rows, unit dual normals, vertices within their bound.
 
-    Parameters
-    ----------
-    steps : tuple of (F, 5), (V or 0, 3) and (N or 0, 3) float arrays
-        Changes of each group; empty where a group does not take part.
-
-    Returns
-    -------
-    Unknowns
-        Rows that became imaginary are not finite, so no energy accepts them.
+    The steps are (F, 5), (V or 0, 3) and (N or 0, 3); empty where a group does not take part.
+    Rows that became imaginary are not finite, so no energy accepts them.
     """
     spheres, displacements, normals = steps
     keeps_radius = freedom.has_fixed_radius

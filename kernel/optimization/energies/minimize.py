@@ -49,15 +49,8 @@ class EnergyProblem:
 def energy_problem(setting: Setting, freedom: Freedom, weights: EnergyWeights) -> EnergyProblem:
     """Collect the terms that have a weight and the unknowns that they need.
 
-    Parameters
-    ----------
-    freedom : Freedom
-        Which way the unknowns may move; vertices are unknown if they may move at all.
-
-    Returns
-    -------
-    EnergyProblem
-        Dual normals are unknown if there is a weight on the support.
+    Vertices are unknown if they may move at all, dual normals if there is a weight on the
+    support.
     """
     n_vertices = setting.n_vertices if freedom.tolerance > 0 else 0
     n_nodes = len(setting.node_vertices) if weights.support > 0 else 0
@@ -78,13 +71,7 @@ def energy_problem(setting: Setting, freedom: Freedom, weights: EnergyWeights) -
 
 
 def weighted_residuals(problem: EnergyProblem, unknowns: Unknowns) -> list[FloatArray]:
-    """Residuals of each term, times its weight.
-
-    Returns
-    -------
-    list of (m,) float arrays
-        Term after term.
-    """
+    """Residuals of each term, (m,), times its weight."""
     return [
         weight * term.residuals(problem.setting, unknowns)
         for term, weight in zip(problem.terms, problem.weights, strict=True)
@@ -94,12 +81,9 @@ def weighted_residuals(problem: EnergyProblem, unknowns: Unknowns) -> list[Float
 def weighted_entries(
     problem: EnergyProblem, unknowns: Unknowns
 ) -> list[tuple[FloatArray, ...]]:
-    """Derivatives of the weighted residuals, block by block.
+    """Derivatives of the weighted residuals, (m, width), block by block.
 
-    Returns
-    -------
-    list of tuples of (m, width) float arrays
-        As in `JacobianPattern.blocks`: groups that do not take part are left out.
+    As in `JacobianPattern.blocks`: groups that do not take part are left out.
     """
     counts = problem.pattern.layout.counts
     result: list[tuple[FloatArray, ...]] = []
@@ -118,21 +102,10 @@ def minimize_energy(
     change: float,
     share: float = STEP_MODEL,
 ) -> Descent[Unknowns]:
-    """Minimise the energy by Levenberg-Marquardt.
+    """Minimise the energy by Levenberg-Marquardt; the history has a column per term.
 
-    Parameters
-    ----------
-    max_iterations : int
-        Largest number of linear systems.
-    change : float
-        Relative fall of the energy at which the descent ends.
-    share : float
-        Gain of the model that a step may leave out.
-
-    Returns
-    -------
-    Descent
-        Its history has one column per term of the problem.
+    At most `max_iterations` linear systems. `change` is the relative fall of the energy at
+    which the descent ends, `share` the gain of the model that a step may leave out.
     """
     # A state is linearised right after its energy was asked for.
     known: tuple[Unknowns, list[FloatArray]] = (start, weighted_residuals(problem, start))

@@ -9,30 +9,16 @@ from .setting import Group, Setting, Unknowns
 
 
 def blocks(setting: Setting) -> tuple[Block, ...]:
-    """What each residual depends on: the two faces of an edge.
-
-    Returns
-    -------
-    tuple of Block
-        Two rows per interior edge.
-    """
+    """What each residual depends on: the two faces of an edge; two rows per interior edge."""
     first, second = np.concatenate([setting.edge_faces, setting.edge_faces]).T
     return Block(Group.SPHERE, first), Block(Group.SPHERE, second)
 
 
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """``D·n_e`` and ``D·e`` over each edge, with D along the line of centres.
+    """``D·n_e`` and ``D·e`` over each edge, (2 E,), with D along the line of centres.
 
-    Parameters
-    ----------
-    setting : Setting
-        What stays fixed; n_e the sum of the face normals, e the unit vector of the edge.
-
-    Returns
-    -------
-    (2 E,) float array
-        Residuals; zero where the plane of the circle bisects the two faces, or both spheres
-        are planes.
+    n_e is the sum of the face normals, e the unit vector of the edge. Zero where the plane of
+    the circle bisects the two faces, or both spheres are planes.
 
     References
     ----------
@@ -45,13 +31,7 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
-    """Derivatives by the rows of the two faces.
-
-    Returns
-    -------
-    tuple of two (2 E, 5) float arrays
-        In the order of the residuals.
-    """
+    """Derivatives by the rows of the two faces, (2 E, 5), in the order of the residuals."""
     edges = np.tile(np.arange(len(setting.edge_faces)), 2)
     directions = np.concatenate([setting.edge_normals, setting.edge_directions])
     return center_line_gradients(setting, unknowns, edges, directions)

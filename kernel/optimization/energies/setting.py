@@ -107,21 +107,11 @@ class Setting:
 def energy_setting(
     mesh: Mesh, edge_weights: FloatArray, target_angle: float = 0.0, allowance: float = 0.0
 ) -> Setting:
-    """Measure a mesh for its energies.
+    """Measure a mesh for its energies, in mean edges.
 
-    Parameters
-    ----------
-    edge_weights : (E,) float array
-        Weight of the angle over each interior edge.
-    target_angle : float
-        Angle at which neighbours shall meet, in radians.
-    allowance : float
-        How far a sphere may pass from the vertices of its face without cost, in mean edges.
-
-    Returns
-    -------
-    Setting
-        Lengths in mean edges.
+    (E,) weights of the angle over the interior edges; the target angle in radians; the
+    allowance is how far a sphere may pass from the vertices of its face without cost, in mean
+    edges.
     """
     topology = mesh.topology
     corners = local_corners(mesh) / mean_edge_length(mesh)
@@ -183,18 +173,13 @@ def _umbrellas(mesh: Mesh) -> FloatArray:
 def first_unknowns(sphere_mesh: SphereMesh) -> Unknowns:
     """Unknowns of a sphere mesh whose vertices have not moved.
 
-    Returns
-    -------
-    Unknowns
-        Rows in mean edges; dual normals along the mean of the normals of the faces around
-        each interior vertex.
+    Rows in mean edges; dual normals along the mean of the normals of the faces around each
+    interior vertex.
     """
     mesh = sphere_mesh.mesh
     spheres = rescale(sphere_mesh.local_spheres, 1 / mean_edge_length(mesh))
     corner_normals = face_normals(mesh)[mesh.topology.corner_faces]
     normals = unit(sum_by(mesh.corners, corner_normals, mesh.n_vertices))
     return Unknowns(
-        spheres,
-        np.zeros((mesh.n_vertices, 3)),
-        normals[~mesh.topology.is_boundary_vertex],
+        spheres, np.zeros((mesh.n_vertices, 3)), normals[~mesh.topology.is_boundary_vertex]
     )

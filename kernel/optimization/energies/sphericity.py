@@ -9,13 +9,7 @@ from .setting import Group, Setting, Unknowns
 
 
 def blocks(setting: Setting) -> tuple[Block, ...]:
-    """What each residual depends on: a face and one of its vertices.
-
-    Returns
-    -------
-    tuple of Block
-        One row per corner.
-    """
+    """What each residual depends on: a face and one of its vertices; a row per corner."""
     return (
         Block(Group.SPHERE, setting.corner_faces),
         Block(Group.VERTEX, setting.corner_vertices),
@@ -23,14 +17,10 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
 
 
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """What ``A |v|² - B·v + C`` exceeds the allowance by, at each corner.
+    """What ``A |v|² - B·v + C`` exceeds the allowance by, at each corner, (H,).
 
-    For a unit row it is nearly the signed distance of the vertex from the sphere.
-
-    Returns
-    -------
-    (H,) float array
-        Residuals, in mean edges.
+    For a unit row it is nearly the signed distance of the vertex from the sphere, in mean
+    edges.
 
     References
     ----------
@@ -47,12 +37,9 @@ def _vertex_misses(setting: Setting, unknowns: Unknowns) -> FloatArray:
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
-    """Derivatives by the row of the face and by the point of the vertex.
+    """Derivatives by the row of the face, (H, 5), and by the point of the vertex, (H, 3).
 
-    Returns
-    -------
-    tuple of (H, 5) and (H, 3) float arrays
-        ``(|v|² - a², -v, 1)`` with the allowance a, and ``2 A v - B``; zero within a.
+    ``(|v|² - a², -v, 1)`` with the allowance a, and ``2 A v - B``; zero within a.
     """
     points = _points(setting, unknowns)
     counts = np.abs(_centered_misses(setting, unknowns)) >= setting.allowance

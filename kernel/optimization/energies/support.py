@@ -9,10 +9,7 @@ from .setting import Group, Setting, Unknowns
 def blocks(setting: Setting) -> tuple[Block, ...]:
     """What each residual depends on: the two faces of an edge and the dual normal of a node.
 
-    Returns
-    -------
-    tuple of Block
-        One row per interior edge and interior vertex at its ends.
+    A row per interior edge and interior vertex at its ends.
     """
     first, second = setting.edge_faces[setting.spoke_edges].T
     return (
@@ -23,12 +20,9 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
 
 
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """``D·n`` with D along the line of centres across the edge and n the node's dual normal.
+    """``D·n``, (S,), with D along the line of centres and n the node's dual normal.
 
-    Returns
-    -------
-    (S,) float array
-        Residuals; zero where the plane of the edge's circle contains the node's axis.
+    Zero where the plane of the edge's circle contains the node's axis.
 
     References
     ----------
@@ -39,13 +33,7 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
-    """Derivatives by the rows of the two faces and by the dual normal.
-
-    Returns
-    -------
-    tuple of two (S, 5) and one (S, 3) float arrays
-        In the order of the blocks.
-    """
+    """Derivatives by the rows of the two faces, (S, 5), and by the dual normal, (S, 3)."""
     axes = unknowns.normals[setting.spoke_nodes]
     first, second = center_line_gradients(setting, unknowns, setting.spoke_edges, axes)
     return first, second, center_lines(setting, unknowns)[setting.spoke_edges]

@@ -9,23 +9,12 @@ from .setting import Group, Setting, Unknowns
 
 
 def blocks(setting: Setting) -> tuple[Block, ...]:
-    """What each residual depends on: a face.
-
-    Returns
-    -------
-    tuple of Block
-        One row per face.
-    """
+    """What each residual depends on: a face, with one row."""
     return (Block(Group.SPHERE, np.arange(setting.n_faces)),)
 
 
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:  # noqa: ARG001 - as all terms
-    """``|B|² - 4 A C - 1`` of each face.
-
-    Returns
-    -------
-    (F,) float array
-        Residuals.
+    """``|B|² - 4 A C - 1`` of each face, (F,).
 
     References
     ----------
@@ -35,11 +24,5 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:  # noqa: ARG0
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  # noqa: ARG001
-    """Derivatives by the row of the face.
-
-    Returns
-    -------
-    tuple of one (F, 5) float array
-        ``(-4 C, 2 B, -4 A)``.
-    """
+    """Derivatives by the row of the face: ``(-4 C, 2 B, -4 A)``, (F, 5)."""
     return (2 * minkowski_gradient(unknowns.spheres),)

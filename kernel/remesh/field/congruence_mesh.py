@@ -11,10 +11,12 @@ from ...meshes.curvature import vertex_normals
 from ...meshes.mesh import Mesh, face_centroids, face_vector_areas, mean_edge_length
 from ...meshes.topology import Topology
 from ...meshes.triangulation import check_triangles
+from ...solvers.weighted_graphs import piece_labels
 from ...spheres.incidence import normals
 from ...spheres.minkowski import minkowski
-from ...spheres.rows import Kind, kind, recenter, rescale
-from ...tolerances import DEGENERATE, EPSILON
+from ...spheres.row_checks import check_rows, seen_from, unit_rows
+from ...spheres.rows import recenter, rescale
+from ...tolerances import DEGENERATE
 from .tree_signs import tree_signs
 
 
@@ -56,13 +58,7 @@ class CongruenceMesh:
 
     @property
     def vertex_areas(self) -> FloatArray:
-        """A third of the areas of the faces around each vertex.
-
-        Returns
-        -------
-        (V,) float array
-            Areas, in squared mean edges.
-        """
+        """A third of the areas of the faces around each vertex, (V,), in squared mean edges."""
         shares = np.repeat(self.face_areas / 3, 3)
         return sum_by(self.triangles.ravel(), shares, len(self.points))
 
@@ -70,15 +66,8 @@ class CongruenceMesh:
 def congruence_mesh(mesh: Mesh, spheres: ArrayLike) -> CongruenceMesh:
     """Check a triangle mesh with spheres at its vertices, and bring it into local coordinates.
 
-    Parameters
-    ----------
-    spheres : (V, 5) array_like of float
-        Real rows of any scale, not zero, in model coordinates; planes included.
-
-    Returns
-    -------
-    CongruenceMesh
-        The congruence in units of the mean edge.
+    The spheres are real rows (V, 5) of any scale, not zero, in model coordinates; planes
+    included.
 
     Raises
     ------
@@ -132,43 +121,19 @@ def _checked_areas(mesh: Mesh) -> FloatArray:
     unused = np.setdiff1d(np.arange(mesh.n_vertices), mesh.corners)
     if len(unused):
         raise InputError(f"vertices {name_ids(unused.tolist())} belong to no face: remove them")
-    count = _component_count(mesh)
+    left, right = mesh.topology.edge_faces.T
+    count = piece_labels(left, right, mesh.n_faces).max() + 1
     if count > 1:
         raise InputError(f"the mesh has {count} separate pieces: remesh them one by one")
     return areas
 
 
-def _component_count(mesh: Mesh) -> int:
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import connected_components
-
-    left, right = mesh.topology.edge_faces.T
-    shape = (mesh.n_faces, mesh.n_faces)
-    graph = csr_array((np.ones(len(left)), (left, right)), shape=shape)
-    return int(connected_components(graph, directed=False)[0])
-
-
 def _vertex_rows(mesh: Mesh, spheres: FloatArray, size: float) -> FloatArray:
     """Unit rows (V, 5), each seen from its vertex, in the unit `size`."""
-    if spheres.shape != (mesh.n_vertices, 5):
-        raise InputError(f"spheres must have shape ({mesh.n_vertices}, 5), not {spheres.shape}")
-    bad = np.flatnonzero(~np.isfinite(spheres).all(axis=1))
-    if len(bad):
-        raise InputError(f"the spheres of vertices {name_ids(bad.tolist())} are not finite")
-    points = mesh.vertices
-    rows = recenter(spheres, points)
-    terms = np.abs(spheres[:, 4]) + np.abs(dot(spheres[:, 1:4], points))
-    rounding = 8 * EPSILON * (terms + np.abs(spheres[:, 0]) * dot(points, points))
-    rows[np.abs(rows[:, 4]) <= rounding, 4] = 0
-    rows = rescale(rows, 1 / size)
-    kinds = kind(rows)
-    bad = np.flatnonzero((kinds == Kind.IMAGINARY) | (kinds == Kind.POINT))
-    if len(bad):
-        raise InputError(
-            f"the spheres of vertices {name_ids(bad.tolist())} are imaginary or points: "
-            "remeshing needs real spheres or planes"
-        )
-    return rows / np.sqrt(minkowski(rows, rows))[:, None]
+    check_rows(spheres, mesh.n_vertices, "vertex")
+    rows = rescale(seen_from(spheres, mesh.vertices), 1 / size)
+    need = ": remeshing needs real spheres or planes"
+    return unit_rows(rows, np.arange(mesh.n_vertices), need)
 
 
 def _oriented_rows(

@@ -111,15 +111,8 @@ def conjugate_directions(
 def complex_share(mesh: Mesh, spheres: ArrayLike) -> float:
     """Share of the area on which a congruence has no real conjugate net.
 
-    Parameters
-    ----------
-    spheres : (V, 5) array_like of float
-        A real sphere or plane for every vertex, in model coordinates.
-
-    Returns
-    -------
-    float
-        1 if the spheres determine no directions at all, as planes.
+    The spheres are real rows (V, 5), planes included, in model coordinates. The share is 1 if
+    they determine no directions at all, as planes.
 
     Raises
     ------
@@ -135,10 +128,7 @@ def complex_share(mesh: Mesh, spheres: ArrayLike) -> float:
 def umbilic_share(surface: CongruenceMesh, jets: CongruenceJets) -> float:
     """Share of the area on which a congruence does not tell its conjugate directions.
 
-    Returns
-    -------
-    float
-        1 on a sphere with spheres of one radius; 0 on other surfaces, but for single points.
+    It is 1 on a sphere with spheres of one radius; 0 on other surfaces, but for single points.
     """
     areas = surface.vertex_areas
     return float(areas[anisotropy(jets) < UMBILIC].sum() / areas.sum())
@@ -147,10 +137,7 @@ def umbilic_share(surface: CongruenceMesh, jets: CongruenceJets) -> float:
 def expected_axis_angles(surface: CongruenceMesh, jets: CongruenceJets) -> FloatArray:
     """Angles between the normals of a surface and the node axes of a net on it.
 
-    Returns
-    -------
-    (V,) float array
-        Radians, at most π / 2; NaN where the congruence fixes no axis.
+    (V,) radians, at most π / 2; NaN where the congruence fixes no axis.
     """
     axes, normals = expected_node_axes(jets), surface.vertex_frames[:, 2]
     angles = np.arctan2(norm(np.cross(axes, normals)), np.abs(dot(axes, normals)))

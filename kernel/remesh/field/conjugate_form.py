@@ -19,16 +19,9 @@ class UndeterminedError(InputError):
 def conjugate_form(jets: CongruenceJets) -> FloatArray:
     """The quadratic form whose roots are the conjugate directions.
 
-    Parameters
-    ----------
-    jets : CongruenceJets
-        A congruence to second order.
-
-    Returns
-    -------
-    (..., 3) float array
-        Coefficients of ``du²``, ``du dv`` and ``dv²``: with ``[x, y] = det(S, S_u, S_v, x, y)``
-        they are ``[S_uu, S_uv]``, ``[S_uu, S_vv]`` and ``[S_uv, S_vv]``.
+    Coefficients (..., 3) of ``du²``, ``du dv`` and ``dv²``: with
+    ``[x, y] = det(S, S_u, S_v, x, y)`` they are ``[S_uu, S_uv]``, ``[S_uu, S_vv]`` and
+    ``[S_uv, S_vv]``.
 
     Notes
     -----
@@ -52,19 +45,10 @@ def conjugate_form(jets: CongruenceJets) -> FloatArray:
 
 
 def split_form(form: FloatArray) -> tuple[FloatArray, ComplexArray]:
-    """Trace and deviator of quadratic forms in orthonormal coordinates.
+    """Trace and deviator of quadratic forms (..., 3), by ``x²``, ``x y``, ``y²`` (orthonormal).
 
-    Parameters
-    ----------
-    form : (..., 3) float array
-        Coefficients of ``x²``, ``x y``, ``y²``.
-
-    Returns
-    -------
-    trace : (...) float array
-        Mean h of the form over all directions.
-    deviator : (...) complex array
-        ``z = m exp(2 i θ)``: in the direction φ the form is ``h + m cos(2 φ - 2 θ)``.
+    The trace is the mean h of the form over all directions, the deviator ``z = m exp(2 i θ)``:
+    in the direction φ the form is ``h + m cos(2 φ - 2 θ)``.
     """
     trace = (form[..., 0] + form[..., 2]) / 2
     return trace, (form[..., 0] - form[..., 2]) / 2 + 0.5j * form[..., 1]
@@ -73,17 +57,7 @@ def split_form(form: FloatArray) -> tuple[FloatArray, ComplexArray]:
 def conjugate_field(jets: CongruenceJets) -> tuple[FloatArray, ComplexArray]:
     """The forms whose roots are the conjugate directions, in trace and deviator.
 
-    Parameters
-    ----------
-    jets : CongruenceJets
-        The congruence at the vertices of a mesh.
-
-    Returns
-    -------
-    trace : (V,) float array
-        Means of the forms.
-    deviator : (V,) complex array
-        Deviators, in the coordinates of `vertex_frames`.
+    For every vertex, (V,); deviators in the coordinates of `vertex_frames`.
 
     Raises
     ------
@@ -104,17 +78,9 @@ def conjugate_field(jets: CongruenceJets) -> tuple[FloatArray, ComplexArray]:
 def anisotropy(jets: CongruenceJets) -> FloatArray:
     """How much the second derivatives of spheres vary with the direction.
 
-    Parameters
-    ----------
-    jets : CongruenceJets
-        A congruence to second order, in orthonormal parameters.
-
-    Returns
-    -------
-    (...) float array
-        Relative to their mean, both up to the spheres and their first derivatives. Where it is
-        zero, as for spheres that touch a sphere, all pairs of orthogonal directions are
-        conjugate.
+    Relative to their mean, both up to the spheres and their first derivatives, in orthonormal
+    parameters. Where it is zero, as for spheres that touch a sphere, all pairs of orthogonal
+    directions are conjugate.
     """
     tangents = np.stack([jets.rows, jets.rows_u, jets.rows_v], -1)
     normals = np.linalg.qr(tangents, mode="complete")[0][..., 3:]

@@ -42,18 +42,7 @@ class CombedFrames:
 
 
 def fan_signs(fans: VertexFans, signs: FloatArray) -> FloatArray:
-    """Products of signs at the corners before each corner in its fan.
-
-    Parameters
-    ----------
-    signs : (H,) float array
-        1 or -1 for every corner.
-
-    Returns
-    -------
-    (H,) float array
-        1 for the first corner of each fan.
-    """
+    """Products of signs (H,) at the corners before each corner in its fan; 1 for the first."""
     turns = np.cumsum(signs[fans.corners] < 0) - (signs[fans.corners] < 0)
     vertices = np.repeat(np.arange(len(fans.is_closed)), np.diff(fans.offsets))
     result = np.empty(len(signs))
@@ -68,21 +57,10 @@ def comb_frames(
     deviator: ComplexArray,
     least: float,
 ) -> CombedFrames:
-    """Directions in the faces from forms at the vertices.
+    """Directions in the faces from forms at the vertices, and where they are singular.
 
-    Parameters
-    ----------
-    trace : (V,) float array
-        Means of the forms.
-    deviator : (V,) complex array
-        Deviators, in the coordinates of `vertex_frames`.
-    least : float
-        Least angle between the two directions, in radians.
-
-    Returns
-    -------
-    CombedFrames
-        Directions, how they match across edges, and where they are singular.
+    Trace and deviator are (V,), in the coordinates of `vertex_frames`; `least` is the least
+    angle between the two directions, in radians.
     """
     topology, faces = surface.topology, surface.topology.corner_faces
     corners = surface.triangles.ravel()

@@ -264,11 +264,8 @@ def _noise(samples: _Samples) -> FloatArray:
 def expected_node_axes(jets: CongruenceJets) -> FloatArray:
     """Directions of the node axes that the congruence predicts: normals of the centre surface.
 
-    Returns
-    -------
-    (..., 3) float array
-        ``A B_u x B_v + A_u B_v x B + A_v B x B_u``, along the normal of the surface of the
-        centres; zero where all spheres are planes, which fix no axis.
+    ``A B_u x B_v + A_u B_v x B + A_v B x B_u``, (..., 3), along the normal of the surface of
+    the centres; zero where all spheres are planes, which fix no axis.
     """
     a, b = jets.rows[..., :1], jets.rows[..., 1:4]
     a_u, b_u = jets.rows_u[..., :1], jets.rows_u[..., 1:4]

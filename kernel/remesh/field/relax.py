@@ -164,15 +164,8 @@ def _is_fit(quality: CongruenceQuality, target: CongruenceQuality) -> bool:
 def axis_angle(mesh: Mesh, spheres: FloatArray) -> float:
     """Angle that the node axes of a congruence make with the normals of its surface.
 
-    Parameters
-    ----------
-    spheres : (V, 5) float array
-        Rows of the spheres at the vertices.
-
-    Returns
-    -------
-    float
-        95th percentile by area, in radians from 0 to π/2. Faces of three planes count as π/2.
+    95th percentile by area, in radians from 0 to π/2, of spheres (V, 5) at the vertices. Faces
+    of three planes count as π/2.
 
     Notes
     -----

@@ -29,19 +29,10 @@ class SmoothSurface:
 def nearest_triangles(
     surface: CongruenceMesh, points: FloatArray
 ) -> tuple[IntArray, FloatArray]:
-    """Where points are nearest to the triangles.
+    """Where points (n, 3) are nearest to the triangles.
 
-    Parameters
-    ----------
-    points : (n, 3) float array
-        Points.
-
-    Returns
-    -------
-    vertices : (n, 3) int array
-        Corners of the nearest triangles.
-    weights : (n, 3) float array
-        Barycentric coordinates of the nearest points.
+    Corners of the nearest triangles (n, 3), and barycentric coordinates of the nearest points
+    (n, 3).
     """
     import igl  # pyright: ignore[reportMissingTypeStubs]
 
@@ -54,20 +45,11 @@ def nearest_triangles(
 def surface_heights(
     surface: SmoothSurface, points: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Heights of points over a smooth surface.
+    """Heights of points (n, 3) near a smooth surface over it.
 
-    Parameters
-    ----------
-    points : (n, 3) float array
-        Points near it.
-
-    Returns
-    -------
-    heights : (n,) float array
-        Signed distances, to first order; those from the paraboloids at the corners of the
-        nearest triangle, in the ratio of the barycentric coordinates.
-    normals : (n, 3) float array
-        Unit gradients of the heights, but for the change of the ratio.
+    Signed distances (n,), to first order: those from the paraboloids at the corners of the
+    nearest triangle, in the ratio of the barycentric coordinates; and their unit gradients
+    (n, 3), but for the change of the ratio.
     """
     vertices, weights = nearest_triangles(surface.mesh, points)
     offsets = points[:, None] - surface.mesh.points[vertices]

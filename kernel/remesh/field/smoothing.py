@@ -4,6 +4,7 @@ import numpy as np
 
 from ...arrays import ComplexArray, FloatArray, IntArray, dot, norm, sum_by
 from ...solvers.factorization import SparseArray, factorize_symmetric
+from ...solvers.weighted_graphs import piece_labels
 from ...tolerances import LEAST_STIFFNESS
 from .congruence_mesh import CongruenceMesh
 from .tree_signs import tree_signs
@@ -22,16 +23,9 @@ LEAST_PATCH = 0.15
 def transport(source: FloatArray, target: FloatArray) -> ComplexArray:
     """Parallel transport between tangent planes, as factors of complex coordinates.
 
-    Parameters
-    ----------
-    source, target : (..., 3, 3) float array
-        Right-handed frames: two tangents and the normal.
-
-    Returns
-    -------
-    (...) complex array
-        Unit factors r: the vector with coordinate w in the source has ``r w`` in the target,
-        after the smallest rotation that takes normal to normal; 1 if the normals are opposite.
+    The frames (..., 3, 3) are right-handed: two tangents and the normal. Unit factors r: the
+    vector with coordinate w in the source has ``r w`` in the target, after the smallest
+    rotation that takes normal to normal; 1 if the normals are opposite.
     """
     first, second = source[..., 0, :], source[..., 1, :]
     along, across = target[..., 0, :], target[..., 1, :]
@@ -46,19 +40,8 @@ def orient_forms(
 ) -> tuple[FloatArray, ComplexArray]:
     """Reverse forms beyond curves on which they vanish.
 
-    Parameters
-    ----------
-    trace : (V,) float array
-        Means of the forms.
-    deviator : (V,) complex array
-        Deviators, in the coordinates of `vertex_frames`.
-
-    Returns
-    -------
-    trace : (V,) float array
-        Means of the same forms, up to signs.
-    deviator : (V,) complex array
-        Their deviators.
+    Trace and deviator (V,) of the same forms, up to signs, in the coordinates of
+    `vertex_frames`.
 
     Notes
     -----
@@ -81,7 +64,6 @@ def _patches(
 ) -> tuple[IntArray, SparseArray]:
     """Patch of forms of one sign of each vertex, and how alike the patches are."""
     from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import connected_components
 
     tails = surface.triangles.ravel()
     heads = np.roll(surface.triangles, -1, axis=1).ravel()
@@ -92,14 +74,13 @@ def _patches(
     bound = size[tails] * size[heads]
     likeness = np.divide(products, bound, out=np.ones_like(bound), where=bound > 0)
     is_alike = likeness > ALIKE_FORMS
-    ends = (tails[is_alike], heads[is_alike])
-    links = csr_array((np.ones(len(ends[0])), ends), shape=(len(size), len(size)))
-    count, patches = connected_components(links, directed=False)
+    patches = piece_labels(tails[is_alike], heads[is_alike], len(size))
+    count = int(patches.max()) + 1
     between = patches[tails] != patches[heads]
     ends = (patches[tails[between]], patches[heads[between]])
     votes = csr_array((likeness[between], ends), shape=(count, count))
     votes = (votes + votes.T).tocsr()
-    return np.asarray(patches, np.int64), votes / np.abs(votes.data).max(initial=1.0)
+    return patches, votes / np.abs(votes.data).max(initial=1.0)
 
 
 def smooth_forms(
@@ -107,21 +88,8 @@ def smooth_forms(
 ) -> tuple[FloatArray, ComplexArray]:
     """Smooth a field of forms where it says little, and keep it where it is sure.
 
-    Parameters
-    ----------
-    trace : (V,) float array
-        Means of the forms.
-    deviator : (V,) complex array
-        Deviators, in the coordinates of `vertex_frames`.
-    length : float
-        Distance over which the field is smoothed, in mean edges; 0 gives the normalised field.
-
-    Returns
-    -------
-    trace : (V,) float array
-        Means of the smooth field.
-    deviator : (V,) complex array
-        Its deviators.
+    Trace and deviator are (V,), in the coordinates of `vertex_frames`. `length` is the distance
+    over which the field is smoothed, in mean edges; 0 gives the normalised field.
 
     Notes
     -----

@@ -8,17 +8,10 @@ from ...solvers.weighted_graphs import weighted_graph
 
 
 def tree_signs(likeness: SparseArray) -> FloatArray:
-    """Choose signs along a spanning tree of a graph.
+    """Choose signs (n,), 1 or -1, along a spanning tree of a graph.
 
-    Parameters
-    ----------
-    likeness : (n, n) sparse array
-        How alike neighbours are, between -1 and 1; stored for all edges, one way or both.
-
-    Returns
-    -------
-    (n,) float array
-        1 or -1; of the tree that prefers the edges on which the sign is clearest.
+    `likeness` (n, n) says how alike neighbours are, between -1 and 1, stored for all edges, one
+    way or both. The tree prefers the edges on which the sign is clearest.
     """
     from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 

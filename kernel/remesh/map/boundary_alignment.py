@@ -49,31 +49,14 @@ class Alignment:
 
 
 def next_on_boundary(surface: CongruenceMesh, fans: VertexFans) -> IntArray:
-    """The following half-edge along the boundary.
-
-    Returns
-    -------
-    (H,) int array
-        For boundary half-edges the next one; -1 for the others.
-    """
+    """The following half-edge along the boundary, (H,); -1 for those not on it."""
     topology = surface.topology
     heads = surface.triangles.ravel()[topology.next_corners]
     return np.where(topology.twins < 0, fans.corners[fans.offsets[heads]], -1)
 
 
 def boundary_corners(surface: CongruenceMesh, following: IntArray) -> BoolArray:
-    """Where the boundary turns sharply.
-
-    Parameters
-    ----------
-    following : (H,) int array
-        The next half-edge along the boundary, or -1.
-
-    Returns
-    -------
-    (V,) bool array
-        Vertices where two boundary edges meet at more than 40 degrees.
-    """
+    """Vertices (V,) where two boundary edges meet at more than 40 degrees."""
     tails, heads = surface.triangles.ravel(), np.roll(surface.triangles, -1, axis=1).ravel()
     sides = surface.points[heads] - surface.points[tails]
     rim = np.flatnonzero(following >= 0)
@@ -93,15 +76,8 @@ def align_boundary(
 ) -> tuple[Alignment, Alignment]:
     """Find the sides that run along a direction, and what that says about the coordinates.
 
-    Parameters
-    ----------
-    edge_length : float
-        Length of a unit step, in mean edges.
-
-    Returns
-    -------
-    along_second, along_first : Alignment
-        Where u and where v is constant.
+    Two alignments, along the second and the first direction: where u and where v is constant.
+    The length of a unit step is in mean edges.
     """
     following = next_on_boundary(surface, fans)
     sides = _sides(surface, following)
@@ -119,13 +95,7 @@ def align_boundary(
 
 
 def no_alignment(n_integers: int) -> Alignment:
-    """No side is aligned.
-
-    Parameters
-    ----------
-    n_integers : int
-        Number m of the integers of the seams.
-    """
+    """No side is aligned, with m integers of the seams."""
     rows, empty = np.zeros((0, n_integers)), np.zeros(0)
     return Alignment(np.zeros(0, np.int64), rows, empty, rows, empty, 0)
 

@@ -79,17 +79,9 @@ def eliminate(
 ) -> Coordinate:
     """Set up one coordinate and eliminate its real unknowns.
 
-    Parameters
-    ----------
-    alignment : Alignment
-        Boundary vertices at which the coordinate is given by integers.
-    along, across : (F, 3) float array
-        Derivatives as weights of the corners: that which shall be 1, and that which shall be 0.
-
-    Returns
-    -------
-    Coordinate
-        The problem that is left.
+    The alignment tells the boundary vertices at which the coordinate is given by integers;
+    `along` and `across` (F, 3) are derivatives as weights of the corners: that which shall be
+    1, and that which shall be 0.
 
     Notes
     -----
@@ -126,19 +118,10 @@ def eliminate(
 def solve_coordinate(
     coordinate: Coordinate, solutions: IntegerSolutions, n_first: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Choose the integers of a coordinate, and what follows.
+    """Choose the integers of a coordinate, the first `n_first` before the others.
 
-    Parameters
-    ----------
-    n_first : int
-        The first so many are rounded before the others.
-
-    Returns
-    -------
-    vector : (V + n,) float array
-        Values at the vertices, and the integers.
-    relaxed : (n,) float array
-        What the integers would be if they need not be whole.
+    Values at the vertices and then the integers, (V + n,); and what the integers would be if
+    they need not be whole, (n,).
     """
     n = coordinate.expressions.shape[1]
     rest, target = coordinate.rest, coordinate.target
@@ -174,10 +157,7 @@ def _corner_map(surface: CongruenceMesh, seams: Seams, alignment: Alignment) -> 
 
 
 def _least_squares(
-    surface: CongruenceMesh,
-    corner_map: SparseArray,
-    along: FloatArray,
-    across: FloatArray,
+    surface: CongruenceMesh, corner_map: SparseArray, along: FloatArray, across: FloatArray
 ) -> tuple[SparseArray, FloatArray]:
     from scipy.sparse import csr_array, vstack
 

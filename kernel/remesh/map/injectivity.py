@@ -50,56 +50,26 @@ class ChartGradients:
     shifts: FloatArray
 
     def corner_values(self, values: FloatArray) -> FloatArray:
-        """Coordinates at the corners.
-
-        Parameters
-        ----------
-        values : (V, 2) float array
-
-        Returns
-        -------
-        (H, 2) float array
-            With the signs and shifts of the corners.
-        """
+        """Coordinates (H, 2) at the corners, with the signs and shifts there."""
         return self.signs[:, None] * values[self.triangles.ravel()] + self.shifts
 
     def jacobians(self, values: FloatArray) -> FloatArray:
-        """Derivatives of u and v along the first and second direction.
+        """Derivatives of u and v along the first and second direction, (F, 2, 2).
 
-        Parameters
-        ----------
-        values : (V, 2) float array
-
-        Returns
-        -------
-        (F, 2, 2) float array
-            Rows u and v; the unit matrix where the map is as asked for.
+        Rows u and v; the unit matrix where the map is as asked for.
         """
         corners = self.corner_values(values).reshape(-1, 3, 2)
         slopes = np.stack([self.along_first, self.along_second], 2)
         return np.einsum("fcu,fcd->fud", corners, slopes)
 
     def determinants(self, values: FloatArray) -> FloatArray:
-        """Area of the image of each face, relative to the area asked for.
-
-        Parameters
-        ----------
-        values : (V, 2) float array
-
-        Returns
-        -------
-        (F,) float array
-            Not positive where the map is flipped.
-        """
+        """Area (F,) of each face's image over that asked for; not positive if flipped."""
         return np.linalg.det(self.jacobians(values))
 
     def spread(self) -> FloatArray:
-        """The linear map from the vertices of a face to the entries of its Jacobian.
+        """The linear map from the vertices of a face to the entries of its Jacobian, (F, 4, 6).
 
-        Returns
-        -------
-        (F, 4, 6) float array
-            Columns u and v of the first vertex, of the second and of the third.
+        Columns u and v of the first vertex, of the second and of the third.
         """
         slopes = np.stack([self.along_first, self.along_second], 1)
         slopes = slopes * self.signs.reshape(-1, 1, 3)
@@ -108,12 +78,7 @@ class ChartGradients:
         return result
 
     def part(self, faces: IntArray) -> "ChartGradients":
-        """The same for some of the faces.
-
-        Parameters
-        ----------
-        faces : (n,) int array
-        """
+        """The same for some of the faces."""
         corners = (3 * faces[:, None] + np.arange(3)).ravel()
         return ChartGradients(
             self.triangles[faces], self.along_first[faces], self.along_second[faces],
@@ -130,18 +95,8 @@ def untangle(
 ) -> FloatArray:
     """Move the vertices around folded faces until nothing is folded.
 
-    Parameters
-    ----------
-    start : (V, 2) float array
-    is_fixed : (V, 2) bool array
-        Coordinates that stay.
-    edge_length : float
-        Length of a unit step, in mean edges.
-
-    Returns
-    -------
-    (V, 2) float array
-        Coordinates; the start where it has no folds. Folds that cannot be undone remain.
+    Coordinates are (V, 2), some of them fixed; a unit step is `edge_length` mean edges long.
+    The start comes back where it has no folds. Folds that cannot be undone remain.
 
     Notes
     -----
@@ -229,25 +184,12 @@ def _newton(
 def distortion(
     jacobians: FloatArray, softness: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Distortion ``(|J|² + det² + 1) / χ(det)`` of maps of the plane.
+    """Distortion ``(|J|² + det² + 1) / χ(det)`` of maps J (n, 2, 2) of the plane.
 
-    Parameters
-    ----------
-    jacobians : (n, 2, 2) float array
-        Derivatives J.
-    softness : float
-        The width ε in ``χ(d) = (d + sqrt(ε² + d²)) / 2``: positive for all d, and about d where
-        that is positive.
-
-    Returns
-    -------
-    values : (n,) float array
-        Distortions.
-    slopes : (n, 4) float array
-        Derivatives by the entries of J.
-    curvatures : (n, 4, 4) float array
-        Second derivatives without those of the determinant and of χ: positive semidefinite,
-        since a square over a linear function is convex.
+    The softness is the width ε in ``χ(d) = (d + sqrt(ε² + d²)) / 2``: positive for all d, and
+    about d where that is positive. Values (n,), slopes (n, 4) by the entries of J, and
+    curvatures (n, 4, 4): second derivatives without those of the determinant and of χ, positive
+    semidefinite, since a square over a linear function is convex.
     """
     flat = jacobians.reshape(-1, 4)
     a, b, c, d = flat.T

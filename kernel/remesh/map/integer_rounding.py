@@ -28,14 +28,7 @@ class IntegerSolutions(NamedTuple):
 
 
 def integer_solutions(relations: FloatArray, constants: FloatArray) -> IntegerSolutions:
-    """Solve linear equations in whole numbers.
-
-    Parameters
-    ----------
-    relations : (r, m) float array
-        Whole numbers.
-    constants : (r,) float array
-        Right sides.
+    """Solve linear equations in whole numbers: relations (r, m), right sides (r,).
 
     Raises
     ------
@@ -92,12 +85,9 @@ class Quadratic(NamedTuple):
 
 
 def relaxed_minimum(function: Quadratic, solutions: IntegerSolutions) -> FloatArray:
-    """The minimum of a quadratic function if numbers need not be whole.
+    """The minimum (m,) of a quadratic function if numbers need not be whole.
 
-    Returns
-    -------
-    (m,) float array
-        Of several minima the one nearest to the offset of the solutions.
+    Of several minima the one nearest to the offset of the solutions.
     """
     offset, basis = solutions
     right = basis.T @ (function.gradient - function.hessian @ offset)
@@ -106,17 +96,9 @@ def relaxed_minimum(function: Quadratic, solutions: IntegerSolutions) -> FloatAr
 
 
 def round_minimum(function: Quadratic, solutions: IntegerSolutions, n_first: int) -> FloatArray:
-    """Whole numbers near the minimum of a quadratic function.
+    """Whole numbers (m,) that satisfy the equations, near the minimum of a quadratic function.
 
-    Parameters
-    ----------
-    n_first : int
-        The first so many entries of n are rounded before the others.
-
-    Returns
-    -------
-    (m,) float array
-        Whole numbers that satisfy the equations.
+    The first `n_first` entries of n are rounded before the others.
 
     Notes
     -----

@@ -58,17 +58,9 @@ def parametrize(
     seams: Seams,
     edge_length: float,
 ) -> Parametrization:
-    """Map the cut mesh so that unit steps follow the directions with a given length.
+    """Map the cut mesh so that unit steps, in mean edges, follow the directions.
 
-    Parameters
-    ----------
-    edge_length : float
-        Length of a unit step, in mean edges.
-
-    Returns
-    -------
-    Parametrization
-        Singular vertices lie at whole numbers, aligned boundaries half-way between.
+    Singular vertices lie at whole numbers, aligned boundaries half-way between.
 
     Raises
     ------

@@ -48,18 +48,7 @@ class Seams:
 
 
 def find_seams(surface: CongruenceMesh, fans: VertexFans, frames: CombedFrames) -> Seams:
-    """Solve the conservation of shifts around all vertices.
-
-    Parameters
-    ----------
-    frames : CombedFrames
-        Signs across edges, seams and singular vertices.
-
-    Returns
-    -------
-    Seams
-        The integers of the map and what depends on them.
-    """
+    """Solve the conservation of shifts around all vertices: the integers of the map."""
     from scipy.sparse import csr_array
 
     topology = surface.topology

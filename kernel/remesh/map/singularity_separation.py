@@ -18,15 +18,8 @@ def singular_differences(
 ) -> FloatArray:
     """Differences of the coordinates of singular vertices along shortest paths between them.
 
-    Parameters
-    ----------
-    edge_length : float
-        Length of a unit step, in mean edges.
-
-    Returns
-    -------
-    (p, m) float array
-        By the integers of the seams, a row for each pair of neighbours.
+    (p, m) by the integers of the seams, a row for each pair of neighbours; a unit step is
+    `edge_length` mean edges long.
     """
     from scipy.sparse.csgraph import dijkstra
 

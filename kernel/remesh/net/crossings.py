@@ -85,16 +85,9 @@ class Meetings(NamedTuple):
 def corner_coordinates(
     fans: VertexFans, charts: ChartGradients, values: FloatArray
 ) -> FloatArray:
-    """Coordinates of the corners with no vertex on a line.
+    """Coordinates (H, 2) of the corners, from those of the vertices, with no vertex on a line.
 
-    Parameters
-    ----------
-    values : (V, 2) float array
-
-    Returns
-    -------
-    (H, 2) float array
-        Vertices that lie on a line are moved off it, towards the inside on the boundary.
+    Vertices that lie on a line are moved off it, towards the inside on the boundary.
     """
     from_line = values - 0.5
     is_tie = np.abs(from_line - np.rint(from_line)) < LATTICE_TIE
@@ -106,17 +99,9 @@ def corner_coordinates(
 
 
 def edge_crossings(surface: CongruenceMesh, corners: FloatArray) -> EdgeCrossings:
-    """Find the crossings of all edges with the lines.
+    """Find the crossings of all edges with the lines; one half-edge of each edge has them.
 
-    Parameters
-    ----------
-    corners : (H, 2) float array
-        Coordinates of the corners, none on a line.
-
-    Returns
-    -------
-    EdgeCrossings
-        One half-edge of each edge has them.
+    No corner (H, 2) lies on a line.
     """
     topology = surface.topology
     edges = np.concatenate([topology.edge_corners, np.flatnonzero(topology.twins < 0)])
@@ -146,12 +131,8 @@ def face_segments(
 ) -> Segments:
     """Join the crossings around each face to pieces of lines.
 
-    Parameters
-    ----------
-    corners : (H, 2) float array
-        Coordinates of the corners, none on a line.
-    signs : (H,) float array
-        Sign between the charts on both sides of each half-edge.
+    No corner (H, 2) lies on a line; `signs` (H,) are those between the charts on both sides of
+    each half-edge.
 
     Raises
     ------
@@ -197,22 +178,9 @@ def face_segments(
 def face_meetings(
     corners: FloatArray, segments: Segments, is_flipped: BoolArray
 ) -> tuple[Meetings, BoolArray]:
-    """Cross the u lines with the v lines in every face.
+    """Cross the u lines with the v lines in every face: the nodes, and which are mirrored.
 
-    Parameters
-    ----------
-    corners : (H, 2) float array
-    segments : Segments
-        Pieces of lines.
-    is_flipped : (F,) bool array
-        Faces that the map turns over.
-
-    Returns
-    -------
-    meetings : Meetings
-        The nodes of the net.
-    is_mirrored : (n,) bool array
-        Nodes in flipped faces.
+    `is_flipped` (F,) tells the faces that the map turns over; their nodes are mirrored.
     """
     u_ids, v_ids = np.flatnonzero(segments.families == 0), np.flatnonzero(segments.families)
     starts = np.searchsorted(segments.faces[v_ids], segments.faces[u_ids])

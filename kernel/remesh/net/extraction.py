@@ -11,6 +11,7 @@ import numpy as np
 from ...arrays import BoolArray, FloatArray, IntArray
 from ...errors import ConvergenceError
 from ...meshes.vertex_fans import VertexFans
+from ...solvers.weighted_graphs import piece_labels
 from ..field.congruence_mesh import CongruenceMesh
 from ..field.frames import CombedFrames
 from ..map.boundary_alignment import boundary_corners, next_on_boundary
@@ -63,16 +64,8 @@ def extract_net(
 ) -> Net:
     """Trace the lines at whole numbers and a half, and the cells between them.
 
-    Parameters
-    ----------
-    frames : CombedFrames
-        Signs between the charts of neighbouring faces.
-
-    Returns
-    -------
-    Net
-        Cells on the boundary are cut by it, with a corner where it has one; cells that have a
-        hole inside cover it.
+    Cells on the boundary are cut by it, with a corner where it has one; cells that have a hole
+    inside cover it.
 
     Raises
     ------
@@ -112,9 +105,6 @@ def _wires(
     Ids are those of the crossings, then ``4 node + port``; ports 0 to 3 leave along u, v, -u,
     -v, counter-clockwise; -1 for crossings within the surface.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     count, n_nodes = len(crossings.shares), len(meetings.u_segments)
     nodes = count + 4 * np.arange(n_nodes)
     flip = np.where(is_mirrored, 2, 0)
@@ -139,10 +129,7 @@ def _wires(
     tails, heads = leaving[order][:-1], knots[order][1:]
     is_link = on[order][:-1] == on[order][1:]
     size = count + 4 * n_nodes
-    links = coo_array(
-        (np.ones(int(is_link.sum())), (tails[is_link], heads[is_link])), shape=(size, size)
-    )
-    wires = connected_components(links, directed=False)[1]
+    wires = piece_labels(tails[is_link], heads[is_link], size)
     is_end = np.ones(size, bool)
     is_end[:count] = surface.topology.twins[crossings.half_edges] < 0
     ends = np.flatnonzero(is_end)
@@ -219,12 +206,7 @@ def _darts(
 
 def _cycles(following: IntArray) -> tuple[IntArray, IntArray]:
     """Darts of each cycle of a permutation in order, and offsets; fixed points are left out."""
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import connected_components
-
-    size = len(following)
-    graph = csr_array((np.ones(size), (np.arange(size), following)), shape=(size, size))
-    _, labels = connected_components(graph, directed=False)
+    labels = piece_labels(np.arange(len(following)), following, len(following))
     _, starts, lengths = np.unique(labels, return_index=True, return_counts=True)
     starts, lengths = starts[lengths > 1], lengths[lengths > 1]
     offsets = np.concatenate([[0], np.cumsum(lengths)])

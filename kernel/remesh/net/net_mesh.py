@@ -7,6 +7,7 @@ import numpy as np
 from ...arrays import BoolArray, FloatArray, IntArray, norm, sum_by
 from ...errors import InputError
 from ...meshes.mesh import Mesh, with_vertices
+from ...solvers.weighted_graphs import piece_labels
 from .extraction import Net
 
 SHORT = 0.4
@@ -46,17 +47,9 @@ class NetMesh(NamedTuple):
 
 
 def net_mesh(net: Net, edge_length: float) -> NetMesh:
-    """Build the mesh of a net.
+    """Build the mesh of a net with steps of a given length.
 
-    Parameters
-    ----------
-    edge_length : float
-        Length of a step of the net.
-
-    Returns
-    -------
-    NetMesh
-        Where contracting the short edges would pinch the mesh they are kept.
+    Where contracting the short edges would pinch the mesh they are kept.
 
     Raises
     ------
@@ -79,16 +72,11 @@ def net_mesh(net: Net, edge_length: float) -> NetMesh:
 
 def _merge_short_edges(net: Net, edge_length: float) -> IntArray:
     """For each point the one that stands for it."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     count = len(net.points)
     tails, heads = net.corners, net.corners[_following(net.offsets)]
     is_short = norm(net.points[tails] - net.points[heads]) < SHORT * edge_length
     is_short &= (tails >= net.n_nodes) | (heads >= net.n_nodes)
-    ones = np.ones(int(is_short.sum()))
-    graph = coo_array((ones, (tails[is_short], heads[is_short])), shape=(count, count))
-    clusters = np.asarray(connected_components(graph, directed=False)[1], np.int64)
+    clusters = piece_labels(tails[is_short], heads[is_short], count)
     # A hole at which lines crowd stays open.
     is_wide = _widths(net.points, clusters) > WIDEST * edge_length
     stays = is_wide[clusters] & _closes_hole(net, clusters)[clusters]
@@ -103,14 +91,9 @@ def _merge_short_edges(net: Net, edge_length: float) -> IntArray:
 
 def _closes_hole(net: Net, clusters: IntArray) -> BoolArray:
     """Whether each cluster holds all points of a line of the boundary."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     count, ends = len(net.points), (net.corners, net.corners[_following(net.offsets)])
     on_rim = (ends[0] >= net.n_nodes) & (ends[1] >= net.n_nodes)
-    ones = np.ones(int(on_rim.sum()))
-    graph = coo_array((ones, (ends[0][on_rim], ends[1][on_rim])), shape=(count, count))
-    lines = connected_components(graph, directed=False)[1][net.n_nodes :]
+    lines = piece_labels(ends[0][on_rim], ends[1][on_rim], count)[net.n_nodes :]
     low, high = np.full(count, count), np.full(count, -1)
     np.minimum.at(low, lines, clusters[net.n_nodes :])
     np.maximum.at(high, lines, clusters[net.n_nodes :])

@@ -52,17 +52,7 @@ Site: TypeAlias = Callable[[FloatArray], Misses]
 
 
 def anywhere(shifts: FloatArray) -> Misses:
-    """Let nodes be where they like: a `Site`.
-
-    Parameters
-    ----------
-    shifts : (V, 3) float array
-
-    Returns
-    -------
-    Misses
-        None, of shape (V, 0).
-    """
+    """Let nodes be where they like: a `Site` without misses, (V, 0)."""
     return Misses(np.zeros((len(shifts), 0)), np.zeros((len(shifts), 0, 3)))
 
 
@@ -149,12 +139,7 @@ class CornerJacobian(NamedTuple):
 
 
 def planar_system(sphere_mesh: SphereMesh) -> PlanarSystem:
-    """The problem of planarising a sphere mesh, in mean edges.
-
-    Returns
-    -------
-    PlanarSystem
-        Its start has the normals that fit best.
+    """The problem of planarising a sphere mesh, in mean edges; its first normals fit best.
 
     Notes
     -----
@@ -178,26 +163,17 @@ def planar_system(sphere_mesh: SphereMesh) -> PlanarSystem:
 
 
 def must_be_planar(mesh: Mesh) -> BoolArray:
-    """Nodes whose beams need a common axis.
+    """Nodes (V,) whose beams need a common axis.
 
-    Returns
-    -------
-    (V,) bool array
-        Those inside; and on the boundary those of more than three faces, since the planes of
-        two beams always meet in a line.
+    Those inside; and on the boundary those of more than three faces, since the planes of two
+    beams always meet in a line.
     """
     has_many = np.bincount(mesh.corners, minlength=mesh.n_vertices) > ALWAYS_PLANAR
     return ~mesh.topology.is_boundary_vertex | has_many
 
 
 def planar_residuals(system: PlanarSystem, net: NetState) -> Residuals:
-    """How far a net is from planar nodes.
-
-    Returns
-    -------
-    Residuals
-        They vanish for a torsion-free sphere mesh of unit rows.
-    """
+    """How far a net is from planar nodes; zero for a torsion-free sphere mesh of unit rows."""
     rows, points, common = _at_corners(system, net)
     curvatures = system.scales[0] * rows[:, 0]
     tilt = common[:, 0] * curvatures + dot(common[:, 1:], normals(rows, points))
@@ -210,13 +186,10 @@ def planar_residuals(system: PlanarSystem, net: NetState) -> Residuals:
 
 
 def energies(system: PlanarSystem, net: NetState) -> FloatArray:
-    """Sums of the squared residuals.
+    """Sums of the squared residuals, one for each of their four kinds.
 
-    Returns
-    -------
-    (4,) float array
-        One for each kind of residual. All are zero if no residual is above `exact`: on
-        closed nets the constraints are nearly dependent, and the last digits come slowly.
+    All are zero if no residual is above `exact`: on closed nets the constraints are nearly
+    dependent, and the last digits come slowly.
     """
     miss = planar_residuals(system, net)
     is_exact = all((np.abs(r) <= system.exact).all() for r in miss)
@@ -224,12 +197,9 @@ def energies(system: PlanarSystem, net: NetState) -> FloatArray:
 
 
 def move(net: NetState, step: FloatArray) -> NetState:
-    """Move a net along a step.
+    """Move a net along a step (5 F + 7 V,).
 
-    Parameters
-    ----------
-    step : (5 F + 7 V,) float array
-        Changes of the rows, then of the shift and the normal of each node.
+    It holds changes of the rows, then of the shift and the normal of each node.
     """
     rows, shifts, common = split_step(step, len(net.rows))
     return NetState(net.rows + rows, net.shifts + shifts, net.normals + common)
@@ -264,17 +234,7 @@ def _at_corners(
 
 
 def split_step(step: FloatArray, n_faces: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Parts of a step.
-
-    Parameters
-    ----------
-    step : (5 F + 7 V,) float array
-
-    Returns
-    -------
-    rows, shifts, normals : (F, 5), (V, 3) and (V, 4) float arrays
-        Their changes.
-    """
+    """Changes of rows (F, 5), shifts (V, 3) and normals (V, 4) in a step (5 F + 7 V,)."""
     nodes = step[FACE * n_faces :].reshape(-1, NODE)
     return step[: FACE * n_faces].reshape(-1, FACE), nodes[:, :POINT], nodes[:, POINT:]
 
@@ -282,18 +242,10 @@ def split_step(step: FloatArray, n_faces: int) -> tuple[FloatArray, FloatArray, 
 def on_surface(surface: SmoothSurface, mesh: Mesh, weights: FloatArray) -> Site:
     """Keep nodes on a smooth surface, and those of the boundary on its boundary.
 
-    Parameters
-    ----------
-    mesh : Mesh
-        The net at the start, in model coordinates; its boundary lies on that of the surface.
-    weights : (V,) float array
-        How much the height of each node counts; 0 where it does not.
-
-    Returns
-    -------
-    Site
-        Height over the surface; for nodes of the boundary the distance from its tangent at the
-        start, for those at a corner that from the corner.
+    The mesh is the net at the start, in model coordinates, its boundary on that of the surface;
+    the weights (V,) say how much the height of each node counts, 0 where it does not. For nodes
+    of the boundary the height is the distance from its tangent at the start, for those at a
+    corner that from the corner.
     """
     size = mean_edge_length(mesh)
     unit_length = surface.mesh.size
@@ -312,13 +264,7 @@ def on_surface(surface: SmoothSurface, mesh: Mesh, weights: FloatArray) -> Site:
 
 
 def node_distances(surface: SmoothSurface, mesh: Mesh) -> FloatArray:
-    """Distances of the nodes of a net from a smooth surface.
-
-    Returns
-    -------
-    (V,) float array
-        In mean edges of the net.
-    """
+    """Distances (V,) of the nodes of a net from a smooth surface, in mean edges of the net."""
     points = (mesh.vertices - surface.mesh.origin) / surface.mesh.size
     heights, _ = surface_heights(surface, points)
     return np.abs(heights) * surface.mesh.size / mean_edge_length(mesh)

@@ -26,21 +26,10 @@ from .planarize import Planarization, is_kept, planarize
 
 
 def planarize_near(sphere_mesh: SphereMesh, farthest: float) -> tuple[Planarization, bool]:
-    """Make nodes planar if that moves them by little.
+    """Make nodes planar if that moves them by at most `farthest` mean edges.
 
-    Parameters
-    ----------
-    sphere_mesh : SphereMesh
-        A mesh whose nodes are nearly planar, as an optimised support structure.
-    farthest : float
-        How far nodes may move, in mean edges.
-
-    Returns
-    -------
-    result : Planarization
-        The planarised mesh.
-    is_near : bool
-        Whether its beams meet, none of its nodes moved farther, and it stayed a net.
+    The nodes are nearly planar, as those of an optimised support structure. Also whether the
+    beams of the result meet, none of its nodes moved farther, and it stayed a net.
 
     Notes
     -----
@@ -65,12 +54,9 @@ def planarize_near(sphere_mesh: SphereMesh, farthest: float) -> tuple[Planarizat
 def turn_apart(sphere_mesh: SphereMesh) -> SphereMesh:
     """Let neighbours meet at a sensible angle where the axes of their edge's nodes are known.
 
-    Returns
-    -------
-    SphereMesh
-        Spheres of the edges concerned are turned apart by `ALIKE_NEIGHBORS` about the circle
-        in which they meet the plane of the edge and of its two node axes. Where other beams
-        leave an axis open, as within a piece of one sphere, all stays as it is.
+    Spheres of the edges concerned are turned apart by `ALIKE_NEIGHBORS` about the circle in
+    which they meet the plane of the edge and of its two node axes. Where other beams leave an
+    axis open, as within a piece of one sphere, all stays as it is.
     """
     mesh, topology = sphere_mesh.mesh, sphere_mesh.mesh.topology
     is_alike = intersection_angles(sphere_mesh) < ALIKE_NEIGHBORS

@@ -42,12 +42,7 @@ class Nodes:
 
 
 def measure_nodes(sphere_mesh: SphereMesh) -> Nodes:
-    """Planarity, axes and reality of the nodes of a sphere mesh.
-
-    Returns
-    -------
-    Nodes
-        By least squares where the nodes are not planar.
+    """Planarity, axes and reality of the nodes; by least squares where they are not planar.
 
     Notes
     -----
@@ -88,12 +83,9 @@ def _form(first: FloatArray, second: FloatArray) -> FloatArray:
 
 
 def node_axis_angles(sphere_mesh: SphereMesh, nodes: Nodes) -> FloatArray:
-    """Angles between the node axes and the normals of the mesh.
+    """Angles (V,) between the node axes and the normals of the mesh, from 0 to π/2.
 
-    Returns
-    -------
-    (V,) float array
-        Radians from 0 to π/2; NaN where there is no axis, or no normal since faces fold back.
+    NaN where there is no axis, or no normal since faces fold back.
 
     Notes
     -----

@@ -180,20 +180,9 @@ def planarize_held(
 ) -> tuple[Planarization, bool]:
     """Make nodes planar and keep them on a surface if the net stays a net.
 
-    Parameters
-    ----------
-    surface : SmoothSurface
-        The surface that the net was made on.
-    fairness : float
-        As in `planarize`.
-
-    Returns
-    -------
-    result : Planarization
-        The planarised net.
-    is_held : bool
-        Whether the nodes inside lie on the surface: else, as around singular points, edges
-        would shrink or faces turn over.
+    The surface is the one that the net was made on, the fairness that of `planarize`. Also
+    whether the nodes inside lie on the surface: else, as around singular points, edges would
+    shrink or faces turn over.
 
     Raises
     ------

@@ -64,18 +64,10 @@ class StepNorm:
 
 
 def step_norm(system: PlanarSystem, fairness: float) -> StepNorm:
-    """Norm of the steps of a planarisation.
+    """Norm of the steps of a planarisation, which damping multiplies at every net.
 
-    Parameters
-    ----------
-    fairness : float
-        Weight of the differences between neighbouring spheres, relative to the spheres
-        themselves.
-
-    Returns
-    -------
-    StepNorm
-        What damping multiplies, at every net.
+    The fairness weighs the differences between neighbouring spheres, relative to the spheres
+    themselves.
     """
     from scipy.sparse import bsr_array
 
@@ -132,17 +124,7 @@ def _node_metric(size: StepNorm, net: NetState) -> FloatArray:
 def linearize(
     system: PlanarSystem, net: NetState, size: StepNorm
 ) -> Callable[[float], DampedStep]:
-    """Gauss-Newton steps from a net.
-
-    Parameters
-    ----------
-    size : StepNorm
-        The norm that the damping multiplies.
-
-    Returns
-    -------
-    callable
-        From a damping to the step.
+    """Gauss-Newton steps from a net: from a damping, which multiplies the norm, to the step.
 
     Notes
     -----

@@ -1,5 +1,6 @@
 """Cutting drawings, read back by ezdxf."""
 
+import os
 import re
 import subprocess
 import sys
@@ -146,6 +147,26 @@ def test_labels_name_the_beam_and_its_nodes(drawing: Any, beams: Beams) -> None:
 def test_the_same_beams_give_the_same_bytes(beams: Beams, path: Path, tmp_path: Path) -> None:
     again = write_dxf(Model(beams=beams), tmp_path / "again.dxf").path
     assert again.read_bytes() == path.read_bytes()
+
+
+def test_other_processes_give_the_same_text() -> None:
+    """Whatever the seed of hashes: sets that ezdxf goes over differ between 1 and 4."""
+    code = (
+        "from spheremesh.fabrication.drawings import dxf\n"
+        "with dxf.fixed_ezdxf() as library:\n"
+        "    document = dxf.millimeter_drawing(library, {'CUT': 1})\n"
+        "    document.modelspace().add_circle((0, 0), 1)\n"
+        "    print(dxf.drawing_text(document))"
+    )
+    texts = [
+        subprocess.run(
+            [sys.executable, "-c", code],
+            env={**os.environ, "PYTHONHASHSEED": seed}, capture_output=True, check=True,
+        ).stdout
+        for seed in ("1", "4")
+    ]  # fmt: skip
+    assert b"ACDBPLACEHOLDER" in texts[0]
+    assert texts[0] == texts[1]
 
 
 def test_units_of_the_model(beams: Beams, tmp_path: Path) -> None:

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from spheremesh import Mesh
-from spheremesh.fabrication.mesh_files.reader import read_mesh
+from spheremesh.fabrication.mesh_files.reader import read_content, read_mesh
+from spheremesh.fabrication.polygons import FileContent
 from spheremesh.kernel.errors import InputError
 
 
@@ -34,6 +35,18 @@ def read(tmp_path: Path) -> Callable[..., Mesh]:
         path = tmp_path / name
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
         return read_mesh(path, layer)
+
+    return write_and_read
+
+
+@pytest.fixture
+def content(tmp_path: Path) -> Callable[..., FileContent]:
+    """What a file of that name holds, with remarks."""
+
+    def write_and_read(name: str, data: str | bytes, layer: str = "") -> FileContent:
+        path = tmp_path / name
+        path.write_bytes(data if isinstance(data, bytes) else data.encode())
+        return read_content(path, layer)
 
     return write_and_read
 

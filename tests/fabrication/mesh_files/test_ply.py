@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from spheremesh import Mesh
+from spheremesh.fabrication.polygons import FileContent
 
+Content: TypeAlias = Callable[..., FileContent]
 Read: TypeAlias = Callable[..., Mesh]
 ErrorOf: TypeAlias = Callable[..., str]
 FacesOf: TypeAlias = Callable[[Mesh], list[list[int]]]
@@ -49,6 +51,7 @@ def ply_body(order: str, vertex: str = "d", count: str = "B", index: str = "i") 
         ply("binary_little_endian", "float", "int", "ushort") + ply_body("<", "f", "i", "H"),
         ply("binary_big_endian", "float32", "uint8", "uint8") + ply_body(">", "f", "B", "B"),
         ply("binary_little_endian").replace(b"\n", b"\r\n") + ply_body("<"),
+        ply("binary_big_endian").replace(b"\n", b"\r") + ply_body(">"),
     ],
 )
 def test_ply_dialects(read: Read, faces_of: FacesOf, content: str | bytes) -> None:
@@ -87,6 +90,12 @@ PLY_POINTS = "0 0 0\n1 0 0\n0 1 0\n"
         (PLY + PLY_POINTS + "3 0 1 1\n", ["line 13", "repeated corner"]),
         (PLY + PLY_POINTS + "2 0 1\n", ["line 13", "2 corners"]),
         (PLY.replace("face 1", "face 0") + PLY_POINTS, ["no faces"]),
+        (PLY.replace("property float y", "proprety float y"), ["line 5", "'proprety float y'"]),
+        (PLY.replace("element", "Element", 1), ["line 3", "'Element vertex 3'"]),
+        (PLY + "9 0 0 0\n9 1 0 0\n9 0 1 0\n3 0 1 2\n", ["line 10", "4 numbers", "names 3"]),
+        (PLY + PLY_POINTS + "3 0 1 2 7\n", ["line 13", "5 numbers", "names 4"]),
+        (PLY.replace("element face", "element tristrips") + PLY_POINTS, ["strips"]),
+        (PLY.replace("\nend_header", "\ncomment end_header"), ["line 1", "end_header"]),
         (ply("binary_little_endian") + ply_body("<")[:-1], ["cut short", "element face"]),
         (ply("binary_little_endian") + ply_body("<")[:-20], ["cut short", "element face"]),
         (ply("binary_little_endian") + ply_body("<")[:40], ["cut short", "element vertex"]),
@@ -120,3 +129,21 @@ def test_ply_errors_name_the_line_or_the_element(
 ) -> None:
     message = error_of("a.ply", content)
     assert all(part in message for part in parts), message
+
+
+def test_ply_rows_that_the_header_does_not_count_are_said(content: Content) -> None:
+    found = content("a.ply", PLY + PLY_POINTS + "3 0 1 2\n3 1 0 2\n")
+    assert len(found.polygons.degrees) == 1
+    assert ["line 14: the file goes on" in each for each in found.remarks] == [True]
+    whole = ply("binary_little_endian") + ply_body("<")
+    assert content("b.ply", whole + b"\n").remarks[:1] != ("the file goes on",)
+    assert any("goes on" in each for each in content("c.ply", whole + b"more").remarks)
+
+
+def test_ply_counts_that_the_file_does_not_hold_allocate_nothing(error_of: ErrorOf) -> None:
+    for count in ("4000000000", "900000000000000"):
+        for kind in ("vertex 4", "face 2", "strip 1"):
+            header = ply("binary_little_endian").replace(
+                f"element {kind}".encode(), f"element {kind[:-1]}{count}".encode()
+            )
+            assert "cut short" in error_of("a.ply", header + ply_body("<"))

@@ -1,5 +1,6 @@
 """STL files: shared corners, lost digits and errors."""
 
+import re
 import struct
 from collections.abc import Callable
 from pathlib import Path
@@ -10,8 +11,10 @@ import pytest
 
 from spheremesh import Mesh
 from spheremesh.fabrication.mesh_files.writer import write_mesh
+from spheremesh.fabrication.polygons import FileContent
 from spheremesh.kernel.errors import InputError
 
+Content: TypeAlias = Callable[..., FileContent]
 Read: TypeAlias = Callable[..., Mesh]
 ErrorOf: TypeAlias = Callable[..., str]
 FacesOf: TypeAlias = Callable[[Mesh], list[list[int]]]
@@ -51,7 +54,7 @@ def test_a_binary_stl_may_start_with_solid(
         ("solid part\n" + FACET.format("0 0"), ["line 4", "three coordinates"]),
         (SOLID.replace("vertex 1 1 0\n", ""), ["line 13", "three vertices"]),
         (SOLID[: SOLID.index("vertex 1 1")], ["line 11", "inside a facet"]),
-        ("solid part\n" + FACET.format("1"), ["line 4", "repeated corner"]),
+        ("solid part\n" + FACET.format("1") + "endsolid\n", ["line 4", "repeated corner"]),
         ("solid part\nendsolid part\n", ["no faces"]),
         (b"cut", ["cut short"]),
         (
@@ -77,3 +80,53 @@ def test_stl_refuses_to_merge_vertices_that_float32_cannot_tell_apart(
         with pytest.raises(InputError, match=r"far\.stl: STL keeps 7 digits.* \.3dm"):
             write_mesh(Mesh(vertices, mesh.faces), tmp_path / "far.stl")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        SOLID.upper(),
+        SOLID.replace("\n", " ").replace("solid part ", "solid part\n", 1),
+        SOLID.replace("solid part", "Solid vertex facet"),
+        SOLID.replace("endsolid part\n", "endsolid"),
+        SOLID.replace("\n", "\r\n"),
+        SOLID.replace("endfacet", "color 1 0 0\nendfacet"),
+    ],
+)
+def test_stl_capitals_and_line_ends_do_not_matter(
+    read: Read, faces_of: FacesOf, text: str
+) -> None:
+    if "endsolid" not in text.lower().splitlines()[-1]:
+        text += "\nendsolid"
+    assert faces_of(read("a.stl", text)) == [[0, 1, 2], [1, 3, 2]]
+
+
+def test_stl_several_solids_are_one_mesh(read: Read) -> None:
+    other = re.sub(r"vertex (\S+)", r"vertex 9\1", SOLID)
+    assert read("a.stl", SOLID + other).n_faces == 4
+
+
+def test_stl_text_cut_anywhere_is_refused(error_of: ErrorOf) -> None:
+    whole = SOLID[: SOLID.rindex("endsolid") + len("endsolid")]
+    for size in range(1, len(whole)):
+        assert "a.stl" in error_of("a.stl", whole[:size]), whole[:size]
+
+
+def test_stl_bytes_cut_anywhere_are_refused(
+    quad_and_triangle: Mesh, error_of: ErrorOf, tmp_path: Path
+) -> None:
+    data = write_mesh(quad_and_triangle, tmp_path / "b.stl").read_bytes()
+    for header in (data[:80], b"solid".ljust(80)):
+        whole = header + data[80:]
+        for size in range(1, len(whole)):
+            error_of("a.stl", whole[:size])
+
+
+def test_stl_bytes_that_the_count_leaves_out_are_said(
+    content: Content, quad_and_triangle: Mesh, tmp_path: Path
+) -> None:
+    data = bytearray(write_mesh(quad_and_triangle, tmp_path / "b.stl").read_bytes())
+    data[80] = 2
+    found = content("a.stl", bytes(data))
+    assert len(found.polygons.degrees) == 2
+    assert ["1 more" in each for each in found.remarks] == [True]

@@ -107,7 +107,7 @@ def test_an_instance_without_a_block_is_named(tmp_path: Path) -> None:
     model.Objects.Add(instance(block, np.eye(3), np.zeros(3)), attributes(0))
     missing = "00000000-0000-0000-0000-000000000001"
     model.Objects.Add(instance(missing, np.eye(3), np.zeros(3)), attributes(0))
-    with pytest.raises(InputError, match="1 Point, 1 InstanceReference"):
+    with pytest.raises(InputError, match="1 point, 1 instance of a block that the file"):
         read_mesh(save(model, tmp_path / "a.3dm"))
 
 

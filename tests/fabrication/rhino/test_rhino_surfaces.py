@@ -10,11 +10,11 @@ import rhino3dm
 from spheremesh import nodes
 from spheremesh.fabrication.mesh_files.reader import read_mesh
 from spheremesh.fabrication.model import Model
-from spheremesh.fabrication.rhino.surface_reader import nurbs_surface, off_seams
+from spheremesh.fabrication.rhino.brep_faces import nurbs_surface
 from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
 from spheremesh.kernel.arrays import FloatArray
 from spheremesh.kernel.errors import InputError
-from spheremesh.kernel.meshes.mesh import Mesh, face_normals
+from spheremesh.kernel.meshes.mesh import Mesh, face_normals, face_vector_areas
 from spheremesh.kernel.surfaces.nurbs import evaluate_nurbs, nurbs_curvatures
 
 CENTER = np.array([1.0, 2.0, 3.0])
@@ -163,28 +163,7 @@ def test_the_joined_shell_is_read_back(tmp_path: Path) -> None:
     assert (grid.n_faces, n_boundary(grid)) == (320, 0)
 
 
-@pytest.mark.parametrize("end", [0, 1])
-def test_sides_on_a_seam_lie_where_the_face_is(end: int) -> None:
-    """Points of a seam have two parameters; found are those of either end."""
-    circle = rhino3dm.Circle(rhino3dm.Point3d(0, 0, 0), 1.0)
-    brep = rhino3dm.Cylinder(circle, 2.0).ToBrep(False, False)  # noqa: FBT003
-    surface = nurbs_surface(brep.Faces[0].UnderlyingSurface())
-    axis = int(np.abs(np.diff(surface.domain)[:, 0] - 2).argmin() == 0)
-    (low, high), (start, stop) = surface.domain[axis], surface.domain[1 - axis]
-    seam, far = ((low, high), (high, low))[end]
-    near = seam + 0.3 * (far - seam)
-    corners = [(seam, start), (near, start), (near, stop), (seam, stop)]
-    sides = [
-        np.linspace(a, b, 5) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)
-    ]
-    confused = [side.copy() for side in sides]
-    confused[3][1:4, 0] = low + high - seam
-    found = off_seams(surface, [side[:, :: 1 - 2 * axis] for side in confused])
-    for side, right in zip(found, sides, strict=True):
-        assert np.array_equal(side[:, :: 1 - 2 * axis], right)
-
-
-def test_layers_blocks_and_meshes_first(tmp_path: Path) -> None:
+def test_layers_blocks_and_meshes_beside_surfaces(tmp_path: Path) -> None:
     model = rhino3dm.File3dm()
     layers = []
     for name in ("Design", "Mesh"):
@@ -210,52 +189,50 @@ def test_layers_blocks_and_meshes_first(tmp_path: Path) -> None:
         (sphere().ToNurbsSurface(),),
         (attributes,),
     )
+    model.Settings.ModelUnitSystem = rhino3dm.UnitSystem.Meters
     path = tmp_path / "a.3dm"
     model.Write(str(path), 8)
-    assert read_mesh(path).n_faces == 1
+    assert read_mesh(path, n_u=3, n_v=5).n_faces == 16
     assert read_mesh(path, layer="Design", n_u=3, n_v=5).n_faces == 15
     assert nodes.read_mesh(path, "Design", 2, 2).n_faces == 4
 
 
 def test_what_cannot_be_sampled(tmp_path: Path) -> None:
-    cylinder = rhino3dm.Cylinder(rhino3dm.Circle(1.0), 2.0).ToBrep(True, True)  # noqa: FBT003
-    with pytest.raises(InputError, match=r"face \d of a polysurface .*; mesh it in Rhino"):
-        read_mesh(saved(tmp_path / "a.3dm", cylinder))
     with pytest.raises(InputError, match="a grid of 0 by 3 quads"):
         read_mesh(saved(tmp_path / "b.3dm", sloping()), n_u=0, n_v=3)
     with pytest.raises(InputError, match="1 by 1 quads on surfaces have no area: ask for more"):
         read_mesh(saved(tmp_path / "c.3dm", sphere().ToBrep()), n_u=1, n_v=1)
 
 
+@pytest.mark.parametrize("edge_length", [None, 0.3])
 @pytest.mark.parametrize(
-    ("corners", "is_covered"),
+    "corners",
     [
-        ([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)], False),
-        ([(0, 0), (3, 1), (0.5, 0.5), (1, 3)], False),
-        ([(0, 0), (3, 0), (3, 3), (1.5, 3.0), (0, 3)], True),
-        ([(0, 0), (3, 1), (2.2, 2.2), (1, 3)], True),
+        [(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)],
+        [(0, 0), (3, 1), (0.5, 0.5), (1, 3)],
+        [(0, 0), (3, 0), (3, 3), (1.5, 3.0), (0, 3)],
+        [(0, 0), (3, 1), (2.2, 2.2), (1, 3)],
+        [(2, 0), (0.5, 0.4), (0, 2), (-0.4, 0.5), (-2, 0), (-0.5, -0.4), (0, -2), (0.4, -0.5)],
     ],
 )
-def test_concave_faces_are_covered_once_or_refused(
-    tmp_path: Path,
-    corners: list[tuple[float, float]],
-    is_covered: bool,  # noqa: FBT001
+def test_concave_faces_are_covered_once(
+    tmp_path: Path, corners: list[tuple[float, float]], edge_length: float | None
 ) -> None:
-    outline = rhino3dm.Polyline(len(corners))
-    for x, y in (*corners, corners[0]):
-        outline.Add(x, y, 0)
-    face = rhino3dm.Brep.CreateTrimmedPlane(rhino3dm.Plane.WorldXY(), outline.ToPolylineCurve())
-    path = saved(tmp_path / "a.3dm", face)
-    if not is_covered:
-        with pytest.raises(InputError, match=r"turns inwards .* would fold; mesh it in Rhino"):
-            read_mesh(path)
-        return
-    mesh = read_mesh(path)
-    quads = mesh.vertices[np.stack(mesh.faces)]
-    areas = np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])[:, 2] / 2
+    face = rhino3dm.Brep.CreateTrimmedPlane(rhino3dm.Plane.WorldXY(), polyline(corners))
+    mesh = read_mesh(saved(tmp_path / "a.3dm", face), edge_length=edge_length)
+    areas = face_vector_areas(mesh)[:, 2]
     x, y = np.array(corners).T
     assert areas.min() > 0
     assert areas.sum() == pytest.approx((x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2)
+
+
+def polyline(corners: Any) -> rhino3dm.PolylineCurve:  # noqa: ANN401
+    """A closed polyline, at height 0 where none is given."""
+    outline = rhino3dm.Polyline(len(corners) + 1)
+    for corner in (*corners, corners[0]):
+        x, y, z = (*map(float, corner), 0.0)[:3]
+        outline.Add(x, y, z)
+    return outline.ToPolylineCurve()
 
 
 def test_extrusions(tmp_path: Path) -> None:

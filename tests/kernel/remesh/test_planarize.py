@@ -415,10 +415,10 @@ def test_nodes_whose_spheres_share_a_circle_have_no_axis() -> None:
 
 
 def test_folded_nets_are_measured_all_the_same() -> None:
-    """Two faces back to back have no normals at their common vertices."""
+    """Faces back to back have no normals at their common vertices."""
     square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
-    rows = np.tile([0.0, 0, 0, 1, 0], (2, 1)) * [[1], [-1]]
-    folded = SphereMesh(Mesh(square, [[0, 1, 2, 3], [3, 2, 1, 0]]), rows)
+    rows = np.tile([0.0, 0, 0, 1, 0], (3, 1)) * [[1], [-1], [-1]]
+    folded = SphereMesh(Mesh(square, [[0, 1, 2, 3], [3, 2, 1], [3, 1, 0]]), rows)
     nodes = measure_nodes(folded)
     assert nodes.is_inner.all()
     assert np.isnan(node_axis_angles(folded, nodes)).all()

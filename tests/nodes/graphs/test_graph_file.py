@@ -1,10 +1,10 @@
-"""Graph files: the same graph again, diffable, and a clear error for each defect."""
+"""Graph files: the same graph again, diffable, and old ones too."""
 
 import difflib
 import json
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -169,100 +169,41 @@ def test_mermaid() -> None:
     assert "  step_split ==>|low to a| step_mapped" in lines
 
 
-Change = Callable[[dict[str, Any]], object]
+def test_arrays_of_all_kinds_stay_as_they_are() -> None:
+    floats = [[np.finfo(kind).max, -np.inf, 0.1] for kind in (np.float16, np.float32, float)]
+    integers = [
+        [np.iinfo(kind).min, 7, np.iinfo(kind).max] for kind in (np.int8, np.uint8, np.int64)
+    ]
+    rows = [*floats, *integers, [0, 2**64 - 1], [False, True], []]
+    names = [
+        "float16",
+        "float32",
+        "float64",
+        "int8",
+        "uint8",
+        "int64",
+        "uint64",
+        "bool",
+        "int8",
+    ]
+    for row, name in zip(rows, names, strict=True):
+        g = sm.Graph()
+        g.param("a", np.array(row, name))
+        again = sm.Graph.from_json(g.to_json())
+        assert again.to_json() == g.to_json()
+        value = again.params["a"].value
+        assert value.dtype == name
+        np.testing.assert_array_equal(value, np.array(row, name))
 
 
-def _mixed(content: dict[str, Any]) -> dict[str, Any]:
-    return content["steps"]["mixed"]["inputs"]
-
-
-DEFECTS: list[tuple[Change, str]] = [
-    (lambda c: c.update(format="grasshopper"), '"format" must be "spheremesh graph"'),
-    (lambda c: c.update(version=2), '"version" is 2, this spheremesh reads 1'),
-    (lambda c: c.pop("title"), '"title" is missing'),
-    (lambda c: c.update(title=[1]), '"title" must be a text, not [1]'),
-    (lambda c: c.update(units="km"), "units = 'km': must be one of mm, cm, m, in, ft"),
-    (lambda c: c.update(steps=[]), '"steps" must be an object, not []'),
-    (lambda c: c["params"].update(k=3), "params.k must be an object, not 3"),
-    (lambda c: c["params"]["k"].pop("value"), 'params.k: "value" is missing'),
-    (
-        lambda c: c["params"]["k"].update(mx=3),
-        "params.k: unknown entry 'mx'; did you mean 'max'?",
-    ),
-    (lambda c: c["params"]["k"].update(max=3), "params.k: param k = 8: must be at least 1 and"),
-    (lambda c: c["params"]["k"].update(max="a"), "params.k"),
-    (lambda c: c["params"]["kind"].update(choices=3), "params.kind"),
-    (lambda c: c["steps"]["split"].pop("node"), 'steps.split: "node" is missing'),
-    (lambda c: c["steps"].update(split=None), "steps.split must be an object, not null"),
-    (
-        lambda c: c["steps"]["split"].update(node="splat"),
-        "steps.split: unknown node 'splat'; did you mean 'split'?",
-    ),
-    (lambda c: _mixed(c).update(b=1), "steps.mixed: step 'mixed' (node mix) has no input 'b'"),
-    (lambda c: _mixed(c).update(a="x"), "steps.mixed: mixed.a = 'x': must be float"),
-    (lambda c: _mixed(c).update(a={"wire": 3}), 'steps.mixed: cannot read {"wire": 3}'),
-    (
-        lambda c: _mixed(c).update(a={"wine": "split"}),
-        'cannot read {"wine": "split"}: expected',
-    ),
-    (
-        lambda c: _mixed(c).update(a={"param": "kk"}),
-        "steps.mixed: no param 'kk'; did you mean 'k'?",
-    ),
-    (
-        lambda c: _mixed(c).update(a={"wire": "splitt.low"}),
-        "steps.mixed: wired to an unknown step 'splitt'; did you mean 'split'?",
-    ),
-    (
-        lambda c: _mixed(c).update(a={"wire": "split.hihg"}),
-        "steps.mixed: step 'split' (node split) has no output 'hihg'; did you mean 'high'?",
-    ),
-    (lambda c: _mixed(c).update(weights={"array": [[1], [2, 3]]}), "steps.mixed: cannot read"),
-    (
-        lambda c: _mixed(c).update(weights={"array": [1], "dtype": "wide"}),
-        "steps.mixed: cannot",
-    ),
-    (
-        lambda c: c["steps"]["split"]["inputs"].update(value={"wire": "mixed"}),
-        "the steps form a cycle: ",
-    ),
-    (lambda c: _mixed(c).update(a={"wire": "mixed"}), "the steps form a cycle: mixed -> mixed"),
-    (lambda c: c["steps"].update({"a b": c["steps"]["split"]}), "steps.a b: step name 'a b'"),
-]
-
-
-@pytest.mark.parametrize(("change", "message"), DEFECTS, ids=[text for _, text in DEFECTS])
-def test_a_defect_of_a_file_is_named(tmp_path: Path, change: Change, message: str) -> None:
-    content = json.loads(example().to_json())
-    change(content)
-    path = tmp_path / "graph.json"
-    path.write_text(json.dumps(content), encoding="utf-8")
-    with pytest.raises(GraphError) as error:
-        sm.Graph.load(path)
-    assert str(error.value).startswith(f"{path}: ")
-    assert message in str(error.value)
-
-
-@pytest.mark.parametrize(
-    ("data", "message"),
-    [
-        (b"", "line 1: not JSON"),
-        (b'{\n "format": ', "line 2: not JSON"),
-        (b"[1]", "not a graph file"),
-        (b"\xff\xfe", "not UTF-8"),
-        (b"[" * 100_000, "nested too deeply"),
-    ],
-)
-def test_what_is_no_graph_file(tmp_path: Path, data: bytes, message: str) -> None:
-    path = tmp_path / "graph.json"
-    path.write_bytes(data)
-    with pytest.raises(GraphError, match=message):
-        sm.Graph.load(path)
-
-
-def test_a_missing_file_is_named(tmp_path: Path) -> None:
-    with pytest.raises(GraphError, match=r"none\.json: No such file"):
-        sm.Graph.load(tmp_path / "none.json")
+def test_many_steps_in_the_wrong_order_are_quickly_in_order() -> None:
+    content = json.loads(sm.Graph().to_json())
+    step = {"node": "mix", "version": "1"}
+    steps = {f"s{i}": {**step, "inputs": {"a": {"wire": f"s{i - 1}"}}} for i in range(1, 2000)}
+    steps["s0"] = {**step, "inputs": {"a": 1}}
+    content["steps"] = dict(reversed(steps.items()))
+    g = sm.Graph.from_json(json.dumps(content))
+    assert list(g.steps) == [f"s{i}" for i in range(2000)]
 
 
 def test_ports_of_old_files_are_read_by_their_present_names(
@@ -276,6 +217,11 @@ def test_ports_of_old_files_are_read_by_their_present_names(
     renamed = {"mix": {"loads": "weights"}, "split": {"number": "value", "upper": "high"}}
     monkeypatch.setattr(file, "RENAMED_PORTS", renamed)
     assert sm.Graph.from_json(old).to_json() == text
+    # a port that has gone is passed over
+    gone = json.loads(text)
+    gone["steps"]["mixed"]["inputs"]["seed"] = 7
+    monkeypatch.setattr(file, "RENAMED_PORTS", {"mix": {"seed": ""}})
+    assert sm.Graph.from_json(json.dumps(gone)).to_json() == text
     # a present name is never taken for an old one
     monkeypatch.setattr(
         file, "RENAMED_PORTS", {"mix": {"a": "limit"}, "split": {"low": "high"}}
@@ -290,7 +236,7 @@ from spheremesh.nodes.graphs.node import find_node
 for name, ports in RENAMED_PORTS.items():
     found = find_node(name)
     for old, new in ports.items():
-        assert new in found.inputs or new in found.outputs, (name, new)
+        assert not new or new in found.inputs or new in found.outputs, (name, new)
         assert old not in found.inputs or old not in found.outputs, (name, old)
 """
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -45,10 +45,13 @@ def steps() -> sm.Graph:
     g.add("sphere_pairs", first=spheres, second=spheres)
     g.add("pentaspherical_coordinates", spheres=spheres)
     g.add("sent_to_infinity", points=mesh.normals, transform=g.wire("inversion"))
+    drawn = g.add("read_surface", "drawn", path="roof.3dm")
+    g.add("surface_fields", "fields", surface=drawn)
     return g
 
 
 WRONG = [
+    ("fields.curvatures", "panels.labels"),
     ("tangent.result", "minimize_angles.edge_weights"),
     ("bump.normals", "envelope.spheres"),
     ("support_structure.axes", "p4_remesh.spheres"),

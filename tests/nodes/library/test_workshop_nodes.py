@@ -19,6 +19,7 @@ from spheremesh.nodes import (
     mould_blanks,
     panel_report,
     panels,
+    roof_mesh,
     torus_mesh,
     write_schedule,
 )
@@ -51,7 +52,8 @@ def graph() -> sm.Graph:
 def test_the_report_is_plain_and_agrees_with_its_parts(graph: sm.Graph) -> None:
     report, blanks, same = graph.run("report", "blanks", "same.report")
     assert json.loads(json.dumps(dict(report), allow_nan=False)) == report
-    assert report["input"] == {"vertices": 96, "faces": 96, "units": "ft"}
+    assert report["input"] | {"vertices": 96, "faces": 96, "units": "ft"} == report["input"]
+    assert report["input"]["size"] == pytest.approx([6, 6, 3**0.5])
     assert report["panels"] == {"written": 96, "rejected": []}
     assert report["moulds"]["count"] == 3
     assert report["moulds"]["blanks"] == blanks["blanks"]
@@ -149,3 +151,23 @@ def test_beams_and_what_was_rejected_are_audited(tmp_path: Path) -> None:
     path = write_schedule(cut.panels, str(tmp_path / "s.json"), beams=made.beams)
     rows = json.loads(Path(path).read_text("utf-8"))["beams"]
     assert len(rows) == report["beams"]["written"] == made.beams.n_beams
+
+
+def test_moulds_move_nothing_unless_allowed() -> None:
+    spheres = minimize_angles(fit_spheres(roof_mesh(6, 12))).sphere_mesh
+    fixed = cluster_radii(spheres, k=3)
+    np.testing.assert_array_equal(fixed.sphere_mesh.mesh.vertices, spheres.mesh.vertices)
+    assert fixed.report["vertex_move"] == 0
+    with pytest.warns(UserWarning, match="the moulds moved vertices by up to"):
+        moved = cluster_radii(spheres, k=3, tolerance=0.02)
+    assert 0 < moved.report["vertex_move"] <= 0.02
+    assert moved.report["angles_deg"]["mean"] < fixed.report["angles_deg"]["mean"]
+
+
+def test_what_a_workshop_cannot_tell_apart_depends_on_the_unit() -> None:
+    """A roof of 8 m has eight moulds; one of 8 mm is flat."""
+    spheres = minimize_angles(fit_spheres(roof_mesh(6, 12, length=8.0))).sphere_mesh
+    assert cluster_radii(spheres, k=8, units="m").report["count"] == 8
+    with pytest.warns(UserWarning, match="1 of 8 moulds: no more can be told apart by 0.1 mm"):
+        flat = cluster_radii(spheres, k=8, units="mm")
+    assert flat.report["radii"] == [None]

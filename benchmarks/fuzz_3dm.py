@@ -1,0 +1,177 @@
+"""Does any damaged .3dm harm? Mutates and cuts small files, and reads them.
+
+    python benchmarks/fuzz_3dm.py [CPU_SECONDS] [SEED]
+
+Eight seeds: meshes with ngons, unwelded and double meshes, surfaces, polysurfaces, extrusions,
+blocks in blocks, layers with hidden objects, panels with render meshes. First each is cut at
+every byte (every so many where it is large): all of these must be refused, or read with the
+same faces where only a part that nobody needs is gone. Then random bytes, numbers and blocks
+are changed until the time is up. Faults are: an error that is not our own, more than 5 s of
+processor time, more than 500 MB.
+"""
+
+import os
+import random
+import resource
+import sys
+import tempfile
+import time
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import rhino3dm
+
+from spheremesh import Mesh, nodes
+from spheremesh.fabrication.rhino.mesh_writer import to_rhino_mesh
+from spheremesh.fabrication.rhino.reader import read_3dm
+from spheremesh.fabrication.rhino.surface_reader import GridSize
+from spheremesh.kernel.errors import InputError
+
+SIZE = GridSize(4, 4)
+MOST_SECONDS, MOST_MEGABYTES = 5.0, 500.0
+CUTS = 40
+"""Places where each seed is cut: every byte of a batch of neighbours, and steps between."""
+
+
+def seeds(folder: Path) -> dict[str, bytes]:
+    """Small files of all kinds."""
+    files: dict[str, bytes] = {}
+    roof = nodes.vase_mesh(5, 3)
+    ball = rhino3dm.Sphere(rhino3dm.Point3d(0, 0, 0), 2.0)
+    circle = rhino3dm.Circle(1.0)
+    a = np.pi / 3 * np.arange(6)
+    contents = {
+        "mesh": [to_rhino_mesh(roof)],
+        "ngons": [
+            to_rhino_mesh(Mesh(np.column_stack([np.cos(a), np.sin(a), 0 * a]), [range(6)]))
+        ],
+        "surface": [ball.ToNurbsSurface()],
+        "brep": [ball.ToBrep(), rhino3dm.Cylinder(circle, 2.0).ToBrep(True, True)],  # noqa: FBT003
+        "extrusion": [rhino3dm.Extrusion.Create(circle.ToNurbsCurve(), 3.0, True)],  # noqa: FBT003
+        "mixed": [to_rhino_mesh(roof), ball.ToNurbsSurface(), circle.ToNurbsCurve()],
+    }
+    for name, objects in contents.items():
+        model = rhino3dm.File3dm()
+        for i, each in enumerate(objects):
+            layer = rhino3dm.Layer()
+            layer.Name = f"layer {i}"
+            attributes = rhino3dm.ObjectAttributes()
+            attributes.LayerIndex = model.Layers.Add(layer)
+            model.Objects.Add(each, attributes)
+        files[name] = _bytes(model, folder)
+    model = rhino3dm.File3dm()
+    origin, plain = rhino3dm.Point3d(0, 0, 0), (rhino3dm.ObjectAttributes(),)
+    model.InstanceDefinitions.Add("a", "", "", "", origin, (to_rhino_mesh(roof),), plain)
+    block = next(each.Id for each in model.InstanceDefinitions)
+    for x in range(3):
+        moved = rhino3dm.Transform.Translation(9.0 * x, 0, 0)
+        model.Objects.Add(rhino3dm.InstanceReference(block, moved), plain[0])
+    files["blocks"] = _bytes(model, folder)
+    panels = nodes.panels(nodes.fit_spheres(nodes.vase_mesh(4, 2)), thickness=0.02).panels
+    nodes.write_3dm(panels, folder / "panels.3dm")
+    files["panels"] = (folder / "panels.3dm").read_bytes()
+    return files
+
+
+def _bytes(model: rhino3dm.File3dm, folder: Path) -> bytes:
+    model.Write(str(folder / "seed.3dm"), 8)
+    return (folder / "seed.3dm").read_bytes()
+
+
+def mutated(data: bytes, choice: random.Random) -> bytes:
+    """A file with some bytes, numbers or blocks changed."""
+    found = bytearray(data)
+    for _ in range(choice.choice((1, 1, 2, 4, 16))):
+        at = choice.randrange(len(found))
+        kind = choice.randrange(6)
+        if kind == 0:
+            found[at] ^= 1 << choice.randrange(8)
+        elif kind == 1:
+            found[at] = choice.randrange(256)
+        elif kind == 2:
+            number = choice.choice((0, 1, -1, 2**31 - 1, -(2**31), 10**6, 255))
+            found[at : at + 4] = number.to_bytes(4, "little", signed=True)
+        elif kind == 3:
+            number = choice.choice((np.nan, np.inf, 1e300, -1e-300, 0.0))
+            found[at : at + 8] = np.float64(number).tobytes()
+        elif kind == 4:
+            del found[at : at + choice.randrange(1, 64)]
+        else:
+            found[at:at] = found[at : at + choice.randrange(1, 64)]
+        if not found:
+            return b"3"
+    return bytes(found)
+
+
+def outcome(data: bytes) -> tuple[str, str]:
+    """What comes of a file, and the fault if it is one."""
+    before = _child_seconds()
+    try:
+        n_faces = len(read_3dm(data, "", SIZE).polygons.degrees)
+        what = f"read {n_faces}"
+    except InputError as error:
+        what = f"refused: {str(error)[:60]}"
+    except Exception as error:  # noqa: BLE001 - this is what is looked for
+        return "crash", f"{type(error).__name__}: {error}"
+    seconds = _child_seconds() - before
+    if seconds > MOST_SECONDS:
+        return what, f"{seconds:.1f} s"
+    megabytes = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+    return what, f"{megabytes:.0f} MB" if megabytes > MOST_MEGABYTES else ""
+
+
+def _child_seconds() -> float:
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_CHILDREN, resource.RUSAGE_SELF)]
+    return sum(each.ru_utime + each.ru_stime for each in used)
+
+
+def main() -> None:
+    """Cut, mutate, count."""
+    allowed = float(sys.argv[1]) if len(sys.argv) > 1 else 300.0
+    choice = random.Random(int(sys.argv[2]) if len(sys.argv) > 2 else 0)  # noqa: S311
+    counts: Counter[str] = Counter()
+    faults: list[str] = []
+    slowest = 0.0
+    with tempfile.TemporaryDirectory() as folder:
+        files = seeds(Path(folder))
+    began, wall = _child_seconds(), time.perf_counter()
+    for name, data in files.items():
+        whole = len(read_3dm(data, "", SIZE).polygons.degrees)
+        step = max(len(data) // CUTS, 1)
+        read = 0
+        for end in range(choice.randrange(step), len(data), step):
+            what, fault = outcome(data[:end])
+            read += what.startswith("read")
+            if fault or (what.startswith("read") and what != f"read {whole}"):
+                faults.append(f"{name} cut at {end} of {len(data)}: {what} {fault}")
+        print(
+            f"{name}: {len(data)} bytes, {whole} faces, every {step}th cut, {read} read whole"
+        )
+    print(f"cuts: {_child_seconds() - began:.0f} s of processor time")
+    began = _child_seconds()
+    names = list(files)
+    while _child_seconds() - began < allowed:
+        name = choice.choice(names)
+        data = mutated(files[name], choice)
+        start = _child_seconds()
+        what, fault = outcome(data)
+        slowest = max(slowest, _child_seconds() - start)
+        counts[what.split(" ")[0]] += 1
+        if fault:
+            faults.append(f"mutated {name}: {what} {fault}")
+            path = Path(tempfile.gettempdir()) / f"fuzz_3dm_{os.getpid()}_{len(faults)}.3dm"
+            path.write_bytes(data)
+    largest = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+    print(
+        f"mutations: {counts.total()} files in {_child_seconds() - began:.0f} s of processor "
+        f"time ({time.perf_counter() - wall:.0f} s): {dict(counts)}; slowest {slowest:.1f} s, "
+        f"largest {largest:.0f} MB"
+    )
+    print(f"{len(faults)} faults")
+    for each in faults[:20]:
+        print(f"  {each}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,65 @@
+"""Values of options of the command line that are more than a number or a word."""
+
+import math
+from collections.abc import Mapping
+from typing import Any, Final, cast
+
+import click
+
+MOST_ROWS: Final = 2000
+
+
+def rows_option(
+    _context: click.Context, _option: click.Parameter, text: str | None
+) -> tuple[int, int] | None:
+    """Two numbers of rows, such as ``12,20``.
+
+    Parameters
+    ----------
+    text : str or None
+        What the user wrote.
+
+    Returns
+    -------
+    (int, int) or None
+        The numbers; None without the option.
+
+    Raises
+    ------
+    click.BadParameter
+        If they are not two whole numbers from 1 to 2000.
+    """
+    if text is None:
+        return None
+    numbers = text.split(",")
+    if len(numbers) != 2 or not all(each.strip().isdecimal() for each in numbers):
+        raise click.BadParameter(f"{text!r} are not two numbers such as 12,20")
+    n_u, n_v = (int(each) for each in numbers)
+    if not 1 <= min(n_u, n_v) <= max(n_u, n_v) <= MOST_ROWS:
+        raise click.BadParameter(f"numbers of rows are from 1 to {MOST_ROWS}, not {text}")
+    return n_u, n_v
+
+
+def joined_option(
+    _context: click.Context, _option: click.Parameter, names: tuple[str, ...]
+) -> str:
+    """An option that may be repeated, as one list with commas."""
+    return ",".join(names)
+
+
+def plain_value(value: Any) -> Any:  # noqa: ANN401
+    """A JSON value of a result: no infinities; what has no JSON form is described."""
+    if hasattr(value, "_asdict"):
+        value = value._asdict()
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        items = cast("Mapping[str, Any]", value)
+        return {str(name): plain_value(item) for name, item in items.items()}
+    if isinstance(value, list | tuple):
+        return [plain_value(item) for item in cast("list[Any]", value)]
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    return type(value).__name__
