@@ -165,8 +165,8 @@ def test_moulds_move_nothing_unless_allowed() -> None:
 
 
 def test_what_a_workshop_cannot_tell_apart_depends_on_the_unit() -> None:
-    """A roof of 8 m has eight moulds; one of 8 mm is flat."""
-    spheres = minimize_angles(fit_spheres(roof_mesh(6, 12, length=8.0))).sphere_mesh
+    """A roof of 2 m has eight moulds; one of 2 mm is flat."""
+    spheres = minimize_angles(fit_spheres(roof_mesh(6, 12, length=2.0))).sphere_mesh
     assert cluster_radii(spheres, k=8, units="m").report["count"] == 8
     with pytest.warns(UserWarning, match="1 of 8 moulds: no more can be told apart by 0.1 mm"):
         flat = cluster_radii(spheres, k=8, units="mm")
