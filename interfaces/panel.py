@@ -13,7 +13,7 @@ from ..fabrication.output_folder import REPORT, OutputFolder, output_folder
 from ..kernel.errors import ConvergenceError, InputError
 from ..nodes.graphs.files import FileUses, Folders, note_known_files
 from ..nodes.graphs.graph import Graph
-from ..nodes.graphs.wires import Step, Wire
+from ..nodes.graphs.wires import Param, Step, Wire
 
 GRAPH: Final = "graph.json"
 """Name of the graph of a job beside its files."""
@@ -119,7 +119,7 @@ def panel_graph(options: PanelOptions) -> Graph:
     joint_gap = graph.param("joint_gap", options.joint_gap, min=0)
     mesh = _mesh(graph, options)
     graph.add("mesh_report", "description", mesh=mesh)
-    moves: dict[str, Wire] = {}
+    moves: dict[str, Param] = {}
     if options.tolerance:
         moves = {"tolerance": graph.param("tolerance", options.tolerance, min=0)}
     optimum = _optimum(graph, options, mesh, moves)
@@ -209,7 +209,7 @@ def _fineness(options: PanelOptions) -> dict[str, Any]:
 
 
 def _optimum(
-    graph: Graph, options: PanelOptions, mesh: Step | Wire, moves: Mapping[str, Wire]
+    graph: Graph, options: PanelOptions, mesh: Step | Wire, moves: Mapping[str, Param]
 ) -> Step:
     """The spheres: of smallest angles alone, or of more than that."""
     start = graph.add("fit_spheres", "start", mesh=mesh)
