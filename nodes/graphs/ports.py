@@ -127,6 +127,13 @@ def check_range(value: object, port: Port, where: str) -> None:
 def check_slider(value: object, port: Port) -> None:
     """Refuse a slider whose range is none, or that holds what is no value.
 
+    Parameters
+    ----------
+    value : object
+        What it holds.
+    port : Port
+        Its name and range.
+
     Raises
     ------
     GraphError
