@@ -50,8 +50,8 @@ def line_clusters(values: FloatArray, weights: FloatArray, k: int) -> list[Float
     Examples
     --------
     >>> means = line_clusters(np.array([0.0, 1, 10, 11, 20]), np.ones(5), 3)
-    >>> [each.tolist() for each in means]
-    [[8.4], [3.0], [0.5, 10.5, 20.0]]
+    >>> [each.round(9).tolist() for each in means]
+    [[8.4], [0.5, 13.666666667], [0.5, 10.5, 20.0]]
     """
     middle = float(np.average(values, weights=weights))
     centered = values - middle  # sums of squares keep their digits
