@@ -179,7 +179,7 @@ def _has_faces(geometry: RhinoObject) -> bool:
     return kind in SURFACES or (kind == "Mesh" and geometry.Faces.Count > 0)
 
 
-def placement(each: PlacedObject, scale: float) -> FloatArray:
+def placed_transform(each: PlacedObject, scale: float) -> FloatArray:
     """The affine map (4, 4) of an object to its place in another unit, `scale` to a unit.
 
     Raises
@@ -200,7 +200,7 @@ def allow_object(geometry: RhinoObject, size: GridSize) -> None:
 
 
 def _read_object(each: PlacedObject, size: GridSize, scale: float) -> ObjectPolygons:
-    transform = placement(each, scale)
+    transform = placed_transform(each, scale)
     is_mesh = type(each.geometry).__name__ == "Mesh"
     if is_mesh:
         allow_seconds()

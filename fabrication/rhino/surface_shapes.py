@@ -19,7 +19,7 @@ from ...kernel.surfaces.vertex_shapes import (
 from ...kernel.tolerances import COINCIDENT
 from ..polygons import Polygons, drop_repeats, join_polygons, mean_side, to_mesh, weld
 from .brep_faces import read_polysurface
-from .object_polygons import allow_object, file_units, open_model, placement
+from .object_polygons import allow_object, file_units, open_model, placed_transform
 from .object_reader import PlacedObject, find_objects, kind_name
 from .surface_reader import SURFACES, face_polygons, mesh_advice
 
@@ -103,7 +103,7 @@ class _Part:
 
 def _read_part(each: PlacedObject, size: GridSize, scale: float) -> _Part:
     allow_object(each.geometry, size)
-    polysurface = read_polysurface(each.geometry, placement(each, scale))
+    polysurface = read_polysurface(each.geometry, placed_transform(each, scale))
     with mesh_advice():
         mesh = mesh_polysurface(polysurface, size)
     faces = [face_polygons(face.faces) for face in mesh.faces]

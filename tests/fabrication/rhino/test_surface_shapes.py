@@ -217,7 +217,7 @@ def test_what_is_no_surface_is_said(tmp_path: Path) -> None:
     model.Objects.AddPoint(Point(0, 0, 0))
     path = tmp_path / "a.3dm"
     path.write_bytes(as_bytes(model))
-    with pytest.warns(nodes.NodeWarning, match="left out what is no surface: 1 Point"):
+    with pytest.warns(nodes.NodeWarning, match="left out what is no surface: 1 point"):
         found = nodes.read_surface(path, edge_length=0.5)
     fields = nodes.surface_fields(found)
     assert fields.mesh is found.mesh
@@ -229,14 +229,14 @@ def test_what_is_no_surface_is_said(tmp_path: Path) -> None:
     empty = rhino3dm.File3dm()
     empty.Objects.AddPoint(Point(0, 0, 0))
     path.write_bytes(as_bytes(empty))
-    with pytest.raises(InputError, match="there are no surfaces, but 1 Point"):
+    with pytest.raises(InputError, match="there are no surfaces, but 1 point"):
         read_surface(path)
 
 
 def test_surfaces_go_by_wire_and_are_checked(tmp_path: Path) -> None:
     path = tmp_path / "a.3dm"
     path.write_bytes(content(ball()))
-    graph = sm.Graph("surface")
+    graph = sm.Graph("surface", units="mm")
     drawn = graph.add("read_surface", path=str(path), edge_length=0.6)
     fields = graph.add("surface_fields", surface=drawn)
     graph.add("fit_spheres", "fit", mesh=fields.mesh)
