@@ -179,20 +179,35 @@ def _has_faces(geometry: RhinoObject) -> bool:
     return kind in SURFACES or (kind == "Mesh" and geometry.Faces.Count > 0)
 
 
-def _read_object(each: PlacedObject, size: GridSize, scale: float) -> ObjectPolygons:
+def placed_transform(each: PlacedObject, scale: float) -> FloatArray:
+    """The affine map (4, 4) of an object to its place in another unit, `scale` to a unit.
+
+    Raises
+    ------
+    InputError
+        If it is not finite.
+    """
     transform: FloatArray = np.diag([scale, scale, scale, 1.0]) @ each.transform
     if not np.isfinite(transform).all():
         raise InputError("its block is placed at coordinates that are not finite; delete it")
+    return transform
+
+
+def allow_object(geometry: RhinoObject, size: GridSize) -> None:
+    """Allow the time that meshing a surface or polysurface takes (`allow_seconds`)."""
+    faces = len(geometry.Faces) if hasattr(geometry, "Faces") else 1
+    allow_seconds(QUIET_SECONDS + faces * (1 + size.n_u * size.n_v // 2000))
+
+
+def _read_object(each: PlacedObject, size: GridSize, scale: float) -> ObjectPolygons:
+    transform = placed_transform(each, scale)
     is_mesh = type(each.geometry).__name__ == "Mesh"
     if is_mesh:
         allow_seconds()
-        parts = [_mesh_polygons(each.geometry)]
+        moved = transform_polygons(_mesh_polygons(each.geometry), transform)
     else:
-        faces = len(each.geometry.Faces) if hasattr(each.geometry, "Faces") else 1
-        allow_seconds(QUIET_SECONDS + faces * (1 + size.n_u * size.n_v // 2000))
-        parts = sample_object(each.geometry, size, transform)
-    joined = join_polygons(parts)
-    moved = transform_polygons(joined, transform) if is_mesh else joined
+        allow_object(each.geometry, size)
+        moved = join_polygons(sample_object(each.geometry, size, transform))
     return ObjectPolygons(each.label, is_mesh, moved)
 
 

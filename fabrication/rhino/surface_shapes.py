@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...kernel.arrays import FloatArray, IntArray
+from ...kernel.arrays import IntArray
 from ...kernel.errors import InputError
 from ...kernel.surfaces.face_meshes import mesh_polysurface
 from ...kernel.surfaces.row_counts import GridSize
@@ -19,7 +19,8 @@ from ...kernel.surfaces.vertex_shapes import (
 from ...kernel.tolerances import COINCIDENT
 from ..polygons import Polygons, drop_repeats, join_polygons, mean_side, to_mesh, weld
 from .brep_faces import read_polysurface
-from .object_reader import RhinoObject, placed_objects
+from .object_polygons import allow_object, file_units, open_model, placed_transform
+from .object_reader import PlacedObject, find_objects, kind_name
 from .surface_reader import SURFACES, face_polygons, mesh_advice
 
 
@@ -31,65 +32,64 @@ class SurfaceContent:
     ----------
     surface : Surface
         All surfaces in one.
+    units : str
+        Model unit that the file names, one of `units.MILLIMETERS`; empty if it names none.
     remarks : tuple of str
         Sentences for the user: what was left out and why.
     """
 
     surface: Surface
+    units: str = ""
     remarks: tuple[str, ...] = ()
 
 
 def read_surfaces_3dm(data: bytes, layer: str, size: GridSize) -> SurfaceContent:
-    """The surfaces, polysurfaces and extrusions of a .3dm file.
+    """The surfaces, polysurfaces and extrusions of a .3dm file that are shown.
+
+    rhino3dm may never come back from a damaged file: call this by `isolated`.
 
     Parameters
     ----------
     data : bytes
         Content of the file.
     layer : str
-        Full path of a layer: only what is on it and on its sublayers; empty for all.
+        Layers to read, see `choose_layers`; empty for all that are on.
     size : GridSize
         Numbers of rows, or the length of the edges.
 
     Returns
     -------
     SurfaceContent
-        Meshed as `sample_object` does.
+        Meshed as `sample_object` does, in the unit that it names.
 
     Raises
     ------
     InputError
         If the file cannot be read, or no surface in it.
     """
-    import rhino3dm
-
-    rhino: RhinoObject = rhino3dm
-    model = rhino.File3dm.FromByteArray(data)
-    if model is None:
-        raise InputError("Rhino cannot read the file: it is damaged or no .3dm; save it again")
-    objects = placed_objects(model, layer)
+    model = open_model(data)
+    units, scale, remark = file_units(model)
+    found = find_objects(model, layer)
     parts: list[_Part] = []
-    remarks: list[str] = []
-    for each in objects:
-        kind = type(each.geometry).__name__
-        if kind not in SURFACES:
+    failures: list[str] = []
+    others: Counter[str] = Counter()
+    for each in found.objects:
+        if type(each.geometry).__name__ not in SURFACES:
+            others[kind_name(each.geometry)] += 1
             continue
         try:
-            parts.append(_read_part(each.geometry, each.transform, size))
+            parts.append(_read_part(each, size, scale))
         except InputError as error:
-            remarks.append(f"left out a {kind}: {error}")
-    others = Counter(
-        name for each in objects if (name := type(each.geometry).__name__) not in SURFACES
-    )
+            failures.append(f"left out {each.label}: {error}")
     held = ", ".join(f"{count} {kind}" for kind, count in others.items())
     if not parts:
         raise InputError(
-            "; ".join(remarks)
+            "; ".join([*failures, *found.remarks])
             or f"there are no surfaces, but {held or 'no objects'}; read a mesh with read_mesh"
         )
-    if held:
-        remarks.append(f"left out what is no surface: {held}; read meshes with read_mesh")
-    return SurfaceContent(_join(parts), tuple(remarks))
+    left_out = (f"left out what is no surface: {held}; read meshes with read_mesh",)
+    remarks = (*remark, *found.remarks, *failures, *(left_out if held else ()))
+    return SurfaceContent(_join(parts), units, remarks)
 
 
 @dataclass(frozen=True)
@@ -101,8 +101,9 @@ class _Part:
     shapes: VertexShapes
 
 
-def _read_part(geometry: RhinoObject, transform: FloatArray, size: GridSize) -> _Part:
-    polysurface = read_polysurface(geometry, transform)
+def _read_part(each: PlacedObject, size: GridSize, scale: float) -> _Part:
+    allow_object(each.geometry, size)
+    polysurface = read_polysurface(each.geometry, placed_transform(each, scale))
     with mesh_advice():
         mesh = mesh_polysurface(polysurface, size)
     faces = [face_polygons(face.faces) for face in mesh.faces]

@@ -1,5 +1,6 @@
 """Meshes to start from: read from files, or exactly circular nets."""
 
+import os
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
@@ -68,17 +69,20 @@ def read_mesh(
     72
     """
     content = reader.read_content(path, layer, n_u, n_v, edge_length)
-    if units and content.units not in ("", units):
-        raise InputError(
-            f"cannot read {path}: it is drawn in {content.units}, not in {units}; use units "
-            f"{content.units!r}"
-        )
+    _check_units(path, content.units, units)
     mesh = reader.content_mesh(content, path)
     actual = content.units or units
     for remark in (*content.remarks, doubt_size(mesh, actual) if actual else ""):
         if remark:
             warn(remark)
     return mesh
+
+
+def _check_units(path: str | os.PathLike[str], found: str, asked: str) -> None:
+    if asked and found not in ("", asked):
+        raise InputError(
+            f"cannot read {path}: it is drawn in {found}, not in {asked}; use units {found!r}"
+        )
 
 
 @node
@@ -88,6 +92,7 @@ def read_surface(
     edge_length: Length | None = None,
     n_u: Count = 24,
     n_v: Count = 24,
+    units: FileUnits = "",
 ) -> Surface:
     """Read the surfaces of a Rhino file with their exact normals and curvatures.
 
@@ -101,6 +106,8 @@ def read_surface(
         Length of the edges of the mesh on the surfaces, instead of numbers of rows.
     n_u, n_v : int
         Rows of faces along u and v of each surface.
+    units : str
+        Units that the file must have, if it names any; in a graph, those of the graph.
 
     Returns
     -------
@@ -122,6 +129,7 @@ def read_surface(
     (325, np.float64(-0.5))
     """
     content = surface_files.read_surface(path, layer, n_u, n_v, edge_length)
+    _check_units(path, content.units, units)
     for remark in content.remarks:
         warn(remark)
     return content.surface

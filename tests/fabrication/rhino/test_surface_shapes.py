@@ -217,7 +217,7 @@ def test_what_is_no_surface_is_said(tmp_path: Path) -> None:
     model.Objects.AddPoint(Point(0, 0, 0))
     path = tmp_path / "a.3dm"
     path.write_bytes(as_bytes(model))
-    with pytest.warns(nodes.NodeWarning, match="left out what is no surface: 1 Point"):
+    with pytest.warns(nodes.NodeWarning, match="left out what is no surface: 1 point"):
         found = nodes.read_surface(path, edge_length=0.5)
     fields = nodes.surface_fields(found)
     assert fields.mesh is found.mesh
@@ -229,14 +229,14 @@ def test_what_is_no_surface_is_said(tmp_path: Path) -> None:
     empty = rhino3dm.File3dm()
     empty.Objects.AddPoint(Point(0, 0, 0))
     path.write_bytes(as_bytes(empty))
-    with pytest.raises(InputError, match="there are no surfaces, but 1 Point"):
+    with pytest.raises(InputError, match="there are no surfaces, but 1 point"):
         read_surface(path)
 
 
 def test_surfaces_go_by_wire_and_are_checked(tmp_path: Path) -> None:
     path = tmp_path / "a.3dm"
     path.write_bytes(content(ball()))
-    graph = sm.Graph("surface")
+    graph = sm.Graph("surface", units="mm")
     drawn = graph.add("read_surface", path=str(path), edge_length=0.6)
     fields = graph.add("surface_fields", surface=drawn)
     graph.add("fit_spheres", "fit", mesh=fields.mesh)
@@ -250,3 +250,43 @@ def test_surfaces_go_by_wire_and_are_checked(tmp_path: Path) -> None:
         sm.Surface(mesh, np.zeros((2, 3)), *flat)
     with pytest.raises(InputError, match="not finite"):
         sm.Surface(mesh, np.full((3, 3), np.nan), *flat)
+
+
+def drawn(system: rhino3dm.UnitSystem, path: Path) -> Path:
+    """A ball that is shown and a barrel on a layer that is off, in some unit."""
+    model = rhino3dm.File3dm()
+    model.Settings.ModelUnitSystem = system
+    layer = rhino3dm.Layer()
+    layer.Name, layer.Visible = "Old", False
+    away = rhino3dm.ObjectAttributes()
+    away.LayerIndex = model.Layers.Add(layer)
+    model.Objects.Add(ball(), None)
+    model.Objects.Add(barrel(), away)
+    assert model.Write(str(path), 8)
+    return path
+
+
+def test_surfaces_are_in_the_units_that_are_said(tmp_path: Path) -> None:
+    path = drawn(rhino3dm.UnitSystem.Yards, tmp_path / "a.3dm")
+    found = read_surface(path, n_u=9, n_v=7)
+    assert found.units == "ft"
+    assert any("drawn in yards; it is read in ft" in each for each in found.remarks)
+    np.testing.assert_allclose(norm(found.surface.mesh.vertices), 7.5, rtol=1e-12)
+    np.testing.assert_allclose(np.abs(found.surface.curvatures), 1 / 7.5, rtol=1e-9)
+
+
+def test_hidden_surfaces_are_left_out_and_said(tmp_path: Path) -> None:
+    path = drawn(rhino3dm.UnitSystem.Meters, tmp_path / "a.3dm")
+    found = read_surface(path, n_u=9, n_v=7)
+    assert any("left out 1 hidden object" in each for each in found.remarks)
+    assert norm(found.surface.mesh.vertices).max() < 2.6
+    both = read_surface(path, layer="old", n_u=9, n_v=7)
+    np.testing.assert_allclose(norm(both.surface.mesh.vertices[:, :2]), 2, rtol=1e-12)
+
+
+def test_a_graph_in_other_units_refuses_surfaces(tmp_path: Path) -> None:
+    path = drawn(rhino3dm.UnitSystem.Millimeters, tmp_path / "a.3dm")
+    graph = sm.Graph(units="m")
+    step = graph.add("read_surface", path=str(path))
+    with pytest.raises(nodes.NodeError, match="drawn in mm, not in m; use units 'mm'"):
+        graph.run(step)
