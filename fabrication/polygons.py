@@ -11,6 +11,7 @@ from ..kernel.arrays import FloatArray, IntArray, norm
 from ..kernel.errors import InputError, MeshError
 from ..kernel.meshes.defects import CURE
 from ..kernel.meshes.mesh import Mesh
+from ..kernel.solvers.weighted_graphs import piece_labels
 
 
 @dataclass(frozen=True)
@@ -268,15 +269,10 @@ def weld(points: FloatArray, distance: float = 0.0) -> tuple[FloatArray, IntArra
     """
     vertices, ids = _first_of_each(points, _equal_labels(points))
     if distance > 0:
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
         from scipy.spatial import KDTree
 
         pairs = KDTree(vertices).query_pairs(distance, output_type="ndarray")
-        links = coo_array(
-            (np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), (len(vertices), len(vertices))
-        )
-        labels = np.asarray(connected_components(links, directed=False)[1], np.int64)
+        labels = piece_labels(pairs[:, 0], pairs[:, 1], len(vertices))
         vertices, merged = _first_of_each(vertices, labels)
         ids = merged[ids]
     return vertices, ids

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm
-from ..solvers.weighted_graphs import weighted_graph
+from ..solvers.weighted_graphs import piece_labels, weighted_graph
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ def loop_starts(lines: IntArray, is_fixed: BoolArray) -> IntArray:
     (m,) int array
         One vertex of each.
     """
-    labels = _components(lines, len(is_fixed))
+    labels = piece_labels(lines[:, 0], lines[:, 1], len(is_fixed))
     used = np.unique(lines)
     names, first = np.unique(labels[used], return_index=True)
     return used[first[~np.isin(names, labels[is_fixed])]]
@@ -134,7 +134,7 @@ def trace_curves(
     nodes, count = nodes.reshape(-1, 2), len(names)
     points = np.empty((count, 3))
     points[nodes] = vertices[lines]
-    labels = _components(nodes, count)
+    labels = piece_labels(nodes[:, 0], nodes[:, 1], count)
     is_end = names >= len(vertices)
     starts = np.flatnonzero(is_end)[np.unique(labels[is_end], return_index=True)[1]]
     lengths = norm(np.diff(vertices[lines], axis=1)[:, 0])
@@ -145,11 +145,3 @@ def trace_curves(
     arcs += (np.cumsum(spans + 1) - spans)[labels]
     order = np.argsort(arcs)
     return Curves(arcs[order], points[order]), arcs[nodes]
-
-
-def _components(pairs: IntArray, count: int) -> IntArray:
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import connected_components
-
-    links = csr_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
-    return connected_components(links, directed=False)[1].astype(np.int64)

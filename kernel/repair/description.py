@@ -1,7 +1,7 @@
 """What a mesh is, whether or not it is one yet, and what can be done with it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -123,16 +123,7 @@ def describe(raw: RawMesh) -> MeshReport:
         unwelded_vertices=_unwelded(done),
         t_junctions=0 if done is None else len(done.t_junctions),
         size=size,
-        pieces=facts.pieces,
-        boundary_loops=facts.boundary_loops,
-        lone_faces=facts.lone_faces,
-        mean_edge=facts.mean_edge,
-        shortest_edge=facts.shortest_edge,
-        planarity=facts.planarity,
-        circularity=facts.circularity,
-        umbilicity=facts.umbilicity,
-        crease_edges=facts.crease_edges,
-        sharpest_edge_deg=facts.sharpest_edge_deg,
+        **asdict(facts),
         suits=[] if measured is None else _suits(measured),
         advice=[failure] if measured is None else _advice(measured, facts, done),
     )

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray, norm
 from ..errors import InputError
-from ..solvers.weighted_graphs import weighted_graph
+from ..solvers.weighted_graphs import piece_labels
 from .face_plans import FacePlan
 from .trimmed_faces import Polysurface
 
@@ -150,8 +150,6 @@ class _Book:
         self._refuse_too_many()
 
     def _classes(self, count: int) -> IntArray:
-        from scipy.sparse.csgraph import connected_components
-
         pairs: list[tuple[int, int]] = []
         for plan, loops in zip(self.plans, self.ids, strict=True):
             sides = [loops[0][side] for side in plan.sides]
@@ -162,8 +160,7 @@ class _Book:
                 if len(sides[a]) == len(sides[b]) == 1
             ]
         a, b = np.array(pairs, np.int64).reshape(-1, 2).T
-        graph = weighted_graph(np.ones(len(a)), a, b, count)
-        return np.asarray(connected_components(graph, directed=False)[1], np.int64)
+        return piece_labels(a, b, count)
 
     def _sides(self, index: int) -> list[IntArray]:
         return [self.ids[index][0][side] for side in self.plans[index].sides]
