@@ -17,11 +17,12 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from .option_values import joined_option, plain_value, rows_option
+from .panel_output import has_errors, print_report
 
 if TYPE_CHECKING:
     from ..fabrication.output_folder import OutputFolder
     from ..nodes.graphs.graph import Graph
-    from .panel import Progress
+    from .panel_job import Progress
 
 MISSING_LIBRARY: Final = 1
 BAD_INPUT: Final = 3
@@ -129,7 +130,9 @@ def panel(  # numpydoc ignore=PR01
     demonstration roof is panelled. Files in the folder are replaced only if spheremesh wrote
     them and nobody changed them since.
     """
-    from .panel import PanelOptions, model_units, panel_graph, run_job
+    from .panel_graph import panel_graph
+    from .panel_job import run_job
+    from .panel_options import PanelOptions, model_units
 
     if options["rows"] and options["edge_length"]:
         raise click.UsageError("--rows and --edge-length exclude each other; drop one")
@@ -138,8 +141,8 @@ def panel(  # numpydoc ignore=PR01
         options["units"], is_assumed = model_units(PanelOptions(**options))
         graph = panel_graph(PanelOptions(**options))
         report, files = run_job(graph, out, progress, overwrite=overwrite)
-    _print_report(report, out, files, as_json=as_json, is_assumed=is_assumed)
-    if strict and _has_errors(report):
+    print_report(report, out, files, as_json=as_json, is_assumed=is_assumed)
+    if strict and has_errors(report):
         sys.exit(GATE_FAILED)
 
 
@@ -173,7 +176,7 @@ def run(  # numpydoc ignore=PR01
     other files are replaced only if spheremesh wrote them and nobody changed them since.
     """
     from ..fabrication.output_folder import output_folder
-    from .panel import is_panel_job, run_job
+    from .panel_job import is_panel_job, run_job
 
     with _errors(), _progress() as progress:
         from ..nodes.graphs.graph import Graph
@@ -195,8 +198,8 @@ def run(  # numpydoc ignore=PR01
             graph, out, progress, graph_file=graph_file, overwrite=overwrite,
             allow_outside=allow_outside,
         )  # fmt: skip
-    _print_report(report, out, files, as_json=as_json)
-    if strict and _has_errors(report):
+    print_report(report, out, files, as_json=as_json)
+    if strict and has_errors(report):
         sys.exit(GATE_FAILED)
 
 
@@ -301,77 +304,3 @@ def _setting(text: str) -> tuple[str, Any]:
         return name, json.loads(value)
     except (ValueError, RecursionError):  # a ValueError: too many digits, too
         return name, value
-
-
-def _print_report(
-    report: dict[str, Any],
-    out: Path,
-    files: tuple[str, ...],
-    *,
-    as_json: bool,
-    is_assumed: bool = False,
-) -> None:
-    """Warnings and rejected panels on standard error; the report, or what matters of it."""
-    from ..kernel.repair.description import describe_lines
-
-    for text in report["warnings"]:
-        click.echo(f"warning: {text}", err=True)
-    refused = (*report["panels"]["rejected"], *report["beams"]["rejected"])
-    for part in refused:
-        click.echo(f"rejected {part['code']}: {part['id']}: {part['reason']}", err=True)
-    codes = {part["code"] for part in refused}
-    audit: Mapping[str, Any] = report["audit"] or {"errors": []}
-    for found in audit["errors"]:
-        if found["code"] not in codes:  # these are the rejected ones
-            click.echo(f"error {found['code']}: {found['id']}: {found['message']}", err=True)
-    if as_json:
-        click.echo(json.dumps(report, indent=1))
-        return
-    _print_size(report["input"], is_assumed=is_assumed)
-    for line in describe_lines(report["mesh"]) if report["mesh"] else ():
-        click.echo(line)
-    for name in files:
-        click.echo(f"  {out / name}")
-    planar, spherical = report["angles_deg"]["planar"], report["angles_deg"]["spherical"]
-    click.echo(
-        f"angle between neighbours, mean (largest): {planar['mean']:.2f} ({planar['max']:.1f}) "
-        f"degrees with planes, {spherical['mean']:.2f} ({spherical['max']:.1f}) with spheres"
-    )
-    click.echo(f"moulds {report['moulds']['count'] or 'not asked for: a radius per panel'}")
-    panels = report["panels"]
-    click.echo(f"panels {panels['written']} written, {len(panels['rejected'])} rejected")
-    if report["support"]:
-        support, beams = report["support"], report["beams"]
-        click.echo(
-            f"torsion of inner nodes at most {support['torsion_deg_max']:.2g} degrees, tilt of "
-            f"inner edges mostly below {support['beam_tilt_deg_p95']:.2g}, of beams made at "
-            f"most {support['beam_tilt_deg_max']:.2g} degrees"
-        )
-        click.echo(f"beams {beams['written']} written, {len(beams['rejected'])} rejected")
-    if report["audit"]:
-        _print_audit(report["audit"])
-
-
-def _print_size(model: Mapping[str, Any], *, is_assumed: bool) -> None:
-    """How large the model is, which shows whether its units are right."""
-    from ..fabrication.sizes import describe_size
-
-    hint = "; --units to change" if is_assumed else ""
-    click.echo(describe_size(model["size"], model["mean_edge"], model["units"]) + hint)
-
-
-def _has_errors(report: Mapping[str, Any]) -> bool:
-    """Whether a panel or beam is rejected, or made but of no use."""
-    rejected = report["panels"]["rejected"] or report["beams"]["rejected"]
-    return bool(rejected or (report["audit"] and report["audit"]["errors"]))
-
-
-def _print_audit(audit: Mapping[str, Any]) -> None:
-    """Number of findings, and of each kind the first."""
-    click.echo(f"audit {len(audit['errors'])} errors, {len(audit['notes'])} notes")
-    shown: set[str] = set()
-    for found in audit["notes"]:
-        if found["code"] not in shown:
-            shown.add(found["code"])
-            count = audit["counts"][found["code"]]
-            click.echo(f"  {found['code']} ({count}): {found['id']}: {found['message']}")

@@ -49,7 +49,7 @@ class Node:
     version : str
         Changed by the author when the same inputs give another result.
     category : str
-        Last part of the name of its module.
+        Chapter of the library in which it stands, or the last part of the name of its module.
     summary : str
         First line of the docstring.
     help : str
@@ -182,8 +182,16 @@ def replaced(node: Node) -> tuple[str, ...]:
 def load_library() -> None:
     """Import every module of the node library, which registers its nodes."""
     library = importlib.import_module("..library", __package__)
-    for module in pkgutil.iter_modules(library.__path__, f"{library.__name__}."):
+    for module in pkgutil.walk_packages(library.__path__, f"{library.__name__}."):
         importlib.import_module(module.name)
+
+
+def _category(module: str) -> str:
+    """Chapter of the library in which a module stands; of other modules the last name."""
+    library = f"{__package__.rpartition('.')[0]}.library."
+    if module.startswith(library):
+        return module.removeprefix(library).partition(".")[0]
+    return module.rpartition(".")[2]
 
 
 def warn(text: str) -> None:
@@ -275,7 +283,7 @@ def _describe(function: Callable[..., Any], version: str) -> Node:
         name=name,
         function=function,
         version=version,
-        category=function.__module__.rpartition(".")[2],
+        category=_category(function.__module__),
         summary=doc.partition("\n")[0],
         help=doc,
         inputs=_inputs(function, hints, _entries(doc, "Parameters", "Other Parameters")),

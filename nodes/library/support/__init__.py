@@ -1,0 +1,6 @@
+"""Nodes and beams that carry the panels.
+
+beams      Beams of annuli, and the marks for drilling them.
+rejected   Parts that cannot be made, named in a warning.
+structure  Nodes where spheres meet, and the annuli between them.
+"""

@@ -1,0 +1,7 @@
+"""What a workshop asks before it starts.
+
+audit      Findings before files go out.
+congruent  Panels of one shape.
+report     The report of a panelling.
+solids     Panels and beams as solids for CadQuery.
+"""
