@@ -7,4 +7,5 @@ panel_graph    The main job as a graph that the user can open again.
 panel_job      The main job run, all of its files or none.
 panel_options  What the main job is asked to do.
 panel_output   What the command line says of a panelling.
+support_graph  The beams of the main job: which annuli, and what is made of them.
 """

@@ -139,6 +139,10 @@ MIRROR_LEAST: Final = 1e-6
 """Mirror points nearer than this, in mean edges, do not tell the direction of an axis."""
 BEAM_TILT: Final = 1.0471975511965976
 """A beam whose plane tilts more (60 degrees) from the bisecting plane does not stand."""
+UPRIGHT_BEAMS: Final = 0.3490658503988659
+"""Beams where spheres meet are upright if most tilt less (20 degrees)."""
+AXIS_STEP: Final = 1e-12
+"""Axes are at rest when none turns by more (radians)."""
 RIM_LEAN: Final = 0.3490658503988659
 """Axes of the boundary may lean by this (20 degrees) to make the beams there flat."""
 RIM_CLOSED: Final = 1e-7
