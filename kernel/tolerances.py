@@ -131,6 +131,8 @@ ENCLOSING: Final = 1e-12
 
 NODE_TORSION: Final = 1.7453292519943296e-3
 """Torsion (0.1 degrees) beyond which a node is not called free of torsion."""
+NODE_LINE: Final = 1e-2
+"""A node whose arc planes miss a common line by more, in mean edges, is not valid."""
 AXIS_LEAN: Final = 1.0471975511965976
 """A node axis that leans more (60 degrees) from the normal carries no beams."""
 MIRROR_REACH: Final = 1e5
