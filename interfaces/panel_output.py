@@ -75,7 +75,8 @@ def _print_support(support: Mapping[str, Any], beams: Mapping[str, Any]) -> None
         f"tilt inside mostly below {p95:.2g}, of beams made at most {largest:.2g} degrees"
     )
     if support.get("node_radius"):
-        click.echo(f"node cylinders of radius {support['node_radius']:.3g} take it up")
+        radius = support["node_radius"]
+        click.echo(f"node cylinders take the torsion up, of a radius of {radius:.3g} at least")
     click.echo(f"beams {beams['written']} written, {len(beams['rejected'])} rejected")
 
 

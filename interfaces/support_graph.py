@@ -1,5 +1,6 @@
 """The beams of the main job: which annuli, and what is made of them."""
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from ..nodes.graphs.graph import Graph
@@ -52,10 +53,15 @@ def add_support(
     feasibility = graph.add("support_feasibility", "feasibility", sphere_mesh=design)
     depth: dict[str, Any] = {}
     if options.depth is not None:
-        depth = {"depth": graph.param("depth", options.depth, min=0)}
+        depth["depth"] = graph.param("depth", options.depth, min=0)
+    thickness: dict[str, Any] = {}
+    if options.beam_thickness is not None:
+        thickness["thickness"] = graph.param("beam_thickness", options.beam_thickness, min=0)
     if kind == "bisector":
         cut: dict[str, Any] = {"edges": "bisector"}
-        annuli = graph.add("bisector_support", "annuli", sphere_mesh=spheres, **depth)
+        annuli = graph.add(
+            "bisector_support", "annuli", sphere_mesh=spheres, **depth, **thickness
+        )
     else:
         if spheres is not design:
             # Moulds change the spheres: where those before have exact nodes, their axes count.
@@ -63,7 +69,7 @@ def add_support(
             depth["axes"] = axes
         annuli = graph.add("axis_support", "annuli", sphere_mesh=spheres, **depth)
         cut = {"edges": "axis", "axes": annuli.axes}
-    beams = _add_beams(graph, options, kind, annuli)
+    beams = _add_beams(graph, options, kind, annuli, thickness)
     graph.add("write_dxf", "drawing", beams=beams.beams, path="beams.dxf")
     graph.add("write_schedule", "beam_table", beams=beams.beams, path="beams.csv")
     audit = {
@@ -76,15 +82,19 @@ def add_support(
     return SupportSteps(cut, beams.beams, audit, report)
 
 
-def _add_beams(graph: Graph, options: PanelOptions, kind: SupportKind, annuli: Step) -> Step:
+def _add_beams(
+    graph: Graph,
+    options: PanelOptions,
+    kind: SupportKind,
+    annuli: Step,
+    thickness: Mapping[str, Any],
+) -> Step:
     """Beams of annuli; upright ones miss the node axes and end at cylinders."""
-    inputs: dict[str, Any] = {}
-    if options.beam_thickness is not None:
-        inputs["thickness"] = graph.param("beam_thickness", options.beam_thickness, min=0)
+    radius: dict[str, Any] = {}
     if options.node_radius:
-        inputs["node_radius"] = graph.param("node_radius", options.node_radius, min=0)
+        radius["node_radius"] = graph.param("node_radius", options.node_radius, min=0)
     elif kind == "bisector":
-        inputs["node_radius"] = graph.add(
-            "least_node_radius", "node_radius", annuli=annuli.annuli, **inputs
+        radius["node_radius"] = graph.add(
+            "least_node_radius", "node_radius", annuli=annuli.annuli, **thickness
         )
-    return graph.add("beams", "beams", annuli=annuli.annuli, **inputs)
+    return graph.add("beams", "beams", annuli=annuli.annuli, **thickness, **radius)

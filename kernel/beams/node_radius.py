@@ -8,8 +8,8 @@ from ..arrays import FloatArray, norm
 from ..support.annuli import Annuli, end_depths, twist_angles
 from .cutting import neighbor_angles
 
-LARGEST_SHARE: Final = 1 / 3
-"""Largest radius of a node cylinder, in lengths of the shortest beam of the node."""
+ROOM: Final = 3.0
+"""Length of a beam, in radii of its node cylinders, that leaves a third of it between them."""
 
 
 def least_node_radius(annuli: Annuli, thickness: float, node_gap: float = 0.0) -> float:
@@ -22,26 +22,27 @@ def least_node_radius(annuli: Annuli, thickness: float, node_gap: float = 0.0) -
     Seen along the axis the end of a beam is as wide as its thickness, and wider by what its
     twist moves the inner against the outer corner: half of it is w. Two ends at an angle φ stay
     apart where the radius is at least ``w / tan(φ / 2)``; beyond a right angle, and for the
-    cylinder to reach over the whole end, it is w at least. Nodes that would need more than a
-    third of their shortest beam are left out: one fold must not swell all cylinders, and beams
-    that run into each other there are told by the audit.
+    cylinder to reach over the whole end, it is w at least. All cylinders have one radius: where
+    some nodes would need more than short beams leave room for, it is the one that spoils the
+    fewest ends, and beams that run into each other or cannot be cut are told where they are
+    found.
     """
     if annuli.n_annuli == 0:
         return 0.0
     ends = annuli.edge_vertices
-    count = int(ends.max()) + 1
-    widths = half_widths(annuli, thickness)
-    widest, need, shortest = np.zeros(count), np.zeros(count), np.full(count, np.inf)
-    np.maximum.at(widest, ends, widths)
-    np.minimum.at(
-        shortest, ends, norm(annuli.corners[:, 1, 0] - annuli.corners[:, 0, 0])[:, None]
-    )
+    widest, need = np.zeros(int(ends.max()) + 1), np.zeros(int(ends.max()) + 1)
+    np.maximum.at(widest, ends, half_widths(annuli, thickness))
     angles = np.minimum(neighbor_angles(annuli).min(axis=2), np.pi / 4)
     sound = angles > 0  # beams in the same direction are rejected when they are cut
     np.maximum.at(need, ends[sound], widest[ends[sound]] / np.tan(angles[sound]))
-    is_wide = need <= LARGEST_SHARE * shortest
-    least = float(need[is_wide].max(initial=0.0)) or float((LARGEST_SHARE * shortest).min())
-    return max(least - node_gap, 0.0)
+    lengths = norm(annuli.corners[:, 1] - annuli.corners[:, 0]).min(axis=1)
+    tried = np.unique(need[ends])
+    ends_that_meet = len(ends) * 2 - np.searchsorted(
+        np.sort(need[ends].ravel()), tried, "right"
+    )
+    beams_without_room = np.searchsorted(np.sort(lengths / ROOM), tried)
+    least = tried[np.argmin(ends_that_meet + 2 * beams_without_room)]
+    return max(float(least) - node_gap, 0.0)
 
 
 def half_widths(annuli: Annuli, thickness: float) -> FloatArray:

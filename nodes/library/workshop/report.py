@@ -39,8 +39,8 @@ class PanellingReport(Report):
     moulds : dict
         ``count``, ``radii``, ``panels_per_mould`` and ``blanks``.
     support : dict or None
-        ``kind``, ``torsion_deg_max`` of nodes, ``beam_tilt_deg_p95`` of inner edges,
-        ``beam_tilt_deg_max`` of annuli made,
+        ``kind`` and the one ``asked`` for, ``torsion_deg_max`` of nodes,
+        ``beam_tilt_deg_p95`` of inner edges, ``beam_tilt_deg_max`` of annuli made,
         ``landed``, and ``feasibility`` as in `FeasibilityReport`; of beams in the walls of
         panels also ``gap``, ``lean_deg_max`` and the least ``node_radius``.
     panels, beams : dict
@@ -170,6 +170,7 @@ def _support(
         _warn_of_support(annuli, feasibility, asked)
         return {
             "kind": annuli.kind,
+            "asked": asked or annuli.kind,
             "torsion_deg_max": annuli.torsion_deg["max"],
             "beam_tilt_deg_p95": annuli.inner_tilt_deg["p95"],
             "beam_tilt_deg_max": annuli.tilt_deg["max"],
@@ -182,6 +183,7 @@ def _support(
         return None
     return {
         "kind": asked or "exact",
+        "asked": asked or "exact",
         "torsion_deg_max": nodes["torsion_deg"]["max"],
         "beam_tilt_deg_p95": nodes["beam_tilt_deg"]["p95"],
         "beam_tilt_deg_max": (annuli["tilt_deg"] if annuli else nodes["beam_tilt_deg"])["max"],
