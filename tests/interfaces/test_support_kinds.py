@@ -39,7 +39,7 @@ def vase(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def bumps(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Triangles on which no axes please the edges."""
     x, y = np.meshgrid(np.arange(7.0), np.arange(7.0), indexing="ij")
-    mesh = triangulate(grid(2.5 * np.exp(-((x - 3) ** 2 + (y - 3) ** 2) / 4)))
+    mesh = triangulate(grid(4.0 * np.exp(-((x - 3) ** 2 + (y - 3) ** 2) / 4)))
     return write_mesh(mesh, tmp_path_factory.mktemp("bumps") / "bumps.obj")
 
 
