@@ -2,12 +2,14 @@
 
 The docstrings of the commands are their help: click adds the options.
 
-Exit codes: 0 done, 1 a library of the system is missing, 2 usage, 3 bad input, 4 not converged,
-5 finished but a quality gate failed. An error is one line on standard error.
+Exit codes: 0 done, 1 a library of the system is missing or a node is at fault, 2 usage, 3 bad
+input, 4 not converged, 5 finished but a quality gate failed. An error is one line on standard
+error.
 """
 
 import json
 import sys
+import traceback
 import warnings
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
@@ -24,7 +26,7 @@ if TYPE_CHECKING:
     from ..nodes.graphs.graph import Graph
     from .panel_job import Progress
 
-MISSING_LIBRARY: Final = 1
+FAULT: Final = 1
 BAD_INPUT: Final = 3
 NOT_CONVERGED: Final = 4
 GATE_FAILED: Final = 5
@@ -263,17 +265,29 @@ def _errors() -> Generator[None]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             yield
+    except BrokenPipeError:
+        raise  # whoever reads our output has seen enough; click ends in silence
     except (SpheremeshError, GraphError, NodeError, OSError) as error:
         cause = error.cause if isinstance(error, NodeError) else error
-        # An OSError is the disk's or the system's: full, too many files, a broken pipe.
-        if not isinstance(cause, SpheremeshError | GraphError | OSError):
-            raise
         text = error.reason if isinstance(error, NodeError) else str(error)
+        code = NOT_CONVERGED if isinstance(cause, ConvergenceError) else BAD_INPUT
+        if isinstance(cause, MissingLibraryError):
+            code = FAULT
+        # An OSError is the disk's or the system's: full, too many files.
+        elif not isinstance(cause, SpheremeshError | GraphError | OSError):
+            text, code = f"{error} ({_origin(cause)}): a fault of the node, report it", FAULT
         message = " ".join(text.split())
         click.echo(f"spheremesh: {message}", err=True)
-        if isinstance(cause, MissingLibraryError):
-            sys.exit(MISSING_LIBRARY)
-        sys.exit(NOT_CONVERGED if isinstance(cause, ConvergenceError) else BAD_INPUT)
+        sys.exit(code)
+
+
+def _origin(error: BaseException | None) -> str:
+    """Kind of an error that no input should cause, and the line that raised it."""
+    where = (
+        traceback.extract_tb(error.__traceback__)[-1] if error and error.__traceback__ else None
+    )
+    at = f", {Path(where.filename).name} line {where.lineno}" if where else ""
+    return type(error).__name__ + at
 
 
 @contextmanager
