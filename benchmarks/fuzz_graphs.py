@@ -25,8 +25,7 @@ from typing import Any
 import numpy as np
 
 from spheremesh.fabrication.output_folder import output_folder
-from spheremesh.interfaces.panel_graph import panel_graph
-from spheremesh.interfaces.panel_options import PanelOptions
+from spheremesh.interfaces.panel import PanelOptions, panel_graph
 from spheremesh.kernel.errors import SpheremeshError
 from spheremesh.nodes import Graph, GraphError, NodeError, each
 

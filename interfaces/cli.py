@@ -19,12 +19,11 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from .option_values import joined_option, plain_value, rows_option
-from .panel_output import has_errors, print_report
 
 if TYPE_CHECKING:
     from ..fabrication.output_folder import OutputFolder
     from ..nodes.graphs.graph import Graph
-    from .panel_job import Progress
+    from .panel.job import Progress
 
 FAULT: Final = 1
 BAD_INPUT: Final = 3
@@ -132,9 +131,8 @@ def panel(  # numpydoc ignore=PR01
     demonstration roof is panelled. Files in the folder are replaced only if spheremesh wrote
     them and nobody changed them since.
     """
-    from .panel_graph import panel_graph
-    from .panel_job import run_job
-    from .panel_options import PanelOptions, model_units
+    from .panel import PanelOptions, model_units, panel_graph, run_job
+    from .panel.output import has_errors, print_report
 
     if options["rows"] and options["edge_length"]:
         raise click.UsageError("--rows and --edge-length exclude each other; drop one")
@@ -178,7 +176,8 @@ def run(  # numpydoc ignore=PR01
     other files are replaced only if spheremesh wrote them and nobody changed them since.
     """
     from ..fabrication.output_folder import output_folder
-    from .panel_job import is_panel_job, run_job
+    from .panel import is_panel_job, run_job
+    from .panel.output import has_errors, print_report
 
     with _errors(), _progress() as progress:
         from ..nodes.graphs.graph import Graph

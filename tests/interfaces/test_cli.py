@@ -11,8 +11,7 @@ from click.testing import CliRunner, Result
 import spheremesh as sm
 from spheremesh.fabrication.mesh_files.writer import write_mesh
 from spheremesh.interfaces.cli import main
-from spheremesh.interfaces.panel_graph import panel_graph
-from spheremesh.interfaces.panel_options import PanelOptions
+from spheremesh.interfaces.panel import PanelOptions, panel_graph
 from spheremesh.kernel.meshes.mesh import Mesh
 from spheremesh.kernel.panels.facts import panel_radii
 from spheremesh.kernel.surfaces.circular_nets import vase_net
