@@ -14,8 +14,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from spheremesh.interfaces.panel_graph import feasible_panel_graph
-from spheremesh.interfaces.panel_options import PanelOptions
+from spheremesh.interfaces.panel import PanelOptions, feasible_panel_graph
 from spheremesh.kernel.errors import SpheremeshError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.nodes import read_mesh

@@ -11,9 +11,7 @@ from click.testing import CliRunner, Result
 from spheremesh.fabrication.mesh_files.writer import write_mesh
 from spheremesh.interfaces.cli import main
 from spheremesh.interfaces.option_values import spell_support
-from spheremesh.interfaces.panel_graph import feasible_panel_graph
-from spheremesh.interfaces.panel_job import run_job
-from spheremesh.interfaces.panel_options import PanelOptions
+from spheremesh.interfaces.panel import PanelOptions, feasible_panel_graph, run_job
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import Mesh, mean_edge_length
 from spheremesh.kernel.meshes.triangulation import triangulate

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from typing import Final
 
-from ..nodes.graphs.graph import Graph
-from ..nodes.graphs.wires import Param, Step, Wire
-from .panel_options import PanelOptions, SupportKind, fineness, model_units
-from .support_graph import add_support
+from ...nodes.graphs.graph import Graph
+from ...nodes.graphs.wires import Param, Step, Wire
+from .options import PanelOptions, SupportKind, fineness, model_units
+from .support import add_support
 
 _LAYERS: Final = {"constant": "offset", "power": "power"}
 """Port of `panels` by option: --layer names a layer of the input."""

@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from ..nodes.graphs.graph import Graph
-from ..nodes.graphs.wires import Step, Wire
-from .panel_options import PanelOptions, SupportKind
+from ...nodes.graphs.graph import Graph
+from ...nodes.graphs.wires import Step, Wire
+from .options import PanelOptions, SupportKind
 
 
 class SupportSteps(NamedTuple):
