@@ -141,8 +141,8 @@ MIRROR_LEAST: Final = 1e-6
 """Mirror points nearer than this, in mean edges, do not tell the direction of an axis."""
 BEAM_TILT: Final = 1.0471975511965976
 """A beam whose plane tilts more (60 degrees) from the bisecting plane does not stand."""
-UPRIGHT_BEAMS: Final = 0.3490658503988659
-"""Beams where spheres meet are upright if most tilt less (20 degrees)."""
+UPRIGHT_BEAMS: Final = 0.2617993877991494
+"""Beams where spheres meet are upright if most tilt less (15 degrees)."""
 AXIS_STEP: Final = 1e-12
 """Axes are at rest when none turns by more (radians)."""
 RIM_LEAN: Final = 0.3490658503988659

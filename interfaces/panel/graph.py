@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Final
 
+from ...kernel.support.beam_supports import own_spheres
 from ...nodes.graphs.graph import Graph
 from ...nodes.graphs.wires import Param, Step, Wire
 from .options import PanelOptions, SupportKind, fineness, model_units
@@ -13,17 +14,26 @@ _LAYERS: Final = {"constant": "offset", "power": "power"}
 
 
 def feasible_panel_graph(options: PanelOptions) -> Graph:
-    """The graph of the main job, with upright beams where none on node axes can stand.
+    """The graph of the main job, as the mesh allows it.
 
-    Whether they can is found from the mesh, before anything is optimised.
+    A support on node axes keeps spheres that the mesh has already if their nodes are exact;
+    where no beams on node axes can stand, they are upright. Both are found before anything is
+    optimised.
     """
     graph = panel_graph(options)
-    if options.support == "axis" and graph.run("feasibility")["verdict"] == "no":
+    if options.support != "axis":
+        return graph
+    may_keep = not (options.target_angle or options.tolerance)
+    if may_keep and own_spheres(graph.run(_source(graph))) is not None:
+        return panel_graph(options, keeps_spheres=True)
+    if graph.run("feasibility")["verdict"] == "no":
         return panel_graph(options, "bisector")
     return graph
 
 
-def panel_graph(options: PanelOptions, beams: SupportKind | None = None) -> Graph:
+def panel_graph(
+    options: PanelOptions, beams: SupportKind | None = None, *, keeps_spheres: bool = False
+) -> Graph:
     """The graph of the main job.
 
     Parameters
@@ -32,6 +42,8 @@ def panel_graph(options: PanelOptions, beams: SupportKind | None = None) -> Grap
         What is asked for.
     beams : {"axis", "exact", "bisector"}, optional
         The kind of support that is made; by default that which is asked for.
+    keeps_spheres : bool
+        Whether the spheres of the mesh stay as they are.
 
     Returns
     -------
@@ -60,7 +72,11 @@ def panel_graph(options: PanelOptions, beams: SupportKind | None = None) -> Grap
     moves: dict[str, Param] = {}
     if options.tolerance:
         moves = {"tolerance": graph.param("tolerance", options.tolerance, min=0)}
-    optimum = _optimum(graph, options, mesh, moves)
+    if keeps_spheres:
+        start = graph.add("fit_spheres", "start", mesh=mesh, ring=0)
+        optimum = graph.add("keep_spheres", "optimum", sphere_mesh=start)
+    else:
+        optimum = _optimum(graph, options, mesh, moves)
     design = spheres = optimum.sphere_mesh
     labels, clusters, blanks = None, None, None
     if options.moulds is not None:
@@ -96,6 +112,11 @@ def panel_graph(options: PanelOptions, beams: SupportKind | None = None) -> Grap
     graph.add("write_schedule", "list", **made, path="schedule.json")
     graph.add("render", "picture", panels=panels.panels, path="preview.png")
     return graph
+
+
+def _source(graph: Graph) -> str:
+    """Name of the output that is the mesh: of the file, or repaired."""
+    return "mesh.mesh" if graph.steps["mesh"].node.name == "repair_mesh" else "mesh"
 
 
 def _mesh(graph: Graph, options: PanelOptions) -> Step | Wire:

@@ -7,15 +7,17 @@ these planes are those in which the spheres meet.
 """
 
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
+from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from ..meshes.mesh import Mesh, mean_edge_length
 from ..panels.cutting import EdgeMode, cutting_planes, flatten_nearly_plane, gaps_along_edges
+from ..sphere_meshes.fit import fit_spheres
+from ..sphere_meshes.planarity_circularity import circularity
 from ..sphere_meshes.sphere_mesh import SphereMesh, vertex_error
-from ..tolerances import BEAM_TILT, COMMON_VERTEX, NODE_TORSION, UPRIGHT_BEAMS
+from ..tolerances import BEAM_TILT, CIRCULAR, COMMON_VERTEX, NODE_TORSION, UPRIGHT_BEAMS
 from .annulus_construction import AnnuliReport, AnnulusSupport, annulus_report
 from .beam_axes import (
     LEAN_WEIGHT,
@@ -25,6 +27,9 @@ from .beam_axes import (
     upright_directions,
 )
 from .node_axes import support_structure
+
+MOSTLY_TOLD: Final = 0.9
+"""Share of the faces that have to tell their own sphere for a mesh to have spheres."""
 
 WallKind = Literal["axis", "bisector"]
 
@@ -89,6 +94,19 @@ def exact_directions(sphere_mesh: SphereMesh) -> FloatArray | None:
         and plane_angles(planes, meet)[_is_inner(sphere_mesh.mesh)].max() <= NODE_TORSION
     )
     return directions if is_exact else None
+
+
+def own_spheres(mesh: Mesh) -> SphereMesh | None:
+    """The spheres that a mesh has already, if their nodes are exact; None if not.
+
+    Its faces have to tell them: nearly all of their corners lie on a sphere, and on no circle,
+    on which any sphere would do.
+    """
+    is_told = circularity(mesh) > CIRCULAR * mean_edge_length(mesh)
+    if is_told.mean() < MOSTLY_TOLD:
+        return None
+    spheres = fit_spheres(mesh, 0)
+    return None if exact_directions(spheres) is None else spheres
 
 
 def inner_tilt(sphere_mesh: SphereMesh, planes: FloatArray) -> FloatArray:

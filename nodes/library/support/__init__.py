@@ -5,6 +5,7 @@ beams        Beams of annuli, and the marks for drilling them.
 bisector     Upright beams for any mesh: their planes bisect the faces, cylinders take up the
              torsion.
 feasibility  Whether a mesh can have beams on node axes.
+kept         Spheres that a mesh has already, with the nodes of a support in them.
 rejected     Parts that cannot be made, named in a warning.
 structure    Nodes where spheres meet, and the annuli between them.
 """
