@@ -6,6 +6,7 @@ bisector     Upright beams for any mesh: their planes bisect the faces, cylinder
              torsion.
 feasibility  Whether a mesh can have beams on node axes.
 kept         Spheres that a mesh has already, with the nodes of a support in them.
+picture      Pictures of panels on their beams.
 rejected     Parts that cannot be made, named in a warning.
 structure    Nodes where spheres meet, and the annuli between them.
 """
