@@ -13,7 +13,8 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from ..meshes.mesh import Mesh, mean_edge_length
-from ..panels.cutting import EdgeMode, cutting_planes, flatten_nearly_plane, gaps_along_edges
+from ..panels.cutting import cutting_planes, flatten_nearly_plane, gaps_along_edges
+from ..panels.edge_axes import EdgeMode, outward_axes
 from ..sphere_meshes.fit import fit_spheres
 from ..sphere_meshes.planarity_circularity import circularity
 from ..sphere_meshes.sphere_mesh import SphereMesh, vertex_error
@@ -210,7 +211,7 @@ def beam_support_report(
     size = mean_edge_length(mesh)
     used = np.zeros(mesh.n_vertices, bool)
     used[mesh.corners] = True
-    directions = unit(axes.points[:, 1] - axes.points[:, 0])
+    directions = -outward_axes(mesh, axes.points)
     planes = wall_planes(sphere_mesh, kind, axes.points)
     torsion = np.degrees(node_torsion(beam_edges(mesh), planes, directions))[used]
     lean = np.degrees(lean_angles(mesh, directions))[used]

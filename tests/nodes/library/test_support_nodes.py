@@ -242,8 +242,17 @@ def test_axes_may_be_given() -> None:
     np.testing.assert_array_equal(
         given.annuli.frames, axis_support(smooth, depth=0.2).annuli.frames
     )
+    # mirror points of support_structure may lie on the outer side
+    turned = np.where(np.arange(len(axes))[:, None, None] % 2, axes, axes[:, ::-1])
+    np.testing.assert_allclose(
+        axis_support(smooth, depth=0.2, axes=turned).annuli.frames, given.annuli.frames
+    )
     with pytest.raises(InputError, match=r"two points for each of the 63 vertices"):
         axis_support(smooth, axes=axes[1:])
+    axes = axes.copy()
+    axes[3, 1] = axes[3, 0]
+    with pytest.raises(InputError, match=r"axes of vertices \[3\] have no direction"):
+        axis_support(smooth, axes=axes)
 
 
 def test_panels_want_axes_for_edges_on_axes_alone() -> None:
