@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import FloatArray, norm
+from ..arrays import FloatArray, dot, norm
 from ..spheres.arcs import Arcs, arc_circles, arc_lengths, arc_reaches
 from ..support.annuli import corner_mismatch, end_depths, twist_angles
 from ..tolerances import MITRE_LIMIT
 from .beams import Beams, beam_lengths, beam_volumes, level_arcs, section_arcs
 from .contours import beam_contours
-from .cutting import neighbor_angles
+from .cutting import mitre_normals, neighbor_angles, node_points
 
 
 @dataclass(frozen=True)
@@ -102,12 +102,20 @@ def beam_facts(beams: Beams) -> BeamFacts:
 def _clearances(beams: Beams) -> FloatArray:
     """Twice the distances (B, 2) from the bisecting half planes, the smaller of both sides."""
     half_angles = neighbor_angles(beams.annuli)
-    reach = beams.insets[..., ::2] * np.sin(half_angles)
-    side = beams.thickness / 2 * np.cos(half_angles)
+    mitres = mitre_normals(beams.annuli, half_angles)
+    apart = beams.corners - node_points(beams.annuli)[:, :, None, None]
+    # Between its side and its ridge a cut is plane: the nearest point is at one of them.
+    distances = np.stack(
+        [
+            dot(mitres[:, :, side, None, None], apart[:, :, :, levels]).min(axis=(2, 3))
+            for side, levels in enumerate((slice(0, 2), slice(1, 3)))
+        ],
+        2,
+    )
     # Beyond the limit of mitres there is nobody to run into, also where a beam that was there
     # when the end was cut could not be made.
     is_near = half_angles <= MITRE_LIMIT
-    return 2 * np.where(is_near, reach - side, np.inf).min(axis=2)
+    return 2 * np.where(is_near, distances, np.inf).min(axis=2)
 
 
 def _rectangle_sizes(beams: Beams) -> FloatArray:
