@@ -4,10 +4,11 @@
 
 Eight seeds: meshes with ngons, unwelded and double meshes, surfaces, polysurfaces, extrusions,
 blocks in blocks, layers with hidden objects, panels with render meshes. First each is cut at
-every byte (every so many where it is large): all of these must be refused, or read with the
-same faces where only a part that nobody needs is gone. Then random bytes, numbers and blocks
-are changed until the time is up. Faults are: an error that is not our own, more than 5 s of
-processor time, more than 500 MB.
+every byte: all of these must be refused, or read with the same faces where only a part that
+nobody needs is gone. Each cut file is read by a fork of this program in place of a process of
+its own, which would take hours; one that dies would have been refused. Then random bytes,
+numbers and blocks are changed until the time is up. Faults are: an error that is not our own,
+more than 5 s of processor time, more than 500 MB.
 """
 
 import os
@@ -17,12 +18,15 @@ import sys
 import tempfile
 import time
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import rhino3dm
 
 from spheremesh import Mesh, nodes
+from spheremesh.fabrication.rhino import reader
 from spheremesh.fabrication.rhino.mesh_writer import to_rhino_mesh
 from spheremesh.fabrication.rhino.reader import read_3dm
 from spheremesh.fabrication.rhino.surface_reader import GridSize
@@ -30,8 +34,6 @@ from spheremesh.kernel.errors import InputError
 
 SIZE = GridSize(4, 4)
 MOST_SECONDS, MOST_MEGABYTES = 5.0, 500.0
-CUTS = 40
-"""Places where each seed is cut: every byte of a batch of neighbours, and steps between."""
 
 
 def seeds(folder: Path) -> dict[str, bytes]:
@@ -68,7 +70,7 @@ def seeds(folder: Path) -> dict[str, bytes]:
         moved = rhino3dm.Transform.Translation(9.0 * x, 0, 0)
         model.Objects.Add(rhino3dm.InstanceReference(block, moved), plain[0])
     files["blocks"] = _bytes(model, folder)
-    panels = nodes.panels(nodes.fit_spheres(nodes.vase_mesh(4, 2)), thickness=0.02).panels
+    panels = nodes.panels(nodes.fit_spheres(nodes.vase_mesh(3, 1)), thickness=0.02).panels
     nodes.write_3dm(panels, folder / "panels.3dm")
     files["panels"] = (folder / "panels.3dm").read_bytes()
     return files
@@ -121,6 +123,34 @@ def outcome(data: bytes) -> tuple[str, str]:
     return what, f"{megabytes:.0f} MB" if megabytes > MOST_MEGABYTES else ""
 
 
+def forked_outcome(data: bytes) -> tuple[str, str]:
+    """What comes of a file as read by a fork, and the fault if it is one."""
+    receiver, sender = os.pipe()
+    child = os.fork()
+    if not child:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        resource.setrlimit(resource.RLIMIT_CPU, (int(MOST_SECONDS), int(MOST_SECONDS) + 1))
+        reader.isolated = _called
+        try:
+            said = f"read {len(read_3dm(data, '', SIZE).polygons.degrees)}"
+        except (InputError, Exception) as error:  # noqa: BLE001 - refused by its own process, too
+            said = f"refused: {type(error).__name__}"
+        os.write(sender, said.encode())
+        os._exit(0)
+    os.close(sender)
+    said = os.read(receiver, 1000).decode() or "refused: the process died"
+    os.close(receiver)
+    used = os.wait4(child, 0)[2]
+    seconds, megabytes = used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
+    if seconds > MOST_SECONDS:
+        return said, f"{seconds:.1f} s"
+    return said, f"{megabytes:.0f} MB" if megabytes > MOST_MEGABYTES else ""
+
+
+def _called(function: Callable[..., Any], *arguments: object) -> object:
+    return function(*arguments)
+
+
 def _child_seconds() -> float:
     used = [resource.getrusage(who) for who in (resource.RUSAGE_CHILDREN, resource.RUSAGE_SELF)]
     return sum(each.ru_utime + each.ru_stime for each in used)
@@ -138,16 +168,13 @@ def main() -> None:
     began, wall = _child_seconds(), time.perf_counter()
     for name, data in files.items():
         whole = len(read_3dm(data, "", SIZE).polygons.degrees)
-        step = max(len(data) // CUTS, 1)
         read = 0
-        for end in range(choice.randrange(step), len(data), step):
-            what, fault = outcome(data[:end])
+        for end in range(len(data)):
+            what, fault = forked_outcome(data[:end])
             read += what.startswith("read")
             if fault or (what.startswith("read") and what != f"read {whole}"):
                 faults.append(f"{name} cut at {end} of {len(data)}: {what} {fault}")
-        print(
-            f"{name}: {len(data)} bytes, {whole} faces, every {step}th cut, {read} read whole"
-        )
+        print(f"{name}: {len(data)} bytes, {whole} faces, cut at each, {read} read whole")
     print(f"cuts: {_child_seconds() - began:.0f} s of processor time")
     began = _child_seconds()
     names = list(files)

@@ -1,6 +1,10 @@
 """Nodes and beams that carry the panels.
 
-beams      Beams of annuli, and the marks for drilling them.
-rejected   Parts that cannot be made, named in a warning.
-structure  Nodes where spheres meet, and the annuli between them.
+axis         Beams in planes of their edge and its node axes: vertices and spheres stay.
+beams        Beams of annuli, and the marks for drilling them.
+bisector     Upright beams for any mesh: their planes bisect the faces, cylinders take up the
+             torsion.
+feasibility  Whether a mesh can have beams on node axes.
+rejected     Parts that cannot be made, named in a warning.
+structure    Nodes where spheres meet, and the annuli between them.
 """
