@@ -223,8 +223,6 @@ CLOSED: Final = 1e-6
 """A surface whose ends lie this close, relative to its size, is closed there."""
 ON_EDGE: Final = 1e-12
 """Points of a surface this close to an edge, relative to the surface's size, lie on it."""
-OVERLAP: Final = 1e-6
-"""Beams that run into each other by less, in thicknesses, touch (rounding of mitres)."""
 SINGLE_IS_ENOUGH: Final = 0.01
 """Share of the error of a triangulation that rounding its points to float32 may add."""
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray, dot, norm
 from ..spheres.arcs import Arcs, arc_circles, arc_lengths, arc_reaches
-from ..support.annuli import corner_mismatch, end_depths, twist_angles
+from ..support.annuli import corner_mismatch, end_depths, line_misses, twist_angles
 from ..tolerances import MITRE_LIMIT
 from .beams import Beams, beam_lengths, beam_volumes, level_arcs, section_arcs
 from .contours import beam_contours
@@ -45,6 +45,8 @@ class BeamFacts:
         Angles between the planes and the normals of the surface, in radians.
     twists : (B, 2) float array
         Angles between the planes and the node axes at both ends, in radians.
+    line_misses : (B, 2) float array
+        How far the planes pass the best line in common at both ends.
     mismatches : (B, 2) float array
         How far the corners of each end are from the mean of those at the node.
     clearances : (B, 2) float array
@@ -69,6 +71,7 @@ class BeamFacts:
     bevels: FloatArray
     tilts: FloatArray
     twists: FloatArray
+    line_misses: FloatArray
     mismatches: FloatArray
     clearances: FloatArray
     ends: FloatArray
@@ -93,6 +96,7 @@ def beam_facts(beams: Beams) -> BeamFacts:
         bevels=contours.bevels,
         tilts=annuli.tilt,
         twists=twist_angles(annuli),
+        line_misses=line_misses(annuli),
         mismatches=corner_mismatch(annuli),
         clearances=_clearances(beams),
         ends=annuli.corners[:, :, 0] + annuli.origins[:, None],

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, dot, norm, unit
-from ..beams.beams import Beams, inward_directions
+from ..beams.beams import Beams, inward_directions, section_arcs, side_arcs
 from ..beams.node_cylinders import NodeCylinders
 from ..panels.panels import Panels, panel_arcs
 from ..spheres.arcs import arc_points
@@ -72,7 +72,7 @@ def panel_bodies(panels: Panels) -> Bodies:
     planes[..., 4] = -4 * sizes[:, None]
     planes[panels.corner_panels, place] = from_plane(panels.plane_normals, panels.plane_offsets)
     rows = np.concatenate([-panels.spheres[:, None], panels.inner_spheres[:, None], planes], 1)
-    points = _panel_points(panels, place, width)
+    points = _panel_points(panels, width)
     whole = Bodies(
         np.arange(panels.n_panels), panels.origins, rows, np.zeros((*rows.shape[:2], 3)),
         points, _boxes(points, panels.origins, _panel_bulges(panels)),
@@ -80,7 +80,7 @@ def panel_bodies(panels: Panels) -> Bodies:
     return _split_panels(panels, whole, place)
 
 
-def _panel_points(panels: Panels, place: IntArray, width: int) -> FloatArray:
+def _panel_points(panels: Panels, width: int) -> FloatArray:
     """Corners and middles of edges of both faces, and their middles; repeated to fill up."""
     degrees = panels.degrees[:, None]
     chosen = panels.offsets[:-1, None] + np.minimum(np.arange(width), degrees - 1)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray, norm
+from ..arrays import BoolArray, FloatArray, IntArray, norm
 from .bodies import Bodies, common_frame, face_slopes, face_values, select_bodies
 from .interior_point import minimize_within
 
@@ -25,6 +25,40 @@ def overlap_depths(first: Bodies, second: Bodies) -> FloatArray:
     apart no larger than their distance, with the sign changed.
     """
     return _in_batches(_depths, first, second)
+
+
+def separated_by_planes(
+    first: Bodies, second: Bodies, rows: IntArray, others: IntArray, least: float
+) -> BoolArray:
+    """Which pairs (n,) a face of each keeps apart: two planes that look away from each other.
+
+    The wall between two panels, the mitre of two beams. What both bodies can have in common is
+    then no wider than `least`; pairs for which no two planes tell are not marked.
+    """
+    result = np.zeros(len(rows), bool)
+    planes = [_planes(bodies) for bodies in (first, second)]
+    for begin in range(0, len(rows), _BATCH):
+        part = slice(begin, begin + _BATCH)
+        i, j = rows[part], others[part]
+        shift = first.origins[i] - second.origins[j]
+        normals, levels = planes[0][0][i], planes[0][1][i]
+        far_normals = planes[1][0][j]
+        far_levels = planes[1][1][j] - np.einsum("nmi,ni->nm", far_normals, shift)
+        # Where two functions are at least zero, so is their sum, which varies by little.
+        cosine = np.einsum("nai,nbi->nab", normals, far_normals)
+        slope = np.sqrt(np.maximum(2 + 2 * cosine, 0.0))
+        reach = norm(first.points[i]).max(axis=1)[:, None, None] * 2
+        excess = slope * reach - levels[:, :, None] - far_levels[:, None]
+        result[part] = (excess <= least).any(axis=(1, 2))
+    return result
+
+
+def _planes(bodies: Bodies) -> tuple[FloatArray, FloatArray]:
+    """Normals and levels of plane faces; of all others a level at which nothing is told."""
+    rows = bodies.rows
+    is_plane = (rows[..., 0] == 0) & rows[..., 1:4].any(axis=-1)
+    levels = np.where(is_plane, rows[..., 4], -np.inf)
+    return np.where(is_plane[..., None], rows[..., 1:4], 0.0), levels
 
 
 def nearest_points(first: Bodies, second: Bodies) -> FloatArray:
