@@ -236,3 +236,7 @@ MOSTLY_EVEN: Final = 0.95
 """Share of edges of nearly the length asked for below which remeshing warns."""
 TORSION_FREE: Final = 1e-8
 """Fourth singular value of the spheres around a node, relative to the first, that is none."""
+ROUGHER: Final = 1e-3
+"""Spheres whose mean angle is larger than that of planes by more, relatively, are rougher."""
+WIDER_GAP: Final = 1e-3
+"""Gaps that are wider by more than this share of the mean edge are worth a warning."""

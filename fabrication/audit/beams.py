@@ -53,7 +53,7 @@ def _mismatches(subject: BeamSubject) -> list[Finding]:
 
 def _line_misses(subject: BeamSubject) -> list[Finding]:
     misses, limit = subject.facts.line_misses.max(axis=1), subject.limits.gap_mm
-    message = f"its plane passes the line of the others at a node by {{0:.3g}} mm, more than {limit:g}"
+    message = f"its plane passes the line of its node by {{0:.3g}} mm, more than {limit:g}"
     severity = "note" if subject.parts.node_radius > 0 else "error"
     return subject.found("B209", misses, misses > limit, message, severity)
 

@@ -90,7 +90,7 @@ def _steps(subject: PanelSubject) -> list[Finding]:
 def _gaps(subject: PanelSubject) -> list[Finding]:
     gaps, limit = np.nan_to_num(subject.facts.gaps), subject.limits.gap_mm
     widest = -_least(subject, -gaps)
-    message = f"a gap of {{0:.3g}} mm in the middle of a joint, more than {limit:g}"
+    message = f"a joint opens by {{0:.3g}} mm more than asked for, more than {limit:g}"
     return subject.found("P203", widest, widest > limit, message, "error")
 
 

@@ -23,10 +23,11 @@ def audit_model(
     """Look for whatever would trouble a workshop.
 
     The parts that could not be made, as `rejected_report` gives them; then findings on panels,
-    on beams and on parts that overlap, by code, then in their order. Of each code a part has one finding, the worst.
+    on beams, and on parts against each other, by code, then in their order. Of each code a part
+    has one finding, the worst.
 
     Errors of panels: P001 name used twice, P002 numbers that are not finite, P100 cannot be
-    made, P101 cap beyond 80 degrees, P201 step to a neighbour, P203 gap along a joint, P204
+    made, P101 cap beyond 80 degrees, P201 step to a neighbour, P203 gap in a joint, P204
     hole at a node, P205 corner off its node axis, P206 overlaps a panel, P207 overlaps a beam,
     P208 overlaps a node cylinder. Notes: P102 sharp corner, P103 short edge, P104 thick against
     its radius, P105 tilted wall, P106 other thickness than asked for, P107 blank too large,

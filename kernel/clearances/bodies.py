@@ -175,8 +175,6 @@ def beam_bodies(beams: Beams) -> Bodies:
 
 def _beam_middles(beams: Beams) -> FloatArray:
     """Middles of the four long edges, and of outer and inner faces, (B, 6, 3)."""
-    from ..beams.beams import section_arcs, side_arcs
-
     arcs = [*side_arcs(beams, 0), *side_arcs(beams, 2), *section_arcs(beams)]
     return np.stack([arc_points(each, np.zeros(1))[:, 0] for each in arcs], 1)
 

@@ -143,7 +143,7 @@ def _bending(
 def _nearest_starts(points: FloatArray, others: FloatArray, count: int) -> list[FloatArray]:
     """Pairs (n, 2, 3) of points of both bodies: the nearest ones, far from each other."""
     apart = norm(points[:, :, None] - others[:, None])
-    flat = apart.reshape(len(points), -1)
+    flat = apart.reshape(len(points), apart.shape[1] * apart.shape[2])
     row = np.arange(len(points))
     result: list[FloatArray] = []
     for _ in range(count):

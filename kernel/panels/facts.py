@@ -164,7 +164,7 @@ def _corner_angles(panels: Panels) -> FloatArray:
 
 
 def _wall_tilts(panels: Panels) -> FloatArray:
-    """Angles (H,) of the walls to the normals in the middle of the edges, of both neighbours."""
+    """Angles (H,) of walls to the normals in the middle of edges, those of both neighbours."""
     owners, twins = panels.corner_panels, opposite_corners(panels)
     middles = arc_points(panel_arcs(panels), np.zeros(1))[:, 0]
     up = unit(normals(panels.spheres[owners], middles))

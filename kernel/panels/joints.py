@@ -12,9 +12,6 @@ from ..spheres.rows import recenter
 from ..tolerances import PARALLEL_PLANES
 from .panels import Panels, corner_points, opposite_corners
 
-MIDDLE_THIRD = 1 / 3
-"""Half of the part of a joint that is its middle, of its parameter from -1 to 1."""
-
 
 @dataclass(frozen=True)
 class PanelJoints:
@@ -23,14 +20,14 @@ class PanelJoints:
     Attributes
     ----------
     steps : (H,) float array
-        Greatest height of one outer edge over the other, in the middle of the joint and
-        anywhere along it; NaN where there is no neighbour.
+        Across the surface: greatest height of one outer edge over the other, anywhere along
+        the joint; NaN where there is no neighbour.
     gaps : (H,) float array
-        Greatest distance of the two edges beyond the width of the joint, in its middle third;
-        NaN where there is no neighbour.
+        In the surface: greatest distance of the two walls beyond the width of the joint, 0
+        where they are no farther apart; NaN where there is no neighbour.
     holes : (H,) float array
         How far the corners at the node of each corner are apart, across the lines in which
-        edges meet there, without the joint; 0 for a single panel.
+        edges meet there, without the joint; 0 at nodes of the boundary.
     """
 
     steps: FloatArray
@@ -76,21 +73,19 @@ def _along_joints(
         heights = [meet_lines(circles[:, k], point, rise)[0] for point in points]
         a, b = (p + h[:, None] * rise for p, h in zip(points, heights, strict=True))
         arcs.append(sphere_arcs(circles[:, k], normal, a, b))
-    apart = [_farthest(circles[:, 1 - k], arcs[k], 1.0) for k in (0, 1)]
-    inside = [_farthest(circles[:, 1 - k], arcs[k], MIDDLE_THIRD) for k in (0, 1)]
-    # The normal points into the first panel: this is how far its wall is from the other.
+    apart = [_farthest(circles[:, 1 - k], arcs[k]) for k in (0, 1)]
+    # The normal points into the first panel. Walls are plane, and farthest apart at an end.
     opening = dot(np.stack([starts, ends], 1), normal[:, None, None])
     opening = (opening[:, :, 0] - opening[:, :, 1]).max(axis=1) - panels.joint_gap
-    lateral = np.maximum(opening, 0.0)
-    return np.maximum(*apart), np.hypot(np.maximum(*inside), lateral)
+    return np.maximum(*apart), np.maximum(opening, 0.0)
 
 
 def _onto(points: FloatArray, normals: FloatArray) -> FloatArray:
     return points - dot(points, normals)[:, None] * normals
 
 
-def _farthest(rows: FloatArray, arcs: Arcs, reach: float) -> FloatArray:
-    """Greatest distance from unit rows, of the points of arcs with parameters up to a reach.
+def _farthest(rows: FloatArray, arcs: Arcs) -> FloatArray:
+    """Greatest distances of points of arcs from unit rows.
 
     Notes
     -----
@@ -107,10 +102,10 @@ def _farthest(rows: FloatArray, arcs: Arcs, reach: float) -> FloatArray:
     root = linear + np.copysign(np.sqrt(linear**2 + 4 * square * q1**2), linear)
     near = np.divide(-2 * q1, root, out=np.zeros_like(q1), where=root != 0)
     bend = 2 * square * q1
-    far = np.divide(root, bend, out=np.full_like(q1, reach), where=bend != 0)
+    far = np.divide(root, bend, out=np.ones_like(q1), where=bend != 0)
     result = np.zeros_like(q1)
-    for place in (-reach, reach, near, far):
-        t = np.clip(place, -reach, reach)
+    for place in (-1.0, 1.0, near, far):
+        t = np.clip(place, -1.0, 1.0)
         value = (middle + q1 * t + q2 * t**2) / (1 + square * t**2)
         gradient = np.sqrt(np.maximum(1 + 4 * rows[:, 0] * value, 0.0))
         result = np.maximum(result, np.abs(2 * value / (1 + gradient)))
@@ -154,11 +149,13 @@ def _holes(panels: Panels) -> FloatArray:
     # Where edges are in line, the sphere's own normal has to do.
     lines = np.where(dot(lines, up)[:, None] < 0, -lines, lines)
     lines += PARALLEL_PLANES * up
-    nodes = corner_nodes(panels)
+    nodes, twins = corner_nodes(panels), opposite_corners(panels)
+    is_open = np.zeros(len(owners), bool)
+    is_open[nodes[(twins < 0) | (twins[previous] < 0)]] = True
+    inside = np.flatnonzero(~is_open[nodes])
     result = np.zeros(len(owners))
-    for _, members in batches_by_count(nodes, int(nodes.max(initial=-1)) + 1):
-        if members.shape[1] < 2:
-            continue
+    for _, rows in batches_by_count(nodes[inside], int(nodes.max(initial=-1)) + 1):
+        members = inside[rows]
         shifts = panels.origins[owners[members]] - panels.origins[owners[members[:, :1]]]
         points = corners[members] + shifts[:, :, None]
         axis = unit(lines[members].sum(axis=1))[:, None, None]

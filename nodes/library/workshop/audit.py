@@ -95,8 +95,8 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     max_length : float, optional
         Longest piece that can be cut for a beam.
     max_gap : float
-        Widest gap in the middle of a joint beyond its width, widest hole at a node, and
-        farthest that a corner of a panel or the plane of a beam may be off its node axis.
+        Widest gap in a joint beyond its width, widest hole at a node, and farthest that a
+        corner of a panel or the plane of a beam may be off its node axis.
 
     Returns
     -------
