@@ -50,6 +50,12 @@ class PanelOptions:
         depth.
     node_radius : float
         Radius of the node cylinders, in model units; 0 for mitred beams.
+    bearing : float
+        Clear distance from panel to beam, in model units.
+    allow_step, allow_gap : float
+        What the workshop allows between neighbours, in millimetres.
+    allow_torsion : float
+        What it allows between beams and node axes, in degrees.
     """
 
     mesh: Path | None = None
@@ -70,6 +76,10 @@ class PanelOptions:
     depth: float | None = None
     beam_thickness: float | None = None
     node_radius: float = 0.0
+    bearing: float = 0.0
+    allow_step: float = 5.0
+    allow_gap: float = 5.0
+    allow_torsion: float = 0.1
 
 
 def model_units(options: PanelOptions) -> tuple[str, bool]:
