@@ -11,7 +11,7 @@ from .beams import cut_corners, inward_directions
 ROOM: Final = 3.0
 """Length of a beam, in radii of its node cylinders, that leaves a third of it between them."""
 
-ROUNDS: Final = 8
+RADIUS_ROUNDS: Final = 8
 """How often ends are found anew: radii change by a quarter of the change before."""
 
 
@@ -38,7 +38,7 @@ def least_node_radius(annuli: Annuli, thickness: float, node_gap: float = 0.0) -
     half = thickness / 2 * np.abs(dot(np.repeat(annuli.frames[:, 2], 2, axis=0), ends.left))
     corners = annuli.corners.reshape(-1, 2, 3)
     need = _needs(ends, nodes, corners - corners[:, :1], half)
-    for _ in range(ROUNDS):
+    for _ in range(RADIUS_ROUNDS):
         cut, exists = cut_corners(annuli, (need[nodes] + node_gap).reshape(-1, 2, 1))
         exists = np.repeat(exists, 2)[:, None, None]
         shifts = np.where(exists, cut.reshape(-1, 2, 3), corners) - corners[:, :1]
