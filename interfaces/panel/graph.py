@@ -116,12 +116,18 @@ def panel_graph(
     made = {"panels": panels.panels}
     if support:
         made["beams"] = support.beams
+    _add_writers(graph, mesh, made)
+    return graph
+
+
+def _add_writers(graph: Graph, mesh: Step | Wire, made: Mapping[str, Wire]) -> None:
+    """Files of the parts; those of moulds and beams stand beside what they show."""
+    panels = made["panels"]
     graph.add("write_step", "step", **made, path="panels.step")
     graph.add("write_3dm", "rhino", **made, path="model.3dm", reference=mesh)
-    graph.add("write_schedule", "table", panels=panels.panels, path="schedule.csv")
+    graph.add("write_schedule", "table", panels=panels, path="schedule.csv")
     graph.add("write_schedule", "list", **made, path="schedule.json")
-    graph.add("render", "picture", panels=panels.panels, path="preview.png")
-    return graph
+    graph.add("render", "picture", panels=panels, path="preview.png")
 
 
 def _source(graph: Graph) -> str:

@@ -12,7 +12,7 @@ from .cutting import node_points
 ROOM: Final = 3.0
 """Length of a beam, in radii of its node cylinders, that leaves a third of it between them."""
 
-ROUNDS: Final = 8
+RADIUS_ROUNDS: Final = 8
 """How often ends are found anew: radii change by a quarter of the change before."""
 
 
@@ -39,7 +39,7 @@ def least_node_radius(annuli: Annuli, thickness: float, node_gap: float = 0.0) -
     half = thickness / 2 * np.abs(dot(np.repeat(annuli.frames[:, 2], 2, axis=0), ends.left))
     corners, axes = annuli.corners.reshape(-1, 2, 3), node_points(annuli).reshape(-1, 1, 3)
     before = need = _needs(ends, nodes, corners - axes, half)
-    for _ in range(ROUNDS):
+    for _ in range(RADIUS_ROUNDS):
         cut, exists = cut_corners(annuli, (need[nodes] + node_gap).reshape(-1, 2, 1))
         exists = np.repeat(exists, 2)[:, None, None]
         shifts = np.where(exists, cut.reshape(-1, 2, 3), corners) - axes

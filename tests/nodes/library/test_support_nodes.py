@@ -288,12 +288,8 @@ def test_twisted_beams_end_clear_of_each_other_at_the_least_radius() -> None:
         made = beams(support.annuli, thickness=0.05, node_radius=share * radius).beams
         if share < 1:
             pair = nearest_beams(made)
-        solids = [
-            shape
-            for shape, *_ in cadquery_solids(
-                beams=select_parts(made, np.isin(np.arange(made.n_beams), pair))
-            )
-        ]
+        two = select_parts(made, np.isin(np.arange(made.n_beams), pair))
+        solids = [shape for shape, *_ in cadquery_solids(beams=two)]
         volume = solids[0].intersect(solids[1]).Volume()  # in cubic millimetres
         assert volume < 1e-3 if share == 1 else volume > 1
 
