@@ -16,7 +16,7 @@ from ..tolerances import EPSILON
 from .beam_axes import beam_edges
 from .beam_supports import wall_planes
 
-WIDEST: Final = 0.1
+WIDEST_JOINT: Final = 0.1
 """Widest joint, in mean edges, that is taken for it; nodes that need more are left out."""
 
 
@@ -43,5 +43,5 @@ def least_joint(sphere_mesh: SphereMesh, axes: FloatArray, thickness: float) -> 
     around = np.bincount(mesh.corners, minlength=mesh.n_vertices)
     has_others = around > np.where(topology.is_boundary_vertex, 2, 3)
     widths = 2 * reach[ends] * tangents * has_others[ends]
-    widths = widths[widths <= WIDEST * mean_edge_length(mesh)]
+    widths = widths[widths <= WIDEST_JOINT * mean_edge_length(mesh)]
     return float(widths.max(initial=0.0)) if thickness > 0 else 0.0
