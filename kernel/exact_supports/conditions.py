@@ -7,8 +7,10 @@ all spheres of the node meet in two points of the line along p, and beams in the
 their circles share it.
 
 A beam between two nodes then is flat: its two axes lie in the plane of the circle. Neighbours
-that become one sphere have no such plane, and the more alike they are the less they tell it.
-So flatness, ``det(p, p', e) = 0``, is a condition of its own.
+that become one sphere have no such plane, and the more alike they are the less they tell it:
+their axes may be askew. Then flatness, ``det(p, p', e) = 0``, is a condition of its own. It
+keeps neighbours from becoming one sphere at some cost in angles, so nets are first sought
+without it.
 """
 
 import numpy as np
@@ -125,7 +127,9 @@ def _flat_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray, ...]:
 CONDITIONS = (
     Term("incidence", _incidence_blocks, _incidence, _incidence_jacobian),
     Term("axis", _axis_blocks, _axis, _axis_jacobian),
-    Term("flat", _flat_blocks, _flat, _flat_jacobian),
     Term("unit", _unit_blocks, _unit, _unit_jacobian),
 )
-"""Spheres pass through their vertices, nodes have axes, beams are flat, rows are unit."""
+"""Spheres pass through their vertices, nodes have axes, rows are unit."""
+
+FLATNESS = Term("flat", _flat_blocks, _flat, _flat_jacobian)
+"""Beams between nodes are flat."""

@@ -15,7 +15,7 @@ from ..solvers.blocks import JacobianPattern, jacobian_matrix, jacobian_pattern
 from ..solvers.factorization import factorize_symmetric
 from ..solvers.levenberg_marquardt import DampedStep, levenberg_marquardt
 from ..tolerances import ENERGY_CHANGE, EXACT_ENERGY, STEP_RIDGE
-from .conditions import CONDITIONS
+from .conditions import CONDITIONS, FLATNESS
 from .setting import Group, NetState, Setting, move
 from .terms import Term
 from .wishes import WISHES
@@ -52,7 +52,7 @@ def descend(setting: Setting, start: NetState) -> NetState:
     state = start
     for weight in WEIGHTS:
         is_last = weight == WEIGHTS[-1]
-        terms = [(term, weight / CONDITION_UNIT) for term in CONDITIONS]
+        terms = [(term, weight / CONDITION_UNIT) for term in _conditions(setting)]
         terms += [(term, 1.0) for term in WISHES]
         state = _minimized(
             _problem(setting, terms),
@@ -65,8 +65,12 @@ def descend(setting: Setting, start: NetState) -> NetState:
 
 def meet_conditions(setting: Setting, start: NetState) -> NetState:
     """The nearest state that meets the conditions to rounding."""
-    terms = [(term, 1.0) for term in CONDITIONS]
+    terms = [(term, 1.0) for term in _conditions(setting)]
     return _minimized(_problem(setting, terms), start, 0.0, LANDING_STEPS)
+
+
+def _conditions(setting: Setting) -> tuple[Term, ...]:
+    return (*CONDITIONS, FLATNESS) if setting.is_flat else CONDITIONS
 
 
 def _problem(setting: Setting, weighted: list[tuple[Term, float]]) -> _Problem:

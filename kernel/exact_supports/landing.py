@@ -2,6 +2,7 @@
 
 from ..meshes.mesh import mean_edge_length
 from ..remesh.planar.conditions import must_be_planar
+from ..remesh.planar.landing import planarize_near
 from ..sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ..support.node_axes import support_structure
 from ..tolerances import NODE_LANDED, NODE_ON_SPHERES
@@ -19,15 +20,18 @@ def land(setting: Setting, state: NetState) -> tuple[SphereMesh, bool]:
 
     Notes
     -----
-    The conditions of the descent, flat beams among them, keep full rank where neighbours are
-    alike. Those of `planarize_near` do not: on real meshes it needs five times the steps, ends
-    a thousand times less exact, and turns such neighbours apart.
+    Spheres with radii of their own whose beams need not be flat are planarised: that turns
+    neighbours apart which became one sphere, so that they tell the plane of their beam.
     """
+    near = assembled(setting, state)
+    if not (setting.has_one_radius or setting.is_flat):
+        landing, is_near = planarize_near(near, NEAR)
+        return (landing.sphere_mesh, True) if is_near else (near, False)
     landed = meet_conditions(setting, state)
     result = assembled(setting, landed)
     if farthest(landed.shifts - state.shifts) <= NEAR and _is_landed(result):
         return result, True
-    return assembled(setting, state), False
+    return near, False
 
 
 def _is_landed(sphere_mesh: SphereMesh) -> bool:

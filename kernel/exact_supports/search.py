@@ -17,8 +17,9 @@ from .judgement import Judgement, judge
 from .landing import land
 from .setting import Bounds, first_state, make_setting
 
-FACTORS = (1.0, 1.3, 0.7)
-"""Common curvatures that are tried, relative to the best: the next where beams tilt."""
+TRIALS = ((1.0, False), (1.0, True), (1.3, True), (0.7, True))
+"""Common curvatures that are tried, relative to the best, and whether flatness is a condition:
+the next where none is found or beams tilt."""
 
 LEAST_MIXED = 0.5
 """Share of the nodes that need a face of more than three corners."""
@@ -119,10 +120,11 @@ def find_exact_support(mesh: Mesh, bounds: Bounds, *, one_radius: bool = False) 
     surface = design_surface(design)
     curvatures = (one_curvature if one_radius else common_curvatures)(design)
     attempts: list[Attempt] = []
-    for factor in FACTORS:
+    for factor, is_flat in TRIALS:
         setting = make_setting(
-            design, surface, _searched(bounds), factor * curvatures, has_one_radius=one_radius
-        )
+            design, surface, _searched(bounds), factor * curvatures,
+            has_one_radius=one_radius, is_flat=is_flat,
+        )  # fmt: skip
         found, is_landed = land(setting, descend(setting, first_state(setting)))
         judgement = judge(design, surface, found)
         attempts.append(

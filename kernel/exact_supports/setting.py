@@ -96,6 +96,8 @@ class Setting:
         Half of their size: units of A and of the poles.
     has_one_radius : bool
         Whether spheres keep exactly the curvatures that they start with.
+    is_flat : bool
+        Whether flatness of beams is a condition of its own.
     """
 
     mesh: Mesh
@@ -114,6 +116,7 @@ class Setting:
     scales: FloatArray
     node_scales: FloatArray
     has_one_radius: bool
+    is_flat: bool
 
     @property
     def layout(self) -> Layout:
@@ -127,7 +130,8 @@ def make_setting(
     bounds: Bounds,
     curvatures: FloatArray,
     *,
-    has_one_radius: bool,
+    has_one_radius: bool = False,
+    is_flat: bool = False,
 ) -> Setting:
     """Measure a mesh for a search; curvatures (F,) per mean edge."""
     topology = mesh.topology
@@ -164,6 +168,7 @@ def make_setting(
         scales=scales,
         node_scales=sum_by(at, scales[topology.corner_faces[spokes]], len(nodes)) / counts,
         has_one_radius=has_one_radius,
+        is_flat=is_flat,
     )
 
 
