@@ -2,12 +2,14 @@
 
 The docstrings of the commands are their help: click adds the options.
 
-Exit codes: 0 done, 1 a library of the system is missing, 2 usage, 3 bad input, 4 not converged,
-5 finished but a quality gate failed. An error is one line on standard error.
+Exit codes: 0 done, 1 a library of the system is missing or a node is at fault, 2 usage, 3 bad
+input, 4 not converged, 5 finished but a quality gate failed. An error is one line on standard
+error.
 """
 
 import json
 import sys
+import traceback
 import warnings
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
@@ -17,14 +19,13 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from .option_values import joined_option, plain_value, rows_option
-from .panel_output import has_errors, print_report
 
 if TYPE_CHECKING:
     from ..fabrication.output_folder import OutputFolder
     from ..nodes.graphs.graph import Graph
-    from .panel_job import Progress
+    from .panel.job import Progress
 
-MISSING_LIBRARY: Final = 1
+FAULT: Final = 1
 BAD_INPUT: Final = 3
 NOT_CONVERGED: Final = 4
 GATE_FAILED: Final = 5
@@ -130,9 +131,8 @@ def panel(  # numpydoc ignore=PR01
     demonstration roof is panelled. Files in the folder are replaced only if spheremesh wrote
     them and nobody changed them since.
     """
-    from .panel_graph import panel_graph
-    from .panel_job import run_job
-    from .panel_options import PanelOptions, model_units
+    from .panel import PanelOptions, model_units, panel_graph, run_job
+    from .panel.output import has_errors, print_report
 
     if options["rows"] and options["edge_length"]:
         raise click.UsageError("--rows and --edge-length exclude each other; drop one")
@@ -176,7 +176,8 @@ def run(  # numpydoc ignore=PR01
     other files are replaced only if spheremesh wrote them and nobody changed them since.
     """
     from ..fabrication.output_folder import output_folder
-    from .panel_job import is_panel_job, run_job
+    from .panel import is_panel_job, run_job
+    from .panel.output import has_errors, print_report
 
     with _errors(), _progress() as progress:
         from ..nodes.graphs.graph import Graph
@@ -263,17 +264,29 @@ def _errors() -> Generator[None]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             yield
+    except BrokenPipeError:
+        raise  # whoever reads our output has seen enough; click ends in silence
     except (SpheremeshError, GraphError, NodeError, OSError) as error:
         cause = error.cause if isinstance(error, NodeError) else error
-        # An OSError is the disk's or the system's: full, too many files, a broken pipe.
-        if not isinstance(cause, SpheremeshError | GraphError | OSError):
-            raise
         text = error.reason if isinstance(error, NodeError) else str(error)
+        code = NOT_CONVERGED if isinstance(cause, ConvergenceError) else BAD_INPUT
+        if isinstance(cause, MissingLibraryError):
+            code = FAULT
+        # An OSError is the disk's or the system's: full, too many files.
+        elif not isinstance(cause, SpheremeshError | GraphError | OSError):
+            text, code = f"{error} ({_origin(cause)}): a fault of the node, report it", FAULT
         message = " ".join(text.split())
         click.echo(f"spheremesh: {message}", err=True)
-        if isinstance(cause, MissingLibraryError):
-            sys.exit(MISSING_LIBRARY)
-        sys.exit(NOT_CONVERGED if isinstance(cause, ConvergenceError) else BAD_INPUT)
+        sys.exit(code)
+
+
+def _origin(error: BaseException | None) -> str:
+    """Kind of an error that no input should cause, and the line that raised it."""
+    where = (
+        traceback.extract_tb(error.__traceback__)[-1] if error and error.__traceback__ else None
+    )
+    at = f", {Path(where.filename).name} line {where.lineno}" if where else ""
+    return type(error).__name__ + at
 
 
 @contextmanager

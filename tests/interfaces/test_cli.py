@@ -11,8 +11,7 @@ from click.testing import CliRunner, Result
 import spheremesh as sm
 from spheremesh.fabrication.mesh_files.writer import write_mesh
 from spheremesh.interfaces.cli import main
-from spheremesh.interfaces.panel_graph import panel_graph
-from spheremesh.interfaces.panel_options import PanelOptions
+from spheremesh.interfaces.panel import PanelOptions, panel_graph
 from spheremesh.kernel.meshes.mesh import Mesh
 from spheremesh.kernel.panels.facts import panel_radii
 from spheremesh.kernel.surfaces.circular_nets import vase_net
@@ -401,3 +400,27 @@ def test_target_angle(vase: Path, tmp_path: Path) -> None:
 )
 def test_options_out_of_range(option: tuple[str, str], vase: Path, tmp_path: Path) -> None:
     assert panel(vase, tmp_path / "out", *option).exit_code == 2
+
+
+def test_an_error_that_no_input_should_cause_is_one_line_with_its_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError("no way")
+
+    graph = sm.Graph("broken")
+    graph.add("torus_mesh", "ring", n_around=6, n_across=5)
+    path = tmp_path / "broken.json"
+    graph.save(path)
+    monkeypatch.setattr("spheremesh.kernel.surfaces.circular_nets.torus_net", broken)
+    result = CliRunner().invoke(main, ["run", str(path), "-o", str(tmp_path / "out")])
+    assert result.exit_code == 1, result.stderr
+    assert len(result.stderr.splitlines()) == 1
+    assert "step 'ring' (node torus_mesh) failed: no way" in result.stderr
+    assert "ZeroDivisionError, test_cli.py line" in result.stderr
+
+
+def test_an_edge_length_without_surfaces_is_told(vase: Path, tmp_path: Path) -> None:
+    result = panel(vase, tmp_path / "out", "--edge-length", "1")
+    assert result.exit_code == 0
+    assert "warning: the edge length is for surfaces, and changes nothing" in result.stderr

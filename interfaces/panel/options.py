@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from ..fabrication.mesh_files.reader import read_content
-from ..kernel.errors import InputError
+from ...fabrication.mesh_files.reader import read_content
+from ...kernel.errors import InputError
 
 
 @dataclass(frozen=True)

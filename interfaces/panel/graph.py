@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from typing import Final
 
-from ..nodes.graphs.graph import Graph
-from ..nodes.graphs.wires import Param, Step, Wire
-from .panel_options import PanelOptions, fineness, model_units
+from ...nodes.graphs.graph import Graph
+from ...nodes.graphs.wires import Param, Step, Wire
+from .options import PanelOptions, fineness, model_units
 
 _LAYERS: Final = {"constant": "offset", "power": "power"}
 """Port of `panels` by option: --layer names a layer of the input."""

@@ -17,7 +17,7 @@ def print_report(
     is_assumed: bool = False,
 ) -> None:
     """Warnings and rejected panels on standard error; the report, or what matters of it."""
-    from ..kernel.repair.description import describe_lines
+    from ...kernel.repair.description import describe_lines
 
     for text in report["warnings"]:
         click.echo(f"warning: {text}", err=True)
@@ -59,7 +59,7 @@ def print_report(
 
 def _print_size(model: Mapping[str, Any], *, is_assumed: bool) -> None:
     """How large the model is, which shows whether its units are right."""
-    from ..fabrication.sizes import describe_size
+    from ...fabrication.sizes import describe_size
 
     hint = "; --units to change" if is_assumed else ""
     click.echo(describe_size(model["size"], model["mean_edge"], model["units"]) + hint)
