@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from .option_values import joined_option, plain_value, rows_option
+from .option_values import SUPPORTS, joined_option, plain_value, rows_option, spell_support
 
 if TYPE_CHECKING:
     from ..fabrication.output_folder import OutputFolder
@@ -39,7 +39,15 @@ def main() -> None:
     """Turn design surfaces into spherical panels that can be built."""
 
 
-@main.command()
+class _PanelCommand(click.Command):
+    """A command whose option --support may stand without a word."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Give --support its word before the arguments are told apart."""
+        return super().parse_args(ctx, spell_support(args))
+
+
+@main.command(cls=_PanelCommand)
 @click.argument("mesh", required=False, type=click.Path(path_type=Path))
 @click.option("-o", "--out", required=True, type=click.Path(path_type=Path), help="Folder.")
 @click.option("--moulds", type=int, help="Number of mould radii; by default one per panel.")
@@ -89,8 +97,8 @@ def main() -> None:
 @click.option(
     "--edges",
     type=click.Choice(["bisector", "intersection"]),
-    help="Cut panels by planes that bisect the faces, or where the spheres meet (the default "
-    "with --support).",
+    help="Cut panels by planes that bisect the faces, or where the spheres meet; with "
+    "--support the beams say where.",
 )
 @click.option(
     "--tolerance",
@@ -103,7 +111,14 @@ def main() -> None:
     default=0.0,
     help="Angle at which neighbours shall meet, in degrees.",
 )
-@click.option("--support", is_flag=True, help="Nodes without torsion; beams under the edges.")
+@click.option(
+    "--support",
+    type=click.Choice(SUPPORTS),
+    metavar="[axis|exact|bisector]",
+    help="Beams under the edges: on node axes, vertices and spheres stay (axis, the default); "
+    "on exact nodes, vertices move (exact); upright with node cylinders, for any mesh "
+    "(bisector).",
+)
 @click.option("--depth", type=float, help="Depth of the beams; a quarter of the mean edge.")
 @click.option(
     "--beam-thickness", type=float, help="Thickness of the beams; a tenth of the depth."
@@ -131,15 +146,20 @@ def panel(  # numpydoc ignore=PR01
     demonstration roof is panelled. Files in the folder are replaced only if spheremesh wrote
     them and nobody changed them since.
     """
-    from .panel import PanelOptions, model_units, panel_graph, run_job
+    from .panel import PanelOptions, feasible_panel_graph, model_units, run_job
     from .panel.output import has_errors, print_report
 
     if options["rows"] and options["edge_length"]:
         raise click.UsageError("--rows and --edge-length exclude each other; drop one")
+    if options["edges"] and options["support"]:
+        raise click.UsageError(
+            "--edges and --support exclude each other: panels are cut where their beams stand; "
+            "drop one"
+        )
     _warn_of_no_beams(options)
     with _errors(), _progress() as progress:
         options["units"], is_assumed = model_units(PanelOptions(**options))
-        graph = panel_graph(PanelOptions(**options))
+        graph = feasible_panel_graph(PanelOptions(**options))
         report, files = run_job(graph, out, progress, overwrite=overwrite)
     print_report(report, out, files, as_json=as_json, is_assumed=is_assumed)
     if strict and has_errors(report):

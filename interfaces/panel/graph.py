@@ -3,21 +3,47 @@
 from collections.abc import Mapping
 from typing import Final
 
+from ...kernel.support.beam_supports import own_spheres
 from ...nodes.graphs.graph import Graph
 from ...nodes.graphs.wires import Param, Step, Wire
-from .options import PanelOptions, fineness, model_units
+from .options import PanelOptions, SupportKind, fineness, model_units
+from .support import add_support
 
 _LAYERS: Final = {"constant": "offset", "power": "power"}
 """Port of `panels` by option: --layer names a layer of the input."""
 
 
-def panel_graph(options: PanelOptions) -> Graph:
+def feasible_panel_graph(options: PanelOptions) -> Graph:
+    """The graph of the main job, as the mesh allows it.
+
+    A support on node axes keeps spheres that the mesh has already if their nodes are exact;
+    where no beams on node axes can stand, they are upright. Both are found before anything is
+    optimised.
+    """
+    graph = panel_graph(options)
+    if options.support != "axis":
+        return graph
+    may_keep = not (options.target_angle or options.tolerance)
+    if may_keep and own_spheres(graph.run(_source(graph))) is not None:
+        return panel_graph(options, keeps_spheres=True)
+    if graph.run("feasibility")["verdict"] == "no":
+        return panel_graph(options, "bisector")
+    return graph
+
+
+def panel_graph(
+    options: PanelOptions, beams: SupportKind | None = None, *, keeps_spheres: bool = False
+) -> Graph:
     """The graph of the main job.
 
     Parameters
     ----------
     options : PanelOptions
         What is asked for.
+    beams : {"axis", "exact", "bisector"}, optional
+        The kind of support that is made; by default that which is asked for.
+    keeps_spheres : bool
+        Whether the spheres of the mesh stay as they are.
 
     Returns
     -------
@@ -25,7 +51,7 @@ def panel_graph(options: PanelOptions) -> Graph:
         Its steps are named mesh, description, start, angles (before an optimum of more than
         angles), optimum, panels, audit, report, step, rhino, table, list and picture; with a
         number of moulds also moulds, blanks, mould_drawing and mould_picture, with a support
-        landing (without moulds or a tolerance), nodes, annuli, beams, drawing and beam_table.
+        also feasibility, annuli, beams, drawing and beam_table.
         Its writers write relative to the folder of the run.
 
     Raises
@@ -46,51 +72,51 @@ def panel_graph(options: PanelOptions) -> Graph:
     moves: dict[str, Param] = {}
     if options.tolerance:
         moves = {"tolerance": graph.param("tolerance", options.tolerance, min=0)}
-    optimum = _optimum(graph, options, mesh, moves)
-    spheres, labels, clusters, blanks = optimum.sphere_mesh, None, None, None
-    landing = None
-    if options.support and options.tolerance is None and options.moulds is None:
-        landed = graph.add("land_nodes", "landing", sphere_mesh=spheres)
-        spheres, landing = landed.sphere_mesh, landed.report
+    if keeps_spheres:
+        start = graph.add("fit_spheres", "start", mesh=mesh, ring=0)
+        optimum = graph.add("keep_spheres", "optimum", sphere_mesh=start)
+    else:
+        optimum = _optimum(graph, options, mesh, moves)
+    design = spheres = optimum.sphere_mesh
+    labels, clusters, blanks = None, None, None
     if options.moulds is not None:
         count = graph.param("moulds", options.moulds, min=1)
-        moulds = graph.add(
-            "cluster_radii", "moulds", sphere_mesh=spheres, k=count, **moves,
-            **_support_weights(options),
-        )  # fmt: skip
+        moulds = graph.add("cluster_radii", "moulds", sphere_mesh=spheres, k=count, **moves)
         spheres, labels, clusters = moulds.sphere_mesh, moulds.labels, moulds.report
+    kind = beams or options.support
+    support = add_support(graph, options, kind, spheres, design) if kind else None
     panels = graph.add(
         "panels", "panels", sphere_mesh=spheres, thickness=thickness, joint_gap=joint_gap,
-        edges=options.edges or ("intersection" if options.support else "bisector"),
         labels=labels, side=options.side, layer=_LAYERS[options.offset],
+        **(support.cut if support else {"edges": options.edges or "bisector"}),
     )  # fmt: skip
     if options.moulds is not None:
         blanks = graph.add("mould_blanks", "blanks", panels=panels.panels)
         for name, path in (("mould_drawing", "moulds.dxf"), ("mould_picture", "moulds.svg")):
             graph.add("write_mould_drawings", name, panels=panels.panels, path=path)
-    structure = _beams(graph, options, spheres) if options.support else {}
-    carried: dict[str, Wire] = {}
-    if structure:
-        carried = {
-            "beams": structure["beams"].beams,
-            "annuli_report": structure["annuli"].report,
-            "beams_report": structure["beams"].report,
-        }
-    audit = graph.add("audit", "audit", panels=panels.panels, cut=panels.report, **carried)
+    audit = graph.add(
+        "audit", "audit", panels=panels.panels, cut=panels.report,
+        **(support.audit if support else {}),
+    )  # fmt: skip
     graph.add(
         "panel_report", "report", sphere_mesh=spheres, optimum=optimum.report,
-        cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report, landing=landing,
-        **{name: step.report for name, step in structure.items()},
+        cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report,
+        **(support.report if support else {}),
     )  # fmt: skip
     made = {"panels": panels.panels}
-    if structure:
-        made["beams"] = structure["beams"].beams
+    if support:
+        made["beams"] = support.beams
     graph.add("write_step", "step", **made, path="panels.step")
     graph.add("write_3dm", "rhino", **made, path="model.3dm", reference=mesh)
     graph.add("write_schedule", "table", panels=panels.panels, path="schedule.csv")
     graph.add("write_schedule", "list", **made, path="schedule.json")
     graph.add("render", "picture", panels=panels.panels, path="preview.png")
     return graph
+
+
+def _source(graph: Graph) -> str:
+    """Name of the output that is the mesh: of the file, or repaired."""
+    return "mesh.mesh" if graph.steps["mesh"].node.name == "repair_mesh" else "mesh"
 
 
 def _mesh(graph: Graph, options: PanelOptions) -> Step | Wire:
@@ -110,36 +136,10 @@ def _optimum(
     """The spheres: of smallest angles alone, or of more than that."""
     start = graph.add("fit_spheres", "start", mesh=mesh)
     target = {"target_angle": options.target_angle} if options.target_angle else {}
-    if not (options.support or moves):
+    if not moves:
         allowed = {} if options.tolerance is None else {"max_miss": options.tolerance}
         return graph.add("minimize_angles", "optimum", sphere_mesh=start, **target, **allowed)
     angles = graph.add("minimize_angles", "angles", sphere_mesh=start, **target)
     return graph.add(
-        "optimize_spheres", "optimum", sphere_mesh=angles.sphere_mesh, **target, **moves,
-        **_support_weights(options),
-    )  # fmt: skip
-
-
-def _support_weights(options: PanelOptions) -> dict[str, float]:
-    """The paper's weights (Table 1)."""
-    return {"regularity": 3.5, "support": 1.0} if options.support else {}
-
-
-def _beams(graph: Graph, options: PanelOptions, spheres: Wire) -> dict[str, Step]:
-    """Nodes, annuli and beams; their drawing and schedule are written as well."""
-    nodes = graph.add("support_structure", "nodes", sphere_mesh=spheres)
-    depth = (
-        {} if options.depth is None else {"depth": graph.param("depth", options.depth, min=0)}
+        "optimize_spheres", "optimum", sphere_mesh=angles.sphere_mesh, **target, **moves
     )
-    annuli = graph.add("annulus_support", "annuli", sphere_mesh=spheres, **depth)
-    thickness = {}
-    if options.beam_thickness is not None:
-        value = graph.param("beam_thickness", options.beam_thickness, min=0)
-        thickness = {"thickness": value}
-    cylinders = {}
-    if options.node_radius:
-        cylinders = {"node_radius": graph.param("node_radius", options.node_radius, min=0)}
-    beams = graph.add("beams", "beams", annuli=annuli.annuli, **thickness, **cylinders)
-    graph.add("write_dxf", "drawing", beams=beams.beams, path="beams.dxf")
-    graph.add("write_schedule", "beam_table", beams=beams.beams, path="beams.csv")
-    return {"nodes": nodes, "annuli": annuli, "beams": beams}

@@ -7,6 +7,8 @@ from typing import Any, Literal
 from ...fabrication.mesh_files.reader import read_content
 from ...kernel.errors import InputError
 
+SupportKind = Literal["axis", "exact", "bisector"]
+
 
 @dataclass(frozen=True)
 class PanelOptions:
@@ -35,15 +37,14 @@ class PanelOptions:
     offset : {"constant", "power"}
         Whether the thickness is the same everywhere, or the difference of squared radii.
     edges : {"bisector", "intersection"} or None
-        How panels are cut; by default where the spheres meet if there is a support, else
-        upright.
+        How panels are cut without a support; upright by default. With one, its beams say.
     tolerance : float or None
         How far vertices may move, in mean edges; at 0 the faces have to lie on circles, and by
         default they need not.
     target_angle : float
         Angle at which neighbours shall meet, in degrees.
-    support : bool
-        Whether to ask for nodes without torsion, and to write beams.
+    support : {"axis", "exact", "bisector"} or None
+        Which beams to write: on node axes, on exact nodes, or upright; None for none.
     depth, beam_thickness : float or None
         Of the beams, in model units; by default a quarter of the mean edge, and a tenth of the
         depth.
@@ -65,7 +66,7 @@ class PanelOptions:
     edges: Literal["bisector", "intersection"] | None = None
     tolerance: float | None = None
     target_angle: float = 0.0
-    support: bool = False
+    support: SupportKind | None = None
     depth: float | None = None
     beam_thickness: float | None = None
     node_radius: float = 0.0

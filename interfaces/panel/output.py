@@ -32,6 +32,7 @@ def print_report(
     if as_json:
         click.echo(json.dumps(report, indent=1))
         return
+    _print_feasibility(report["support"])
     _print_size(report["input"], is_assumed=is_assumed)
     for line in describe_lines(report["mesh"]) if report["mesh"] else ():
         click.echo(line)
@@ -46,13 +47,7 @@ def print_report(
     panels = report["panels"]
     click.echo(f"panels {panels['written']} written, {len(panels['rejected'])} rejected")
     if report["support"]:
-        support, beams = report["support"], report["beams"]
-        click.echo(
-            f"torsion of inner nodes at most {support['torsion_deg_max']:.2g} degrees, tilt of "
-            f"inner edges mostly below {support['beam_tilt_deg_p95']:.2g}, of beams made at "
-            f"most {support['beam_tilt_deg_max']:.2g} degrees"
-        )
-        click.echo(f"beams {beams['written']} written, {len(beams['rejected'])} rejected")
+        _print_support(report["support"], report["beams"])
     if report["audit"]:
         _print_audit(report["audit"])
 
@@ -63,6 +58,26 @@ def _print_size(model: Mapping[str, Any], *, is_assumed: bool) -> None:
 
     hint = "; --units to change" if is_assumed else ""
     click.echo(describe_size(model["size"], model["mean_edge"], model["units"]) + hint)
+
+
+def _print_feasibility(support: Mapping[str, Any] | None) -> None:
+    """Whether beams on node axes can stand, which is known before all else."""
+    if support and support["feasibility"]:
+        found = support["feasibility"]
+        click.echo(f"support {found['verdict']}: {found['reason']}")
+
+
+def _print_support(support: Mapping[str, Any], beams: Mapping[str, Any]) -> None:
+    """How straight the beams stand, and how many there are."""
+    p95, largest = support["beam_tilt_deg_p95"], support["beam_tilt_deg_max"]
+    click.echo(
+        f"support {support['kind']}: torsion at most {support['torsion_deg_max']:.2g} degrees, "
+        f"tilt inside mostly below {p95:.2g}, of beams made at most {largest:.2g} degrees"
+    )
+    if support.get("node_radius"):
+        radius = support["node_radius"]
+        click.echo(f"node cylinders take the torsion up, of a radius of {radius:.3g} at least")
+    click.echo(f"beams {beams['written']} written, {len(beams['rejected'])} rejected")
 
 
 def has_errors(report: Mapping[str, Any]) -> bool:

@@ -1,7 +1,7 @@
 """The report of a panelling."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 from ....fabrication.sizes import model_extents
 from ....kernel.analysis import angle_summary
@@ -9,8 +9,10 @@ from ....kernel.meshes.mesh import mean_edge_length
 from ....kernel.reports import Report
 from ....kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ....kernel.support.annulus_construction import AnnuliReport
+from ....kernel.support.beam_supports import SupportReport
+from ....kernel.support.feasibility import FeasibilityReport
 from ....kernel.support.node_axes import NodesReport
-from ...graphs.node import node
+from ...graphs.node import node, warn
 from ...graphs.ports import Units
 from ..cluster import BlanksReport, MouldsReport
 from ..fabricate import CutReport
@@ -37,8 +39,10 @@ class PanellingReport(Report):
     moulds : dict
         ``count``, ``radii``, ``panels_per_mould`` and ``blanks``.
     support : dict or None
-        ``torsion_deg_max`` of inner nodes, ``beam_tilt_deg_p95`` of inner edges,
-        ``beam_tilt_deg_max`` of annuli made, and ``landed``.
+        ``kind`` and the one ``asked`` for, ``torsion_deg_max`` of nodes,
+        ``beam_tilt_deg_p95`` of inner edges, ``beam_tilt_deg_max`` of annuli made,
+        ``landed``, and ``feasibility`` as in `FeasibilityReport`; of beams in the walls of
+        panels also ``gap``, ``lean_deg_max`` and the least ``node_radius``.
     panels, beams : dict
         ``written`` and ``rejected``.
     audit : dict or None
@@ -70,6 +74,8 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     beams: BeamsReport | None = None,
     landing: LandingReport | None = None,
     units: Units = "m",
+    feasibility: FeasibilityReport | None = None,
+    support: Literal["axis", "exact", "bisector"] | None = None,
 ) -> PanellingReport:
     """Gather the reports of a panelling into one.
 
@@ -90,12 +96,16 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     nodes : NodesReport, optional
         Report of `support_structure`.
     annuli : AnnuliReport, optional
-        Report of `annulus_support`.
+        Report of `annulus_support`, `axis_support` or `bisector_support`.
     beams : BeamsReport, optional
         Report of `beams`.
     landing : LandingReport, optional
         Report of `land_nodes`.
     units : str
+    feasibility : FeasibilityReport, optional
+        Result of `support_feasibility`.
+    support : {"axis", "exact", "bisector"}, optional
+        The kind of support that was asked for.
 
     Returns
     -------
@@ -132,16 +142,7 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         edge_gap=dict(cut["edge_gap"]),
         thickness=dict(cut["thickness"]),
         moulds=found | {"blanks": list(blanks["blanks"]) if blanks else []},
-        support=None
-        if nodes is None
-        else {
-            "torsion_deg_max": nodes["torsion_deg"]["max"],
-            "beam_tilt_deg_p95": nodes["beam_tilt_deg"]["p95"],
-            "beam_tilt_deg_max": (annuli["tilt_deg"] if annuli else nodes["beam_tilt_deg"])[
-                "max"
-            ],
-            "landed": bool(landing and landing["landed"]),
-        },
+        support=_support(nodes, annuli, landing, feasibility, support),
         panels={"written": cut["written"], "rejected": list(cut["rejected"])},
         beams={
             "written": beams["written"] if beams else 0,
@@ -151,3 +152,54 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         },
         audit=dict(audit) if audit is not None else None,
     )
+
+
+def _support(
+    nodes: NodesReport | None,
+    annuli: AnnuliReport | None,
+    landing: LandingReport | None,
+    feasibility: FeasibilityReport | None,
+    asked: str | None,
+) -> dict[str, Any] | None:
+    """What a user must know of the support; None if there is none."""
+    common = {
+        "landed": bool(landing and landing["landed"]),
+        "feasibility": dict(feasibility) if feasibility else None,
+    }
+    if isinstance(annuli, SupportReport):
+        _warn_of_support(annuli, feasibility, asked)
+        return {
+            "kind": annuli.kind,
+            "asked": asked or annuli.kind,
+            "torsion_deg_max": annuli.torsion_deg["max"],
+            "beam_tilt_deg_p95": annuli.inner_tilt_deg["p95"],
+            "beam_tilt_deg_max": annuli.tilt_deg["max"],
+            "gap": annuli.gap,
+            "lean_deg_max": annuli.lean_deg["max"],
+            "node_radius": annuli.node_radius,
+            **common,
+        }
+    if nodes is None:
+        return None
+    return {
+        "kind": asked or "exact",
+        "asked": asked or "exact",
+        "torsion_deg_max": nodes["torsion_deg"]["max"],
+        "beam_tilt_deg_p95": nodes["beam_tilt_deg"]["p95"],
+        "beam_tilt_deg_max": (annuli["tilt_deg"] if annuli else nodes["beam_tilt_deg"])["max"],
+        **common,
+    }
+
+
+def _warn_of_support(
+    annuli: SupportReport, feasibility: FeasibilityReport | None, asked: str | None
+) -> None:
+    """Say what became of beams on node axes where they were asked for and are not good."""
+    if feasibility is None or asked != "axis" or feasibility.verdict == "feasible":
+        return
+    instead = (
+        "upright beams with node cylinders instead (--support bisector)"
+        if annuli.kind == "bisector"
+        else "remesh, or take upright beams (--support bisector)"
+    )
+    warn(f"support {feasibility.verdict}: {feasibility.reason}: {instead}")
