@@ -50,6 +50,9 @@ class PanelOptions:
         depth.
     node_radius : float
         Radius of the node cylinders, in model units; 0 for mitred beams.
+    max_height, max_slide : float
+        How far vertices may move for an exact support, off the surface and within it, in mean
+        edges.
     """
 
     mesh: Path | None = None
@@ -70,6 +73,8 @@ class PanelOptions:
     depth: float | None = None
     beam_thickness: float | None = None
     node_radius: float = 0.0
+    max_height: float = 0.06
+    max_slide: float = 0.7
 
 
 def model_units(options: PanelOptions) -> tuple[str, bool]:

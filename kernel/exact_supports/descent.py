@@ -65,7 +65,7 @@ def descend(setting: Setting, start: NetState) -> NetState:
 
 def meet_conditions(setting: Setting, start: NetState) -> NetState:
     """The nearest state that meets the conditions to rounding."""
-    terms = [(term, 1.0) for term in _conditions(setting)]
+    terms = [(term, 1.0) for term in (*CONDITIONS, FLATNESS)]
     return _minimized(_problem(setting, terms), start, 0.0, LANDING_STEPS)
 
 

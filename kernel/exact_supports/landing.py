@@ -2,7 +2,6 @@
 
 from ..meshes.mesh import mean_edge_length
 from ..remesh.planar.conditions import must_be_planar
-from ..remesh.planar.landing import planarize_near
 from ..sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ..support.node_axes import support_structure
 from ..tolerances import NODE_LANDED, NODE_ON_SPHERES
@@ -14,24 +13,20 @@ NEAR = 0.05
 
 
 def land(setting: Setting, state: NetState) -> tuple[SphereMesh, bool]:
-    """Meet the conditions to rounding; also whether that was near.
+    """Meet all conditions to rounding; also whether that was near.
 
     If not, the sphere mesh is the one of the state.
 
     Notes
     -----
-    Spheres with radii of their own whose beams need not be flat are planarised: that turns
-    neighbours apart which became one sphere, so that they tell the plane of their beam.
+    Flat beams are a condition even where the descent did without: `planarize_near`, which does
+    not ask for them, leaves neighbours that became one sphere with beams twisted by degrees.
     """
-    near = assembled(setting, state)
-    if not (setting.has_one_radius or setting.is_flat):
-        landing, is_near = planarize_near(near, NEAR)
-        return (landing.sphere_mesh, True) if is_near else (near, False)
     landed = meet_conditions(setting, state)
     result = assembled(setting, landed)
     if farthest(landed.shifts - state.shifts) <= NEAR and _is_landed(result):
         return result, True
-    return near, False
+    return assembled(setting, state), False
 
 
 def _is_landed(sphere_mesh: SphereMesh) -> bool:

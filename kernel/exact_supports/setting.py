@@ -77,13 +77,13 @@ class Setting:
     corners : (H, 3) float array
         Corners at the start, local to their face.
     nodes : (N,) int array
-        Vertices whose beams need a common axis.
+        Vertices of faces: beams along the boundary share axes as well.
     spokes, spoke_nodes : (S,) int array
         Corners at nodes, and the number of their node.
     pairs : (P, 2) int array
         Corners at one vertex of two faces that share an edge there.
     beam_nodes : (m, 2) int array
-        Nodes at both ends of the inner edges between nodes.
+        Nodes at both ends of the edges, those of the boundary included.
     beam_edges : (m, 3) float array
         These edges at the start.
     edges : (n, 2) int array
@@ -135,19 +135,17 @@ def make_setting(
 ) -> Setting:
     """Measure a mesh for a search; curvatures (F,) per mean edge."""
     topology = mesh.topology
-    nodes = np.flatnonzero(must_be_planar(mesh))
+    nodes = np.flatnonzero(np.bincount(mesh.corners, minlength=mesh.n_vertices))
     node_of = np.full(mesh.n_vertices, -1)
     node_of[nodes] = np.arange(len(nodes))
     spokes = np.flatnonzero(node_of[mesh.corners] >= 0)
     first, heads = topology.edge_corners, topology.next_corners
     second = topology.twins[first]
     ends = [np.stack([first, heads[second]], 1), np.stack([heads[first], second], 1)]
-    beams = node_of[topology.edge_vertices]
-    beams = beams[(beams >= 0).all(axis=1)]
-    starts = mesh.vertices[nodes[beams]]
     once = np.flatnonzero((topology.twins < 0) | (topology.twins > np.arange(len(heads))))
     tails, tips = mesh.corners[once], mesh.corners[heads[once]]
     along = (mesh.vertices[tips] - mesh.vertices[tails]) / mean_edge_length(mesh)
+    beams = node_of[np.stack([tails, tips], axis=1)]
     scales = np.maximum(np.abs(curvatures), FLATTEST) / 2
     at = node_of[mesh.corners[spokes]]
     counts = np.bincount(at, minlength=len(nodes))
@@ -161,7 +159,7 @@ def make_setting(
         spoke_nodes=at,
         pairs=np.concatenate(ends),
         beam_nodes=beams,
-        beam_edges=(starts[:, 1] - starts[:, 0]) / mean_edge_length(mesh),
+        beam_edges=along,
         edges=np.stack([tails, tips], axis=1),
         edge_slopes=along / np.maximum(dot(along, along), SHORT_EDGE**2)[:, None],
         curvatures=curvatures,
