@@ -10,7 +10,6 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray, dot, norm, sum_by, unit
 from ..meshes.mesh import Mesh, local_corners, mean_edge_length, with_vertices
-from ..remesh.planar.conditions import must_be_planar
 from ..solvers.blocks import Layout
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.incidence import normals
