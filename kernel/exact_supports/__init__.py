@@ -17,6 +17,7 @@ terms           What a term is.
 conditions      What must hold to rounding: incidence, common axes, flat beams, unit rows.
 wishes          What shall be small: moves, angles, lean, differences of curvature.
 descent         Levenberg-Marquardt, conditions weighing more and more.
+axes            The node axes of a net that has an exact support.
 landing         The rest of the conditions, met to rounding.
 judgement       Measures of what was found.
 search          Common curvatures, one after the other; the best net.

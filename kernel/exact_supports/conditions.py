@@ -124,12 +124,15 @@ def _flat_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray, ...]:
     )
 
 
+COMMON_AXES = Term("axis", _axis_blocks, _axis, _axis_jacobian)
+"""All spheres of a node pass through a second point on its axis."""
+
 CONDITIONS = (
     Term("incidence", _incidence_blocks, _incidence, _incidence_jacobian),
-    Term("axis", _axis_blocks, _axis, _axis_jacobian),
+    COMMON_AXES,
     Term("unit", _unit_blocks, _unit, _unit_jacobian),
 )
 """Spheres pass through their vertices, nodes have axes, rows are unit."""
 
 FLATNESS = Term("flat", _flat_blocks, _flat, _flat_jacobian)
-"""Beams between nodes are flat."""
+"""Beams are flat."""

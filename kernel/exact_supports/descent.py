@@ -15,10 +15,10 @@ from ..solvers.blocks import JacobianPattern, jacobian_matrix, jacobian_pattern
 from ..solvers.factorization import factorize_symmetric
 from ..solvers.levenberg_marquardt import DampedStep, levenberg_marquardt
 from ..tolerances import ENERGY_CHANGE, EXACT_ENERGY, STEP_RIDGE
-from .conditions import CONDITIONS, FLATNESS
+from .conditions import COMMON_AXES, CONDITIONS, FLATNESS
 from .setting import Group, NetState, Setting, move
 from .terms import Term
-from .wishes import WISHES
+from .wishes import LEAN, WISHES
 
 CONDITION_UNIT = 1e-5
 """What a condition may be missed by at full weight, for a unit of the objective."""
@@ -29,7 +29,7 @@ WEIGHTS = (1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 STEPS = 25
 """Linear systems at each weight; twice as many at the last."""
 
-LANDING_STEPS = 30
+LANDING_STEPS = 40
 """Linear systems of a landing."""
 
 STAGE_CHANGE = 1e-3
@@ -64,19 +64,42 @@ def descend(setting: Setting, start: NetState) -> NetState:
 
 
 def meet_conditions(setting: Setting, start: NetState) -> NetState:
-    """The nearest state that meets the conditions to rounding."""
+    """The nearest state that meets all conditions to rounding, flat beams among them."""
     terms = [(term, 1.0) for term in (*CONDITIONS, FLATNESS)]
     return _minimized(_problem(setting, terms), start, 0.0, LANDING_STEPS)
+
+
+def meet_axes(setting: Setting, start: NetState) -> NetState:
+    """The poles that spheres have in common, with flat beams between them; all else stays.
+
+    Of several, as where neighbours are one sphere, those that lean little.
+    """
+    hard = [(COMMON_AXES, 1 / CONDITION_UNIT), (FLATNESS, 1 / CONDITION_UNIT)]
+    near = _problem(setting, [*hard, (LEAN, 1.0)], Group.POLE)
+    state = _minimized(near, start, ENERGY_CHANGE, LANDING_STEPS)
+    exact = _problem(setting, [(term, 1.0) for term, _ in hard], Group.POLE)
+    return _minimized(exact, state, 0.0, LANDING_STEPS)
+
+
+def misses(setting: Setting, state: NetState) -> float:
+    """Largest miss of any condition, in mean edges and radians."""
+    found = [term.residuals(setting, state) for term in (*CONDITIONS, FLATNESS)]
+    return float(max(np.abs(residuals).max(initial=0.0) for residuals in found))
 
 
 def _conditions(setting: Setting) -> tuple[Term, ...]:
     return (*CONDITIONS, FLATNESS) if setting.is_flat else CONDITIONS
 
 
-def _problem(setting: Setting, weighted: list[tuple[Term, float]]) -> _Problem:
+def _problem(
+    setting: Setting, weighted: list[tuple[Term, float]], only: Group | None = None
+) -> _Problem:
+    """The problem of some terms, for all unknowns or those of one group alone."""
     present = tuple((t, w) for t, w in weighted if len(t.blocks(setting)[0].ids))
     layout = setting.layout
     is_free = np.ones(int(layout.starts[-1]), bool)
+    if only is not None:
+        is_free[: layout.starts[only]] = is_free[layout.starts[only + 1] :] = False
     units = np.ones(len(is_free))
     rows, _, poles = layout.split(units)
     rows[:, 0], poles[:] = 1 / setting.scales, 1 / setting.node_scales[:, None]

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, dot, norm, sum_by, unit
-from ..meshes.curvature import vertex_normals
 from ..meshes.mesh import Mesh, mean_edge_length
+from ..support.beam_axes import upright_directions
 from ..tolerances import LINE_CORNER, RIDGE
 
 CENTER_WEIGHT = 10.0
@@ -55,10 +55,10 @@ def design_surface(mesh: Mesh) -> DesignSurface:
     Raises
     ------
     InputError
-        If a vertex has no normal (`vertex_normals`).
+        If a vertex of a face has no normal.
     """
     points = mesh.vertices / mean_edge_length(mesh)
-    upward = vertex_normals(mesh)
+    upward = upright_directions(mesh)
     x_axis = unit(np.cross(upward, np.eye(3)[np.argmin(np.abs(upward), axis=1)]))
     frames = np.stack([x_axis, np.cross(upward, x_axis), upward], axis=1)
     tails, heads = mesh.corners, mesh.corners[mesh.topology.next_corners]
@@ -93,6 +93,7 @@ def _polynomials(
     products = (weighted[:, :, None] * basis[:, None]).reshape(-1, 36)
     gram = sum_by(centers, products, mesh.n_vertices).reshape(-1, 6, 6)
     ridge = RIDGE * np.trace(gram, axis1=1, axis2=2)
+    ridge[ridge == 0] = 1.0
     gram += ridge[:, None, None] * np.eye(6)
     right = sum_by(centers, weighted * z[:, None], mesh.n_vertices)
     found = np.linalg.solve(gram, right[..., None])[..., 0]

@@ -6,13 +6,19 @@ import numpy as np
 
 from ..arrays import FloatArray, norm
 from ..meshes.mesh import Mesh, mean_edge_length
-from ..panels.cutting import edge_gaps
-from ..remesh.planar.conditions import must_be_planar
+from ..panels.cutting import gaps_along_edges
 from ..remesh.planar.planarize import is_kept
 from ..sphere_meshes.fit import face_planes
 from ..sphere_meshes.sphere_mesh import SphereMesh, intersection_angles, vertex_error
-from ..support.beam_tilt import beam_tilt
-from ..support.node_axes import axis_lean, support_structure
+from ..support.beam_axes import beam_edges
+from ..support.beam_supports import (
+    axis_points,
+    inner_tilt,
+    lean_angles,
+    node_torsion,
+    wall_planes,
+)
+from .axes import common_axes
 from .design_surface import DesignSurface, across_rim, heights, slides
 from .setting import Bounds, shifts_between
 
@@ -30,13 +36,14 @@ class Judgement:
     moves : (V,) float array
         How far vertices moved.
     torsion : (N,) float array
-        Of the nodes that need a common axis.
+        Angles between the axes of nodes and their beams, those of the boundary included.
     gaps : (E,) float array
-        Between the two arcs of each inner edge, where spheres meet.
+        Between the two arcs of each inner edge, in the plane of the edge and its axes.
     vertex_miss : float
         Largest distance of a vertex from its spheres.
     tilt, angles, flat_angles : (E,) float array
-        Tilt of the beams; angles of neighbouring spheres, and of flat panels on the design.
+        Tilt of these planes from upright; angles of neighbouring spheres, and of flat panels
+        on the design.
     lean : (N,) float array
         Angles of the node axes to the normals.
     is_kept : bool
@@ -77,19 +84,22 @@ def judge(design: Mesh, surface: DesignSurface, found: SphereMesh) -> Judgement:
     """Measure a sphere mesh against the design that it was made from."""
     shifts = shifts_between(design, found.mesh)
     size = mean_edge_length(design)
-    structure = support_structure(found)
-    nodes = must_be_planar(design)
+    axes = common_axes(found)
+    points = axis_points(found.mesh, axes)
+    planes = wall_planes(found, "axis", points)
+    gaps = gaps_along_edges(found, "axis", points)
+    nodes = np.unique(design.corners)
     return Judgement(
         heights=np.abs(heights(surface, shifts)[0]),
         slides=norm(slides(surface, shifts)),
         across_rim=norm(across_rim(surface, shifts)[0]),
         moves=norm(shifts),
-        torsion=structure.torsion[nodes],
-        gaps=edge_gaps(found, "intersection") / size,
+        torsion=node_torsion(beam_edges(design), planes, axes)[nodes],
+        gaps=np.nan_to_num(np.maximum(gaps.middle, gaps.ends), nan=np.inf) / size,
         vertex_miss=float(vertex_error(found).max()) / size,
-        tilt=beam_tilt(found),
+        tilt=inner_tilt(found, planes),
         angles=intersection_angles(found),
         flat_angles=intersection_angles(face_planes(design)),
-        lean=axis_lean(structure)[nodes],
+        lean=lean_angles(found.mesh, axes)[nodes],
         is_kept=is_kept(design, found.mesh),
     )

@@ -1,11 +1,13 @@
 """Landing: what the descent leaves of the conditions, met to rounding."""
 
-from ..meshes.mesh import mean_edge_length
-from ..remesh.planar.conditions import must_be_planar
-from ..sphere_meshes.sphere_mesh import SphereMesh, vertex_error
-from ..support.node_axes import support_structure
-from ..tolerances import NODE_LANDED, NODE_ON_SPHERES
-from .descent import meet_conditions
+from dataclasses import replace
+
+import numpy as np
+
+from ..arrays import unit
+from ..sphere_meshes.sphere_mesh import SphereMesh
+from ..tolerances import NODE_EXACT
+from .descent import meet_conditions, misses
 from .setting import NetState, Setting, assembled, farthest
 
 NEAR = 0.05
@@ -23,14 +25,15 @@ def land(setting: Setting, state: NetState) -> tuple[SphereMesh, bool]:
     not ask for them, leaves neighbours that became one sphere with beams twisted by degrees.
     """
     landed = meet_conditions(setting, state)
-    result = assembled(setting, landed)
-    if farthest(landed.shifts - state.shifts) <= NEAR and _is_landed(result):
-        return result, True
+    moved = farthest(landed.shifts - state.shifts)
+    if moved <= NEAR and misses(setting, landed) <= NODE_EXACT:
+        return assembled(setting, _unit(landed)), True
     return assembled(setting, state), False
 
 
-def _is_landed(sphere_mesh: SphereMesh) -> bool:
-    """Whether beams meet to rounding."""
-    miss = vertex_error(sphere_mesh).max() / mean_edge_length(sphere_mesh.mesh)
-    torsion = support_structure(sphere_mesh).torsion[must_be_planar(sphere_mesh.mesh)]
-    return bool(miss <= NODE_ON_SPHERES and torsion.max(initial=0.0) <= NODE_LANDED)
+def _unit(state: NetState) -> NetState:
+    """The state with exactly unit rows: what is left to do goes to B, so that radii stay."""
+    rows = state.rows.copy()
+    lengths = np.sqrt(1 + 4 * rows[:, 0] * rows[:, 4])
+    rows[:, 1:4] = unit(rows[:, 1:4]) * lengths[:, None]
+    return replace(state, rows=rows)

@@ -173,7 +173,12 @@ def first_state(setting: Setting) -> NetState:
     """Spheres of the curvatures through the faces' circles, upright axes, no shifts."""
     mesh = setting.mesh
     spheres = spheres_of_curvature(mesh, setting.curvatures).local_spheres
-    rows = rescale(spheres, 1 / mean_edge_length(mesh))
+    return upright_state(setting, rescale(spheres, 1 / mean_edge_length(mesh)))
+
+
+def upright_state(setting: Setting, rows: FloatArray) -> NetState:
+    """Spheres (F, 5), axes along the mean normals of their nodes, no shifts."""
+    mesh = setting.mesh
     faces = mesh.topology.corner_faces[setting.spokes]
     arrows = normals(rows[faces], setting.corners[setting.spokes])
     count = len(setting.nodes)

@@ -23,7 +23,7 @@ RIM = 0.05
 ANGLE = 0.10
 """Tolerable angle between neighbours at a vertex."""
 
-LEAN = 0.15
+AXIS_LEAN = 0.15
 """Tolerable lean of an axis, as a tangent."""
 
 LEAST_AXIS = 0.2
@@ -182,16 +182,17 @@ def _axis_heights(setting: Setting, state: NetState) -> tuple[FloatArray, FloatA
 def _lean(setting: Setting, state: NetState) -> FloatArray:
     tangents = setting.surface.frames[setting.nodes, :2]
     rise, _ = _axis_heights(setting, state)
-    return (np.einsum("nij,nj->in", tangents, state.poles) / (LEAN * rise)).ravel()
+    return (np.einsum("nij,nj->in", tangents, state.poles) / (AXIS_LEAN * rise)).ravel()
 
 
 def _lean_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray, ...]:
     tangents = setting.surface.frames[setting.nodes, :2]
     rise, slopes = _axis_heights(setting, state)
     along = np.einsum("nij,nj->in", tangents, state.poles)
-    unit = LEAN * rise[:, None]
+    unit = AXIS_LEAN * rise[:, None]
     tables = [
-        tangents[:, i] / unit - (along[i] / (LEAN * rise**2))[:, None] * slopes for i in (0, 1)
+        tangents[:, i] / unit - (along[i] / (AXIS_LEAN * rise**2))[:, None] * slopes
+        for i in (0, 1)
     ]
     return (np.concatenate(tables),)
 
@@ -226,6 +227,9 @@ def _hold_jacobian(setting: Setting, _: NetState) -> tuple[FloatArray, ...]:
     return (table,)
 
 
+LEAN = Term("lean", _lean_blocks, _lean, _lean_jacobian)
+"""Axes are upright."""
+
 WISHES = (
     Term("height", _vertices, _height, _height_jacobian),
     Term("height_wall", _vertices, _height_wall, _height_wall_jacobian),
@@ -234,7 +238,7 @@ WISHES = (
     Term("edge_wall", _edges, _edge_wall, _edge_wall_jacobian),
     Term("rim", _rim_blocks, _rim, _rim_jacobian),
     Term("angle", _angle_blocks, _angle, _angle_jacobian),
-    Term("lean", _lean_blocks, _lean, _lean_jacobian),
+    LEAN,
     Term("alike", _alike_blocks, _alike, _alike_jacobian),
     Term("hold", _faces, _hold, _hold_jacobian),
 )

@@ -7,13 +7,16 @@ import numpy as np
 
 from ....kernel.analysis import angle_summary
 from ....kernel.arrays import FloatArray
+from ....kernel.exact_supports import axes
 from ....kernel.exact_supports.search import MAX_TILT, Attempt, find_exact_support
 from ....kernel.exact_supports.setting import Bounds
 from ....kernel.meshes.mesh import Mesh, mean_edge_length
 from ....kernel.sphere_meshes.fit import face_planes
 from ....kernel.sphere_meshes.sphere_mesh import SphereMesh
+from ....kernel.support.beam_supports import axis_points
 from ...graphs.node import node, warn
 from ...graphs.ports import Port
+from ..arrays import VertexAxes
 from ..optimise import OptimumReport
 
 Verdict = Literal["feasible", "doubtful", "no"]
@@ -36,10 +39,11 @@ class ExactSupportReport(OptimumReport):
     angles_deg : dict
         ``planar`` (flat panels on the design) and ``spherical``: ``mean`` and ``max``.
     torsion_deg : dict
-        ``mean`` and ``max`` over the nodes that need a common axis.
+        ``mean`` and ``max`` of the angles between node axes and beams, those of the boundary
+        included.
     gap, vertex_error : dict
-        ``max`` in model units and ``relative_to_edge``: between the arcs of an edge, and from
-        a vertex to its spheres.
+        ``max`` in model units and ``relative_to_edge``: between the arcs of an edge, and
+        from a vertex to its spheres.
     height, slide, rim : dict
         ``p95`` and ``max`` of how far vertices moved off the design surface, within it, and
         across its boundary, in mean edges.
@@ -127,6 +131,34 @@ def exact_support(
     if report.reason:
         warn(report.reason)
     return ExactSupport(found.sphere_mesh if found.is_exact else face_planes(mesh), report)
+
+
+@node
+def common_axes(sphere_mesh: SphereMesh) -> VertexAxes:
+    """Find the node axes that the spheres of an exact support have in common.
+
+    For `axis_support`, and for `panels` cut by ``edges="axis"``. Where neighbours are one
+    sphere, the planes in which spheres meet do not tell the axes: then flat beams do.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        The sphere mesh before moulds, as from `exact_support`.
+
+    Returns
+    -------
+    (V, 2, 3) float array
+        The vertex, and a point of the axis one mean edge inside.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import axis_support, common_axes, exact_support, roof_mesh
+    >>> found = exact_support(roof_mesh(6, 8, 24.0)).sphere_mesh
+    >>> beams = axis_support(found, axes=common_axes(found))
+    >>> beams.report.torsion_deg["max"] < 1e-6, beams.report.gap["max"] < 1e-9
+    (True, True)
+    """
+    return axis_points(sphere_mesh.mesh, axes.common_axes(sphere_mesh))
 
 
 def _report(mesh: Mesh, found: Attempt) -> ExactSupportReport:
