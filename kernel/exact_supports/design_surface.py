@@ -69,7 +69,7 @@ def design_surface(mesh: Mesh) -> DesignSurface:
     around = np.concatenate([tails, heads])
     counts = np.bincount(around, minlength=mesh.n_vertices)
     spacing = sum_by(around, np.concatenate([sides, sides]), mesh.n_vertices)
-    spacing /= np.maximum(counts, 1)
+    spacing = np.where(counts > 0, spacing / np.maximum(counts, 1), 1.0)
     return DesignSurface(
         frames,
         _polynomials(mesh, points, frames, spacing),
