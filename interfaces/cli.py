@@ -139,6 +139,33 @@ class _PanelCommand(click.Command):
     type=click.FloatRange(min=0),
     help="How far vertices may slide in the surface for --support exact, in mean edges; 0.7.",
 )
+@click.option(
+    "--bearing",
+    type=click.FloatRange(min=0),
+    default=0.0,
+    help="Clear distance from panel to beam, in model units; panels rest on beams at 0.",
+)
+@click.option(
+    "--allow-step",
+    metavar="MM",
+    type=click.FloatRange(min=0),
+    default=5.0,
+    help="Highest step between neighbours, in millimetres; 5 by default.",
+)
+@click.option(
+    "--allow-gap",
+    metavar="MM",
+    type=click.FloatRange(min=0),
+    default=5.0,
+    help="Widest gap in a joint and hole at a node, in millimetres; 5 by default.",
+)
+@click.option(
+    "--allow-torsion",
+    metavar="DEG",
+    type=click.FloatRange(0, 180),
+    default=0.1,
+    help="Largest angle between a beam and a node axis, in degrees; 0.1 by default.",
+)
 @click.option("--overwrite", is_flag=True, help="Replace files that spheremesh did not write.")
 @click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report alone.")
@@ -201,7 +228,8 @@ def _check_exact(options: dict[str, Any]) -> None:
 
 def _warn_of_no_beams(options: Mapping[str, Any]) -> None:
     """Options of beams say nothing where no beams are asked for."""
-    names = [name for name in ("depth", "beam_thickness", "node_radius") if options[name]]
+    of_beams = ("depth", "beam_thickness", "node_radius", "bearing")
+    names = [name for name in of_beams if options[name]]
     if names and not options["support"]:
         given = ", ".join(f"--{name.replace('_', '-')}" for name in names)
         click.echo(f"warning: without --support there are no beams: {given} unused", err=True)

@@ -232,8 +232,6 @@ CLOSED: Final = 1e-6
 """A surface whose ends lie this close, relative to its size, is closed there."""
 ON_EDGE: Final = 1e-12
 """Points of a surface this close to an edge, relative to the surface's size, lie on it."""
-OVERLAP: Final = 1e-6
-"""Beams that run into each other by less, in thicknesses, touch (rounding of mitres)."""
 SINGLE_IS_ENOUGH: Final = 0.01
 """Share of the error of a triangulation that rounding its points to float32 may add."""
 
@@ -241,9 +239,15 @@ SINGLE_IS_ENOUGH: Final = 0.01
 
 VERTEX_MISS: Final = 0.01
 """Vertices farther from their sphere than this share of the mean edge are worth a warning."""
+FLATTENED: Final = 0.25
+"""Spheres of which less than this share of the curvature is left have become nearly planes."""
 LITTLE_GAIN: Final = 0.05
 """A relative gain of spheres over planes that is worth saying to be small."""
 MOSTLY_EVEN: Final = 0.95
 """Share of edges of nearly the length asked for below which remeshing warns."""
 TORSION_FREE: Final = 1e-8
 """Fourth singular value of the spheres around a node, relative to the first, that is none."""
+ROUGHER: Final = 1e-3
+"""Spheres whose mean angle is larger than that of planes by more, relatively, are rougher."""
+WIDER_GAP: Final = 1e-3
+"""Gaps that are wider by more than this share of the mean edge are worth a warning."""

@@ -1,13 +1,13 @@
 """The main job as a graph: a mesh in, spherical panels out."""
 
 from collections.abc import Mapping
-from typing import Final
+from typing import Any, Final
 
 from ...kernel.support.beam_supports import own_spheres
 from ...nodes.graphs.graph import Graph
 from ...nodes.graphs.wires import Param, Step, Wire
 from .options import PanelOptions, SupportKind, fineness, model_units
-from .support import add_support
+from .support import add_annuli, add_beams
 
 _LAYERS: Final = {"constant": "offset", "power": "power"}
 """Port of `panels` by option: --layer names a layer of the input."""
@@ -51,7 +51,8 @@ def panel_graph(
         Its steps are named mesh, description, start, angles (before an optimum of more than
         angles), optimum, panels, audit, report, step, rhino, table, list and picture; with a
         number of moulds also moulds, blanks, mould_drawing and mould_picture, with a support
-        also feasibility, annuli, beams, drawing and beam_table.
+        also feasibility, annuli, beams, drawing and beam_table, with either plain, the panels
+        without them.
         Its writers write relative to the folder of the run.
 
     Raises
@@ -86,34 +87,49 @@ def panel_graph(
         moulds = graph.add("cluster_radii", "moulds", sphere_mesh=spheres, k=count, **moves)
         spheres, labels, clusters = moulds.sphere_mesh, moulds.labels, moulds.report
     kind = beams or options.support
-    support = add_support(graph, options, kind, spheres, design) if kind else None
+    annuli = add_annuli(graph, options, kind, spheres, design) if kind else None
+    layers: dict[str, Any] = {
+        "thickness": thickness, "joint_gap": joint_gap, "side": options.side,
+        "layer": _LAYERS[options.offset],
+    }  # fmt: skip
     panels = graph.add(
-        "panels", "panels", sphere_mesh=spheres, thickness=thickness, joint_gap=joint_gap,
-        labels=labels, side=options.side, layer=_LAYERS[options.offset],
-        **(support.cut if support else {"edges": options.edges or "bisector"}),
+        "panels", "panels", sphere_mesh=spheres, labels=labels, **layers,
+        **(annuli.cut if annuli else {"edges": options.edges or "bisector"}),
     )  # fmt: skip
+    support = add_beams(graph, options, annuli, panels.panels) if annuli else None
+    plain: dict[str, Wire] = {}
+    if support or spheres is not design:
+        # What there would be without moulds and beams, to say what these cost.
+        plain["plain"] = graph.add("panels", "plain", sphere_mesh=design, **layers).report
     if options.moulds is not None:
         blanks = graph.add("mould_blanks", "blanks", panels=panels.panels)
         for name, path in (("mould_drawing", "moulds.dxf"), ("mould_picture", "moulds.svg")):
             graph.add("write_mould_drawings", name, panels=panels.panels, path=path)
     audit = graph.add(
         "audit", "audit", panels=panels.panels, cut=panels.report,
-        **(support.audit if support else {}),
+        max_step=options.allow_step, max_gap=options.allow_gap,
+        max_twist=options.allow_torsion, **(support.audit if support else {}),
     )  # fmt: skip
     graph.add(
         "panel_report", "report", sphere_mesh=spheres, optimum=optimum.report,
-        cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report,
+        cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report, **plain,
         **(support.report if support else {}),
     )  # fmt: skip
     made = {"panels": panels.panels}
     if support:
         made["beams"] = support.beams
+    _add_writers(graph, mesh, made)
+    return graph
+
+
+def _add_writers(graph: Graph, mesh: Step | Wire, made: Mapping[str, Wire]) -> None:
+    """Files of the parts; those of moulds and beams stand beside what they show."""
+    panels = made["panels"]
     graph.add("write_step", "step", **made, path="panels.step")
     graph.add("write_3dm", "rhino", **made, path="model.3dm", reference=mesh)
-    graph.add("write_schedule", "table", panels=panels.panels, path="schedule.csv")
+    graph.add("write_schedule", "table", panels=panels, path="schedule.csv")
     graph.add("write_schedule", "list", **made, path="schedule.json")
-    graph.add("render", "picture", panels=panels.panels, path="preview.png")
-    return graph
+    graph.add("render", "picture", panels=panels, path="preview.png")
 
 
 def _source(graph: Graph) -> str:

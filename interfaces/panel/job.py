@@ -112,8 +112,8 @@ def run_job(
             "warnings": [
                 text
                 for step, messages in graph.messages.items()
-                # The angles alone are of no interest once more is asked for.
-                if step != "angles"
+                # What there would be otherwise is of no interest once more is asked for.
+                if step not in {"angles", "plain"}
                 for text in messages
             ],
         }

@@ -53,6 +53,12 @@ class PanelOptions:
     max_height, max_slide : float
         How far vertices may move for an exact support, off the surface and within it, in mean
         edges.
+    bearing : float
+        Clear distance from panel to beam, in model units.
+    allow_step, allow_gap : float
+        What the workshop allows between neighbours, in millimetres.
+    allow_torsion : float
+        What it allows between beams and node axes, in degrees.
     """
 
     mesh: Path | None = None
@@ -75,6 +81,10 @@ class PanelOptions:
     node_radius: float = 0.0
     max_height: float = 0.06
     max_slide: float = 0.7
+    bearing: float = 0.0
+    allow_step: float = 5.0
+    allow_gap: float = 5.0
+    allow_torsion: float = 0.1
 
 
 def model_units(options: PanelOptions) -> tuple[str, bool]:

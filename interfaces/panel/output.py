@@ -1,11 +1,15 @@
 """What the command line says of a panelling."""
 
 import json
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import click
+
+MOST_ERRORS: Final = 5
+"""Errors of one kind that are printed; all are in the report."""
 
 
 def print_report(
@@ -24,13 +28,11 @@ def print_report(
     refused = (*report["panels"]["rejected"], *report["beams"]["rejected"])
     for part in refused:
         click.echo(f"rejected {part['code']}: {part['id']}: {part['reason']}", err=True)
-    codes = {part["code"] for part in refused}
     audit: Mapping[str, Any] = report["audit"] or {"errors": []}
-    for found in audit["errors"]:
-        if found["code"] not in codes:  # these are the rejected ones
-            click.echo(f"error {found['code']}: {found['id']}: {found['message']}", err=True)
+    _print_errors(audit["errors"], {part["code"] for part in refused})
     if as_json:
         click.echo(json.dumps(report, indent=1))
+        _print_verdict(report, is_error=True)
         return
     _print_feasibility(report["support"])
     _print_size(report["input"], is_assumed=is_assumed)
@@ -50,6 +52,37 @@ def print_report(
         _print_support(report["support"], report["beams"])
     if report["audit"]:
         _print_audit(report["audit"])
+    _print_verdict(report)
+
+
+def _print_errors(errors: Sequence[Mapping[str, Any]], known: set[str]) -> None:
+    """The first errors of each code; those of rejected parts are printed already."""
+    shown: Counter[str] = Counter()
+    for found in errors:
+        code = found["code"]
+        shown[code] += 1
+        if code not in known and shown[code] <= MOST_ERRORS:
+            click.echo(f"error {code}: {found['id']}: {found['message']}", err=True)
+    for code, count in shown.items():
+        if code not in known and count > MOST_ERRORS:
+            click.echo(f"error {code}: {count - MOST_ERRORS} more, in report.json", err=True)
+
+
+def _print_verdict(report: Mapping[str, Any], *, is_error: bool = False) -> None:
+    """The last line where a model cannot be built: the three causes that most parts have."""
+    if report["buildable"]:
+        return
+    causes: dict[str, list[tuple[float, str]]] = {}
+    for found in (report["audit"] or {"errors": []})["errors"]:
+        text = f"{found['id']} {found['message']}"
+        causes.setdefault(found["code"], []).append((found["size"] or 0.0, text))
+    for part in (*report["panels"]["rejected"], *report["beams"]["rejected"]):
+        if not report["audit"]:
+            causes.setdefault(part["code"], []).append((0.0, f"{part['id']} {part['reason']}"))
+    ranked = sorted(causes.items(), key=lambda item: -len(item[1]))
+    texts = [f"{code} ({len(parts)}): {max(parts)[1]}" for code, parts in ranked[:3]]
+    more = f"; {len(ranked) - 3} more causes" if len(ranked) > 3 else ""
+    click.secho(f"NOT BUILDABLE: {'; '.join(texts)}{more}", fg="red", err=is_error)
 
 
 def _print_size(model: Mapping[str, Any], *, is_assumed: bool) -> None:
@@ -82,8 +115,7 @@ def _print_support(support: Mapping[str, Any], beams: Mapping[str, Any]) -> None
 
 def has_errors(report: Mapping[str, Any]) -> bool:
     """Whether a panel or beam is rejected, or made but of no use."""
-    rejected = report["panels"]["rejected"] or report["beams"]["rejected"]
-    return bool(rejected or (report["audit"] and report["audit"]["errors"]))
+    return not report["buildable"]
 
 
 def _print_audit(audit: Mapping[str, Any]) -> None:

@@ -1,5 +1,6 @@
 """The report of a panelling."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -12,6 +13,7 @@ from ....kernel.support.annulus_construction import AnnuliReport
 from ....kernel.support.beam_supports import SupportReport
 from ....kernel.support.feasibility import FeasibilityReport
 from ....kernel.support.node_axes import NodesReport
+from ....kernel.tolerances import ROUGHER, WIDER_GAP
 from ...graphs.node import node, warn
 from ...graphs.ports import Units
 from ..cluster import BlanksReport, MouldsReport
@@ -52,6 +54,8 @@ class PanellingReport(Report):
         How far vertices moved off the design: ``max`` in model units and
         ``relative_to_edge``; for exact supports also the largest ``height`` off the surface
         and ``slide`` in it, in mean edges.
+    buildable : bool
+        Whether no panel or beam is rejected and the audit, if there is one, has no errors.
     """
 
     input: dict[str, Any]
@@ -65,9 +69,10 @@ class PanellingReport(Report):
     beams: dict[str, Any]
     audit: dict[str, Any] | None
     design_move: dict[str, float]
+    buildable: bool
 
 
-@node
+@node(version="2")
 def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     sphere_mesh: SphereMesh,
     optimum: OptimumReport,
@@ -82,6 +87,7 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     units: Units = "m",
     feasibility: FeasibilityReport | None = None,
     support: Literal["axis", "exact", "bisector"] | None = None,
+    plain: CutReport | None = None,
 ) -> PanellingReport:
     """Gather the reports of a panelling into one.
 
@@ -112,6 +118,8 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         Result of `support_feasibility`.
     support : {"axis", "exact", "bisector"}, optional
         The kind of support that was asked for.
+    plain : CutReport, optional
+        Report of panels as they would be without moulds and support, to say what these cost.
 
     Returns
     -------
@@ -135,6 +143,14 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         angles["unclustered"] = optimum["angles_deg"]["spherical"]
         found = {name: moulds[name] for name in found}
     miss = float(vertex_error(sphere_mesh).max())
+    _warn_of_losses(angles, cut, plain)
+    made_beams = {
+        "written": beams["written"] if beams else 0,
+        "rejected": [
+            entry for found in (annuli, beams) if found for entry in found["rejected"]
+        ],
+    }
+    is_whole = not (cut["rejected"] or made_beams["rejected"])
     return PanellingReport(
         input={
             "vertices": mesh.n_vertices,
@@ -150,14 +166,10 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         moulds=found | {"blanks": list(blanks["blanks"]) if blanks else []},
         support=_support(optimum, nodes, annuli, landing, feasibility, support),
         panels={"written": cut["written"], "rejected": list(cut["rejected"])},
-        beams={
-            "written": beams["written"] if beams else 0,
-            "rejected": [
-                entry for found in (annuli, beams) if found for entry in found["rejected"]
-            ],
-        },
+        beams=made_beams,
         audit=dict(audit) if audit is not None else None,
         design_move=_design_move(optimum, moulds, mean_edge_length(mesh)),
+        buildable=is_whole and not (audit and audit["errors"]),
     )
 
 
@@ -172,6 +184,31 @@ def _design_move(
         return found | {"relative_to_edge": total, "max": found["max"] + moved * edge}
     total = moved + float(optimum.get("vertex_move", 0.0))
     return {"max": total * edge, "relative_to_edge": total}
+
+
+def _warn_of_losses(
+    angles: Mapping[str, Mapping[str, float]], cut: CutReport, plain: CutReport | None
+) -> None:
+    """Say where flat panels, or panels without moulds and support, would be better."""
+    spherical, planar = angles["spherical"]["mean"], angles["planar"]["mean"]
+    if spherical > planar * (1 + ROUGHER):
+        warn(
+            f"rougher than flat panels: neighbours meet at {spherical:.3g} degrees in the "
+            f"mean, flat ones at {planar:.3g}; more moulds, or none, may be smoother"
+        )
+    if plain is None:
+        return
+    if cut["written"] < plain["written"]:
+        warn(
+            f"{cut['written']} panels instead of {plain['written']} without moulds and "
+            "support: more moulds, or --support bisector, may keep them"
+        )
+    wide, usual = cut["edge_gap"]["relative_to_edge"], plain["edge_gap"]["relative_to_edge"]
+    if wide > usual + WIDER_GAP:
+        warn(
+            f"gaps between edges are up to {100 * wide:.2g} % of an edge, and without moulds "
+            f"and support {100 * usual:.2g} %: more moulds, or --support exact, may close them"
+        )
 
 
 def _support(
