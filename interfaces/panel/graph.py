@@ -76,6 +76,8 @@ def panel_graph(
     if keeps_spheres:
         start = graph.add("fit_spheres", "start", mesh=mesh, ring=0)
         optimum = graph.add("keep_spheres", "optimum", sphere_mesh=start)
+    elif options.support == "exact":
+        optimum = _exact(graph, options, mesh)
     else:
         optimum = _optimum(graph, options, mesh, moves)
     design = spheres = optimum.sphere_mesh
@@ -144,6 +146,17 @@ def _mesh(graph: Graph, options: PanelOptions) -> Step | Wire:
     if options.repair:
         return graph.add("repair_mesh", "mesh", mesh=path, layer=options.layer, **rows).mesh
     return graph.add("read_mesh", "mesh", path=path, layer=options.layer, **rows)
+
+
+def _exact(graph: Graph, options: PanelOptions, mesh: Step | Wire) -> Step:
+    """The spheres of an exact support; for one mould with the same radius from the start."""
+    bounds = {
+        "max_height": graph.param("max_height", options.max_height, min=0),
+        "max_slide": graph.param("max_slide", options.max_slide, min=0),
+    }
+    return graph.add(
+        "exact_support", "optimum", mesh=mesh, one_radius=options.moulds == 1, **bounds
+    )
 
 
 def _optimum(

@@ -88,7 +88,9 @@ def add_annuli(
         )
         cut: dict[str, Any] = {"edges": "bisector"}
     else:
-        if spheres is not design:
+        if kind == "exact":
+            depth["axes"] = graph.add("common_axes", "axes", sphere_mesh=design)
+        elif spheres is not design:
             # Moulds change the spheres: where those before have exact nodes, their axes count.
             axes = graph.add("node_axes", "axes", sphere_mesh=design)
             depth["axes"] = axes
