@@ -102,6 +102,13 @@ def main() -> None:
     default=0.0,
     help="Angle at which neighbours shall meet, in degrees.",
 )
+@click.option(
+    "--crease",
+    type=click.FloatRange(0, 180),
+    default=40.0,
+    show_default=True,
+    help="Edges at which flat faces turn by more degrees stay sharp; 180 for none.",
+)
 @click.option("--support", is_flag=True, help="Nodes without torsion; beams under the edges.")
 @click.option("--depth", type=float, help="Depth of the beams; a quarter of the mean edge.")
 @click.option(

@@ -1,7 +1,7 @@
 """The main job as a graph: a mesh in, spherical panels out."""
 
 from collections.abc import Mapping
-from typing import Final
+from typing import Any, Final
 
 from ..nodes.graphs.graph import Graph
 from ..nodes.graphs.wires import Param, Step, Wire
@@ -46,7 +46,8 @@ def panel_graph(options: PanelOptions) -> Graph:
     moves: dict[str, Param] = {}
     if options.tolerance:
         moves = {"tolerance": graph.param("tolerance", options.tolerance, min=0)}
-    optimum = _optimum(graph, options, mesh, moves)
+    crease = graph.param("crease", options.crease, min=0, max=180)
+    optimum = _optimum(graph, options, mesh, moves, crease)
     spheres, labels, clusters, blanks = optimum.sphere_mesh, None, None, None
     landing = None
     if options.support and options.tolerance is None and options.moulds is None:
@@ -62,7 +63,7 @@ def panel_graph(options: PanelOptions) -> Graph:
     panels = graph.add(
         "panels", "panels", sphere_mesh=spheres, thickness=thickness, joint_gap=joint_gap,
         edges=options.edges or ("intersection" if options.support else "bisector"),
-        labels=labels, side=options.side, layer=_LAYERS[options.offset],
+        labels=labels, side=options.side, layer=_LAYERS[options.offset], crease=crease,
     )  # fmt: skip
     if options.moulds is not None:
         blanks = graph.add("mould_blanks", "blanks", panels=panels.panels)
@@ -105,11 +106,14 @@ def _mesh(graph: Graph, options: PanelOptions) -> Step | Wire:
 
 
 def _optimum(
-    graph: Graph, options: PanelOptions, mesh: Step | Wire, moves: Mapping[str, Param]
-) -> Step:
+    graph: Graph, options: PanelOptions, mesh: Step | Wire, moves: Mapping[str, Param],
+    crease: Param,
+) -> Step:  # fmt: skip
     """The spheres: of smallest angles alone, or of more than that."""
     start = graph.add("fit_spheres", "start", mesh=mesh)
-    target = {"target_angle": options.target_angle} if options.target_angle else {}
+    target: dict[str, Any] = {"crease": crease}
+    if options.target_angle:
+        target["target_angle"] = options.target_angle
     if not (options.support or moves):
         allowed = {} if options.tolerance is None else {"max_miss": options.tolerance}
         return graph.add("minimize_angles", "optimum", sphere_mesh=start, **target, **allowed)

@@ -42,6 +42,8 @@ class PanelOptions:
         default they need not.
     target_angle : float
         Angle at which neighbours shall meet, in degrees.
+    crease : float
+        Edges at which flat faces turn by more, in degrees, stay sharp; 180 for none.
     support : bool
         Whether to ask for nodes without torsion, and to write beams.
     depth, beam_thickness : float or None
@@ -65,6 +67,7 @@ class PanelOptions:
     edges: Literal["bisector", "intersection"] | None = None
     tolerance: float | None = None
     target_angle: float = 0.0
+    crease: float = 40.0
     support: bool = False
     depth: float | None = None
     beam_thickness: float | None = None

@@ -37,11 +37,7 @@ def print_report(
         click.echo(line)
     for name in files:
         click.echo(f"  {out / name}")
-    planar, spherical = report["angles_deg"]["planar"], report["angles_deg"]["spherical"]
-    click.echo(
-        f"angle between neighbours, mean (largest): {planar['mean']:.2f} ({planar['max']:.1f}) "
-        f"degrees with planes, {spherical['mean']:.2f} ({spherical['max']:.1f}) with spheres"
-    )
+    _print_angles(report["angles_deg"], report["creases"])
     click.echo(f"moulds {report['moulds']['count'] or 'not asked for: a radius per panel'}")
     panels = report["panels"]
     click.echo(f"panels {panels['written']} written, {len(panels['rejected'])} rejected")
@@ -55,6 +51,21 @@ def print_report(
         click.echo(f"beams {beams['written']} written, {len(beams['rejected'])} rejected")
     if report["audit"]:
         _print_audit(report["audit"])
+
+
+def _print_angles(angles: Mapping[str, Any], creases: Mapping[str, Any]) -> None:
+    """How smoothly panels meet, and where they do not."""
+    planar, spherical = angles["planar"], angles["spherical"]
+    click.echo(
+        f"angle between neighbours, mean (largest): {planar['mean']:.2f} ({planar['max']:.1f}) "
+        f"degrees with planes, {spherical['mean']:.2f} ({spherical['max']:.1f}) with spheres"
+    )
+    if creases["count"]:
+        click.echo(
+            f"creases of more than {creases['angle_deg']:g} degrees, not counted: "
+            f"{creases['count']}, at {creases['mean_deg']:.2f} ({creases['max_deg']:.1f}) "
+            "degrees as built; --crease to change"
+        )
 
 
 def _print_size(model: Mapping[str, Any], *, is_assumed: bool) -> None:

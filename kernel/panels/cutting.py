@@ -11,6 +11,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..errors import InputError
+from ..meshes.creases import crease_edges
 from ..meshes.mesh import face_centroids, face_normals, local_corners, mean_edge_length
 from ..meshes.topology import Topology
 from ..parts.records import RejectedPart, part_ids, reject_parts
@@ -214,6 +215,7 @@ def cut_panels(
     labels: IntArray | None = None,
     side: ThicknessSide = "inward",
     layer: ThicknessRule = "offset",
+    crease: float = np.pi,
 ) -> tuple[Panels, tuple[RejectedPart, ...]]:
     """Cut a panel out of the sphere of every face.
 
@@ -232,6 +234,8 @@ def cut_panels(
         Where the thickness goes from the sphere, see `panel_faces`.
     layer : {"offset", "power"}
         Whether the thickness or the difference of squared radii is constant.
+    crease : float
+        Edges at which the planes of the faces turn by more, in radians, are creases.
 
     Returns
     -------
@@ -274,6 +278,7 @@ def cut_panels(
         inner_corners=inner_corners,
         neighbors=np.append(faces, -1)[topology.twins],
         edge_ids=_edge_ids(topology),
+        is_crease=np.append(crease_edges(mesh, crease), False)[_edge_ids(topology)],
         thicknesses=sides.thicknesses,
         thickness=float(thickness),
         joint_gap=float(joint_gap),

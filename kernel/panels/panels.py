@@ -54,6 +54,8 @@ class Panels:
         Face beyond each edge; -1 on the boundary.
     edge_ids : (H,) int array
         Interior edge of the mesh, the same in both panels; -1 on the boundary.
+    is_crease : (H,) bool array
+        Edges along which the surface is not meant to be smooth: walls are mitred there.
     thicknesses : (P,) float array
         Distance of the inner from the outer face of each panel, in model units.
     thickness : float
@@ -76,6 +78,7 @@ class Panels:
     inner_corners: FloatArray = field(metadata=PER_CORNER)
     neighbors: IntArray = field(metadata=PER_CORNER)
     edge_ids: IntArray = field(metadata=PER_CORNER)
+    is_crease: BoolArray = field(metadata=PER_CORNER)
     thicknesses: FloatArray
     thickness: float
     joint_gap: float

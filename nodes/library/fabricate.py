@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Annotated, Literal, NamedTuple
 
+import numpy as np
+
 from ...fabrication.drawings import beams as dxf
 from ...fabrication.drawings import moulds as mould_drawings
 from ...fabrication.files import check_suffix, replacing
@@ -21,7 +23,7 @@ from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...viewer.render import render_image
 from ..graphs.node import node, running_graph, warn
 from ..graphs.ports import Length, Port, Units, WritePath
-from .arrays import FaceLabels
+from .arrays import CreaseAngle, FaceLabels
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +65,7 @@ def panels(
     labels: FaceLabels | None = None,
     side: Literal["inward", "outward", "centred"] = "inward",
     layer: Literal["offset", "power"] = "offset",
+    crease: CreaseAngle = 40.0,
 ) -> PanelSet:
     """Cut a panel out of the sphere of every face.
 
@@ -86,6 +89,9 @@ def panels(
         The same thickness everywhere; or the same difference of squared radii, so that
         neighbours which bulge to one side meet in one plane on both of their faces: the
         thickness is then met on average, sharp panels are thicker and planes have none.
+    crease : float
+        Edges at which the flat faces turn by more are creases: mitred, with a layer of their
+        own in Rhino and a mark in the schedule; 180 for none.
 
     Returns
     -------
@@ -102,7 +108,7 @@ def panels(
     (72, [])
     """
     made, rejected = cutting.cut_panels(
-        sphere_mesh, edges, thickness, joint_gap, labels, side, layer
+        sphere_mesh, edges, thickness, joint_gap, labels, side, layer, np.radians(crease)
     )
     if rejected:
         warn(
@@ -178,6 +184,8 @@ def write_3dm(
     layers: tuple[Literal["Edges", "Centres", "Moulds"], ...] = ("Edges",),
 ) -> str:
     """Write panels and beams to a Rhino file: exact trimmed spheres, layers, user text.
+
+    Edges on creases lie on the layer Creases, if there are any.
 
     Parameters
     ----------

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ....fabrication.sizes import model_extents
 from ....kernel.analysis import angle_summary
 from ....kernel.meshes.mesh import mean_edge_length
@@ -14,7 +16,7 @@ from ...graphs.node import node
 from ...graphs.ports import Units
 from ..cluster import BlanksReport, MouldsReport
 from ..fabricate import CutReport
-from ..optimise import OptimumReport
+from ..outcomes import OptimumReport
 from ..support.beams import BeamsReport
 from ..support.structure import LandingReport
 from .audit import AuditReport
@@ -29,7 +31,10 @@ class PanellingReport(Report):
     input : dict
         ``vertices``, ``faces``, ``units``, ``size`` along x, y and z, and ``mean_edge``.
     angles_deg : dict
-        ``planar`` and ``spherical`` (what is built), and with moulds ``unclustered``.
+        ``planar`` and ``spherical`` (what is built), and with moulds ``unclustered``; over the
+        edges that are no crease.
+    creases : dict
+        Edges that stay sharp, as in `AnglesReport`.
     vertex_error, edge_gap : dict
         ``max`` in model units and ``relative_to_edge``.
     thickness : dict
@@ -47,6 +52,7 @@ class PanellingReport(Report):
 
     input: dict[str, Any]
     angles_deg: dict[str, dict[str, float]]
+    creases: dict[str, Any]
     vertex_error: dict[str, float]
     edge_gap: dict[str, float]
     thickness: dict[str, float]
@@ -112,7 +118,7 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     {'written': 72, 'rejected': []}
     """
     mesh = sphere_mesh.mesh
-    angles = {**optimum["angles_deg"], "spherical": angle_summary(sphere_mesh)}
+    angles, creases = _built(sphere_mesh, optimum)
     found: dict[str, Any] = {"count": 0, "radii": [], "panels_per_mould": []}
     if moulds is not None:
         # What is built counts as spherical; what the moulds cost is there to compare.
@@ -128,6 +134,7 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
             "mean_edge": mean_edge_length(mesh),
         },
         angles_deg=angles,
+        creases=creases,
         vertex_error={"max": miss, "relative_to_edge": miss / mean_edge_length(mesh)},
         edge_gap=dict(cut["edge_gap"]),
         thickness=dict(cut["thickness"]),
@@ -150,4 +157,17 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
             ],
         },
         audit=dict(audit) if audit is not None else None,
+    )
+
+
+def _built(
+    sphere_mesh: SphereMesh, optimum: OptimumReport
+) -> tuple[dict[str, dict[str, float]], dict[str, Any]]:
+    """Angles and creases of an optimum, as they are built."""
+    is_crease = np.zeros(len(sphere_mesh.mesh.topology.edge_corners), bool)
+    is_crease[optimum["creases"]["edges"]] = True
+    sharp = angle_summary(sphere_mesh, is_crease)
+    return (
+        {**optimum["angles_deg"], "spherical": angle_summary(sphere_mesh, ~is_crease)},
+        {**optimum["creases"], "mean_deg": sharp["mean"], "max_deg": sharp["max"]},
     )
