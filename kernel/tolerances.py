@@ -113,6 +113,8 @@ NEGATIVE_MODE: Final = 1e-8
 """An eigenvalue above minus this share of the largest entry of its matrix is not negative."""
 SAME_ENERGY: Final = 1e-9
 """Energies that differ by a smaller share are equal, and the bulge decides."""
+SAME_BULGE: Final = 1e-6
+"""Optima whose spheres bulge alike up to this share bulge alike."""
 OPENING: Final = 1.0471975511965976
 """Half opening (60 degrees) up to which a spherical cap is taken for a panel."""
 AT_BOUND: Final = 1e-9

@@ -22,8 +22,9 @@ from ..meshes.mesh import Mesh, face_centroids, mean_edge_length
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.circles import Circles, circle_pencils, face_circles, pencil_spheres
 from ..spheres.minkowski import minkowski
-from ..tolerances import LEAST_ENERGY, SAME_ENERGY, SAME_TURN
+from ..tolerances import LEAST_ENERGY, SAME_BULGE, SAME_ENERGY, SAME_TURN
 from .pencil_energy import (
+    PRODUCT_ROUNDING,
     EdgeEnergy,
     PencilCoupling,
     angle_density,
@@ -50,7 +51,8 @@ class AngleReport:
         the smooth stages and of the descent taken.
     energies : tuple of float
         The paper's energy (9) at the start, after stage 1, and after each accepted step of
-        stage 2; one more where spheres were taken back.
+        stage 2; one more where spheres were taken back. With a target angle at the start, at
+        smooth contact and at the end.
     step : float
         Largest change of an unknown in the last step, in radians.
     circle_miss : float
@@ -134,29 +136,33 @@ def minimize_angles(
 
     given = np.clip(pencil_angles(sphere_mesh, circles), -bound, bound)
     planes = np.zeros_like(given)
-    start = _lower(coupling, signed_density, given, planes)
+    start = _lower(coupling, parts, given, planes)
     first = minimize_in_pencils(_problem(signed_density), start)
-    second = minimize_in_pencils(_problem(angle_density(0.0)), first.angles)
+    second = _second_stage(_problem(angle_density(0.0)), first)
     iterations = (len(first.energies) - 1, len(second.energies) - 1)
+    density = angle_density(target_angle)
+    energies = [angle_energy(coupling, density, start)]
     if target_angle == 0:
         angles, taken_back = _never_rougher(coupling, parts, (second, first))
         last, converged = second, first.converged and second.converged
+        energies += second.energies
     else:
-        problem = _problem(angle_density(target_angle))
-        angles, last, converged = _lowest(problem, parts, second.angles, given, target_angle,
-                                          face_centroids(mesh))  # fmt: skip
+        angles, descents = _lowest_of_parts(
+            _problem(density), parts, second.angles, given, target_angle, face_centroids(mesh)
+        )
+        converged = all(descent.converged for descent in descents)
+        last = max(descents, key=lambda each: len(each.energies), default=second)
         iterations = (sum(iterations), len(last.energies) - 1)
         taken_back = np.zeros(mesh.n_faces, bool)
+        energies.append(angle_energy(coupling, density, second.angles))
     is_alone = np.bincount(coupling.faces[weights > 0].ravel(), minlength=mesh.n_faces) == 0
     angles = np.where(is_alone, 0.0, angles)
-    density = angle_density(target_angle)
-    energies = (angle_energy(coupling, density, start), *last.energies)
     if taken_back.any() or target_angle > 0:
-        energies = (*energies, angle_energy(coupling, density, angles))
+        energies.append(angle_energy(coupling, density, angles))
     report = AngleReport(
         converged,
         iterations,
-        energies,
+        tuple(energies),
         last.step,
         float(miss.max()) / mean_edge_length(mesh),
         is_crease,
@@ -164,6 +170,19 @@ def minimize_angles(
     )
     spheres = pencil_spheres(*circle_pencils(circles), angles)
     return SphereMesh.from_local(mesh, spheres), report
+
+
+def _second_stage(problem: PencilProblem, first: PencilDescent) -> PencilDescent:
+    """Descent of the paper's energy from the end of stage 1.
+
+    Where that is smooth up to rounding, the second derivatives of the paper's energy are
+    nothing but rounding, and stage 1 has the last word.
+    """
+    rounding = PRODUCT_ROUNDING * float(problem.coupling.weights.sum())
+    if first.energies[-1] > rounding:
+        return minimize_in_pencils(problem, first.angles)
+    energy = angle_energy(problem.coupling, problem.density, first.angles)
+    return PencilDescent(first.angles, (energy,), first.step, first.converged)
 
 
 def _bound(max_opening: float) -> float:
@@ -177,10 +196,14 @@ def _bound(max_opening: float) -> float:
 
 
 def _lower(
-    coupling: PencilCoupling, density: EdgeEnergy, first: FloatArray, second: FloatArray
+    coupling: PencilCoupling, parts: IntArray, one: FloatArray, other: FloatArray
 ) -> FloatArray:
-    energies = [angle_energy(coupling, density, angles) for angles in (first, second)]
-    return second if energies[0] > energies[1] else first
+    """Of each part the unknowns of lower signed energy; the others if they are equal."""
+    energies = [
+        _part_sums(coupling, parts, signed_density(edge_products(coupling, angles).value)[0])
+        for angles in (one, other)
+    ]
+    return np.where((energies[0] < energies[1])[parts], one, other)
 
 
 def _part_sums(coupling: PencilCoupling, parts: IntArray, values: FloatArray) -> FloatArray:
@@ -213,58 +236,75 @@ def _never_rougher(
     return result, taken_back
 
 
-def _lowest(
+def _lowest_of_parts(
     problem: PencilProblem, parts: IntArray, smooth: FloatArray, given: FloatArray,
     target: float, places: FloatArray,
-) -> tuple[FloatArray, PencilDescent, bool]:  # fmt: skip
-    """Of each part the lowest of several descents: unknowns, the descent of most, converged."""
+) -> tuple[FloatArray, tuple[PencilDescent, ...]]:  # fmt: skip
+    """Lowest optimum of each part by itself: unknowns (F,), and the descents of the parts."""
     coupling = problem.coupling
+    used = coupling.weights > 0
+    part_of_edge = np.where(used, parts[coupling.faces[:, 0]], -1)
+    angles, descents = np.zeros_like(smooth), list[PencilDescent]()
+    index = np.empty(len(parts), np.int64)
+    for part in np.unique(part_of_edge[used]).tolist():
+        faces, edges = np.flatnonzero(parts == part), np.flatnonzero(part_of_edge == part)
+        index[faces] = np.arange(len(faces))
+        own = PencilProblem(
+            PencilCoupling(
+                index[coupling.faces[edges]],
+                coupling.products[:, edges],
+                coupling.weights[edges],
+            ),
+            problem.density,
+            problem.bound,
+            problem.curvatures[faces],
+        )
+        found = _lowest(own, smooth[faces], given[faces], target, places[faces])
+        angles[faces] = found.angles
+        descents.append(found)
+    return angles, tuple(descents)
 
-    def _energies(angles: FloatArray) -> FloatArray:
-        value = edge_products(coupling, angles).value
-        return _part_sums(coupling, parts, problem.density(value)[0])
 
+def _lowest(
+    problem: PencilProblem, smooth: FloatArray, given: FloatArray, target: float,
+    places: FloatArray,
+) -> PencilDescent:  # fmt: skip
+    """The lowest of several descents; of equal ones that which bulges more."""
     descents = target_descents(problem, smooth, target)
-    lowest = np.min([_energies(descent.angles) for descent in descents], axis=0)
-    zero = LEAST_ENERGY * _part_sums(coupling, parts, np.ones(len(coupling.faces)))
-    if (_energies(given) < lowest * (1 - SAME_ENERGY) - zero).any():
+    lowest = min(descent.energies[-1] for descent in descents)
+    zero = LEAST_ENERGY * float(problem.coupling.weights.sum())
+    start = angle_energy(problem.coupling, problem.density, given)
+    if start < lowest * (1 - SAME_ENERGY) - zero:
         descents.append(minimize_in_pencils(problem, given))
-    best, chosen = _energies(descents[0].angles), np.zeros(len(lowest), np.int64)
-    for number, descent in enumerate(descents[1:], 1):
-        found = _energies(descent.angles)
-        slack = SAME_ENERGY * best + zero
-        bulges = [descents[k].angles for k in range(number)]
-        held = np.choose(chosen[parts], bulges) if number > 1 else bulges[0]
-        more = _bulges_more(problem, parts, descent.angles, held, places)
-        is_better = (found < best - slack) | ((found <= best + slack) & more)
-        best, chosen = np.where(is_better, found, best), np.where(is_better, number, chosen)
-    angles = np.choose(chosen[parts], [descent.angles for descent in descents])
-    used = np.unique(chosen)
-    last = descents[int(np.bincount(chosen).argmax())]
-    return angles, last, all(descents[k].converged for k in used.tolist())
+        lowest = min(lowest, descents[-1].energies[-1])
+    equal = [
+        each for each in descents if each.energies[-1] <= lowest * (1 + SAME_ENERGY) + zero
+    ]
+    best = equal[0]
+    for other in equal[1:]:
+        if _bulges_more(problem.curvatures, other.angles, best.angles, places):
+            best = other
+    return best
 
 
 def _bulges_more(
-    problem: PencilProblem, parts: IntArray, one: FloatArray, other: FloatArray,
-    places: FloatArray,
-) -> BoolArray:  # fmt: skip
-    """Whether the spheres of each part bulge more at some unknowns (F,) than at others.
+    curvatures: FloatArray, one: FloatArray, other: FloatArray, places: FloatArray
+) -> bool:
+    """Whether spheres bulge more at some unknowns (F,) than at others.
 
     By the sum of their curvatures, of the cubes of these, and last by where they bulge.
     """
-    count = int(parts.max()) + 1
-    first, second = (problem.curvatures * np.sin(angles) for angles in (one, other))
-    size = sum_by(parts, np.abs(first) + np.abs(second), count)
-    centered = places - places.mean(axis=0)
+    first, second = curvatures * np.sin(one), curvatures * np.sin(other)
+    size = float((np.abs(first) + np.abs(second)).sum())
+    centered = places - places[0]
+    centered -= centered.mean(axis=0)
     reach = float(norm(centered).max()) or 1.0
     along = centered @ np.array([1.0, 0.7, 0.4]) / reach
-    result, is_open = np.zeros(count, bool), np.ones(count, bool)
     for measure in (first - second, first**3 - second**3, along * (first - second)):
-        total = sum_by(parts, measure, count)
-        decides = is_open & (np.abs(total) > 1e3 * SAME_ENERGY * size)
-        result |= decides & (total > 0)
-        is_open &= ~decides
-    return result
+        total = float(measure.sum())
+        if abs(total) > SAME_BULGE * size:
+            return total > 0
+    return False
 
 
 def pencil_angles(sphere_mesh: SphereMesh, circles: Circles) -> FloatArray:

@@ -20,6 +20,7 @@ from ..solvers.definite_systems import (
 )
 from ..tolerances import (
     ANGLE_STEP,
+    LEAST_ENERGY,
     LINEAR_SOLVE,
     NEGATIVE_MODE,
     SAME_ENERGY,
@@ -40,7 +41,7 @@ LONGEST_STEP = 0.5
 """Radians by which no unknown moves farther in a step: the next basin is not the nearest."""
 ROUGH_SOLVE = 1e-3
 """Largest relative residual of a step; near rest the last step squared."""
-ESCAPES = (0.02, 0.05, 0.1, 0.2, 0.4)
+ESCAPES = (0.001, 0.005, 0.02, 0.05, 0.1, 0.2, 0.4)
 """Radians of the unknown that moves farthest, tried from a saddle on both sides."""
 
 
@@ -93,21 +94,21 @@ def minimize_in_pencils(problem: PencilProblem, start: FloatArray) -> PencilDesc
     angles = np.clip(start, -bound, bound)
     energies = [angle_energy(coupling, density, angles)]
     largest, escapes = LONGEST_STEP, 0
+    zero = LEAST_ENERGY * float(coupling.weights.sum())
 
     def _descent(unknowns: FloatArray, *, converged: bool) -> PencilDescent:
         return PencilDescent(unknowns, tuple(energies), largest, converged)
 
     for _ in range(MAX_NEWTON_STEPS):
         found = energy_derivatives(coupling, density, angles)
-        if energies[-1] <= found.noise:
-            return _descent(angles, converged=True)
         step, held = _newton_step(problem, pattern, angles, found, largest**2)
         before, largest = largest, float(np.abs(step).max(initial=0.0))
         moved = np.clip(angles + step, -bound, bound)
         # Steps shrink to nothing, or to what rounding makes of them.
         is_lost = -float(dot(found.gradient, step)) <= found.noise
         is_resting = largest <= ANGLE_STEP or (is_lost and largest > before / 2)
-        if is_resting and _is_minimum(problem, pattern, found, held):
+        # Below zero nothing can fall: there the second derivatives are rounding.
+        if is_resting and (energies[-1] <= zero or _is_minimum(problem, pattern, found, held)):
             return _descent(moved if largest <= before else angles, converged=True)
         if is_resting:
             escapes += 1
@@ -133,6 +134,8 @@ def _newton_step(
     gradient, bound = found.gradient, problem.bound
     held = ((angles >= bound) & (gradient < 0)) | ((angles <= -bound) & (gradient > 0))
     right = np.where(held, 0.0, -gradient)
+    if not right.any():
+        return right, held
     step = solve_if_definite(_matrix(problem, pattern, found, held), right, residual)
     if step is None:
         convex = _matrix(problem, pattern, convex_part(found), held)
@@ -196,7 +199,7 @@ def _escape(
     """A lower point along the lowest eigenvector; None if there is none."""
     _, mode = lowest_mode(_matrix(problem, pattern, found, held))
     mode = np.where(held, 0.0, mode)
-    mode /= np.abs(mode).max()
+    mode /= np.abs(mode).max(initial=0.0) or 1.0
     # Of two sides that are equally low, the one where the spheres bulge more.
     bulge = float(dot(problem.curvatures * np.cos(angles), mode))
     size = float(dot(problem.curvatures, np.abs(mode)))

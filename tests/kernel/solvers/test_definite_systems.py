@@ -15,7 +15,9 @@ from spheremesh.kernel.solvers.definite_systems import (
 )
 
 
-def on_a_grid(seed: int, rows: int, columns: int, shift: float) -> tuple[GraphMatrix, FloatArray]:
+def on_a_grid(
+    seed: int, rows: int, columns: int, shift: float
+) -> tuple[GraphMatrix, FloatArray]:
     """Random edge entries; the diagonal is theirs in sum, and more by a shift. Also dense."""
     rng = np.random.default_rng(seed)
     place = rng.permutation(rows * columns).reshape(rows, columns)
