@@ -56,7 +56,7 @@ def panel_graph(options: PanelOptions) -> Graph:
     if options.moulds is not None:
         count = graph.param("moulds", options.moulds, min=1)
         moulds = graph.add(
-            "cluster_radii", "moulds", sphere_mesh=spheres, k=count, **moves,
+            "cluster_radii", "moulds", sphere_mesh=spheres, k=count, crease=crease, **moves,
             **_support_weights(options),
         )  # fmt: skip
         spheres, labels, clusters = moulds.sphere_mesh, moulds.labels, moulds.report

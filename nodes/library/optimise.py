@@ -177,7 +177,8 @@ def minimize_angles(
     if taken_back:
         warn(
             f"{taken_back} panels are flatter than those of the least energy, which would be "
-            "rougher than flat ones in the mean: smaller faces would gain more"
+            "rougher than flat ones in the mean: the surface is nearly minimal, or bends one "
+            "way only; shorter faces across the bend gain more"
         )
     if target_angle == 0:
         warn_of_losses(result, sphere_mesh.mesh, _counted(edge_weights, run.is_crease))
