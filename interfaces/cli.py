@@ -2,12 +2,14 @@
 
 The docstrings of the commands are their help: click adds the options.
 
-Exit codes: 0 done, 1 a library of the system is missing, 2 usage, 3 bad input, 4 not converged,
-5 finished but a quality gate failed. An error is one line on standard error.
+Exit codes: 0 done, 1 a library of the system is missing or a node is at fault, 2 usage, 3 bad
+input, 4 not converged, 5 finished but a quality gate failed. An error is one line on standard
+error.
 """
 
 import json
 import sys
+import traceback
 import warnings
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
@@ -16,15 +18,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from .option_values import joined_option, plain_value, rows_option
-from .panel_output import has_errors, print_report
+from .option_values import SUPPORTS, joined_option, plain_value, rows_option, spell_support
 
 if TYPE_CHECKING:
     from ..fabrication.output_folder import OutputFolder
     from ..nodes.graphs.graph import Graph
-    from .panel_job import Progress
+    from .panel.job import Progress
 
-MISSING_LIBRARY: Final = 1
+FAULT: Final = 1
 BAD_INPUT: Final = 3
 NOT_CONVERGED: Final = 4
 GATE_FAILED: Final = 5
@@ -38,7 +39,15 @@ def main() -> None:
     """Turn design surfaces into spherical panels that can be built."""
 
 
-@main.command()
+class _PanelCommand(click.Command):
+    """A command whose option --support may stand without a word."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Give --support its word before the arguments are told apart."""
+        return super().parse_args(ctx, spell_support(args))
+
+
+@main.command(cls=_PanelCommand)
 @click.argument("mesh", required=False, type=click.Path(path_type=Path))
 @click.option("-o", "--out", required=True, type=click.Path(path_type=Path), help="Folder.")
 @click.option("--moulds", type=int, help="Number of mould radii; by default one per panel.")
@@ -88,8 +97,8 @@ def main() -> None:
 @click.option(
     "--edges",
     type=click.Choice(["bisector", "intersection"]),
-    help="Cut panels by planes that bisect the faces, or where the spheres meet (the default "
-    "with --support).",
+    help="Cut panels by planes that bisect the faces, or where the spheres meet; with "
+    "--support the beams say where.",
 )
 @click.option(
     "--tolerance",
@@ -109,7 +118,14 @@ def main() -> None:
     show_default=True,
     help="Edges at which flat faces turn by more degrees stay sharp; 180 for none.",
 )
-@click.option("--support", is_flag=True, help="Nodes without torsion; beams under the edges.")
+@click.option(
+    "--support",
+    type=click.Choice(SUPPORTS),
+    metavar="[axis|exact|bisector]",
+    help="Beams under the edges: on node axes, vertices and spheres stay (axis, the default); "
+    "on exact nodes, vertices move (exact); upright with node cylinders, for any mesh "
+    "(bisector).",
+)
 @click.option("--depth", type=float, help="Depth of the beams; a quarter of the mean edge.")
 @click.option(
     "--beam-thickness", type=float, help="Thickness of the beams; a tenth of the depth."
@@ -119,6 +135,33 @@ def main() -> None:
     type=click.FloatRange(min=0),
     default=0.0,
     help="Radius of cylinders at the nodes, before which beams end square; 0 for mitres.",
+)
+@click.option(
+    "--bearing",
+    type=click.FloatRange(min=0),
+    default=0.0,
+    help="Clear distance from panel to beam, in model units; panels rest on beams at 0.",
+)
+@click.option(
+    "--allow-step",
+    metavar="MM",
+    type=click.FloatRange(min=0),
+    default=5.0,
+    help="Highest step between neighbours, in millimetres; 5 by default.",
+)
+@click.option(
+    "--allow-gap",
+    metavar="MM",
+    type=click.FloatRange(min=0),
+    default=5.0,
+    help="Widest gap in a joint and hole at a node, in millimetres; 5 by default.",
+)
+@click.option(
+    "--allow-torsion",
+    metavar="DEG",
+    type=click.FloatRange(0, 180),
+    default=0.1,
+    help="Largest angle between a beam and a node axis, in degrees; 0.1 by default.",
 )
 @click.option("--overwrite", is_flag=True, help="Replace files that spheremesh did not write.")
 @click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
@@ -137,16 +180,20 @@ def panel(  # numpydoc ignore=PR01
     demonstration roof is panelled. Files in the folder are replaced only if spheremesh wrote
     them and nobody changed them since.
     """
-    from .panel_graph import panel_graph
-    from .panel_job import run_job
-    from .panel_options import PanelOptions, model_units
+    from .panel import PanelOptions, feasible_panel_graph, model_units, run_job
+    from .panel.output import has_errors, print_report
 
     if options["rows"] and options["edge_length"]:
         raise click.UsageError("--rows and --edge-length exclude each other; drop one")
+    if options["edges"] and options["support"]:
+        raise click.UsageError(
+            "--edges and --support exclude each other: panels are cut where their beams stand; "
+            "drop one"
+        )
     _warn_of_no_beams(options)
     with _errors(), _progress() as progress:
         options["units"], is_assumed = model_units(PanelOptions(**options))
-        graph = panel_graph(PanelOptions(**options))
+        graph = feasible_panel_graph(PanelOptions(**options))
         report, files = run_job(graph, out, progress, overwrite=overwrite)
     print_report(report, out, files, as_json=as_json, is_assumed=is_assumed)
     if strict and has_errors(report):
@@ -155,7 +202,8 @@ def panel(  # numpydoc ignore=PR01
 
 def _warn_of_no_beams(options: Mapping[str, Any]) -> None:
     """Options of beams say nothing where no beams are asked for."""
-    names = [name for name in ("depth", "beam_thickness", "node_radius") if options[name]]
+    of_beams = ("depth", "beam_thickness", "node_radius", "bearing")
+    names = [name for name in of_beams if options[name]]
     if names and not options["support"]:
         given = ", ".join(f"--{name.replace('_', '-')}" for name in names)
         click.echo(f"warning: without --support there are no beams: {given} unused", err=True)
@@ -183,7 +231,8 @@ def run(  # numpydoc ignore=PR01
     other files are replaced only if spheremesh wrote them and nobody changed them since.
     """
     from ..fabrication.output_folder import output_folder
-    from .panel_job import is_panel_job, run_job
+    from .panel import is_panel_job, run_job
+    from .panel.output import has_errors, print_report
 
     with _errors(), _progress() as progress:
         from ..nodes.graphs.graph import Graph
@@ -270,17 +319,29 @@ def _errors() -> Generator[None]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             yield
+    except BrokenPipeError:
+        raise  # whoever reads our output has seen enough; click ends in silence
     except (SpheremeshError, GraphError, NodeError, OSError) as error:
         cause = error.cause if isinstance(error, NodeError) else error
-        # An OSError is the disk's or the system's: full, too many files, a broken pipe.
-        if not isinstance(cause, SpheremeshError | GraphError | OSError):
-            raise
         text = error.reason if isinstance(error, NodeError) else str(error)
+        code = NOT_CONVERGED if isinstance(cause, ConvergenceError) else BAD_INPUT
+        if isinstance(cause, MissingLibraryError):
+            code = FAULT
+        # An OSError is the disk's or the system's: full, too many files.
+        elif not isinstance(cause, SpheremeshError | GraphError | OSError):
+            text, code = f"{error} ({_origin(cause)}): a fault of the node, report it", FAULT
         message = " ".join(text.split())
         click.echo(f"spheremesh: {message}", err=True)
-        if isinstance(cause, MissingLibraryError):
-            sys.exit(MISSING_LIBRARY)
-        sys.exit(NOT_CONVERGED if isinstance(cause, ConvergenceError) else BAD_INPUT)
+        sys.exit(code)
+
+
+def _origin(error: BaseException | None) -> str:
+    """Kind of an error that no input should cause, and the line that raised it."""
+    where = (
+        traceback.extract_tb(error.__traceback__)[-1] if error and error.__traceback__ else None
+    )
+    at = f", {Path(where.filename).name} line {where.lineno}" if where else ""
+    return type(error).__name__ + at
 
 
 @contextmanager

@@ -3,6 +3,7 @@
 From the roof down; a room uses those below it.
 
 analysis       What is measured of a finished sphere mesh.
+clearances     How far parts are apart, and how deep they overlap.
 remesh         Quadrilateral sphere meshes from congruences of spheres (Sec. 6.4).
 beams          Beams: annuli of a thickness, cut at their nodes.
 hexagons       Hexagonal sphere meshes, dual to triangulations (Sec. 7).

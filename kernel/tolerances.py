@@ -141,6 +141,8 @@ ENCLOSING: Final = 1e-12
 
 NODE_TORSION: Final = 1.7453292519943296e-3
 """Torsion (0.1 degrees) beyond which a node is not called free of torsion."""
+NODE_LINE: Final = 1e-2
+"""A node whose arc planes miss a common line by more, in mean edges, is not valid."""
 AXIS_LEAN: Final = 1.0471975511965976
 """A node axis that leans more (60 degrees) from the normal carries no beams."""
 MIRROR_REACH: Final = 1e5
@@ -149,6 +151,10 @@ MIRROR_LEAST: Final = 1e-6
 """Mirror points nearer than this, in mean edges, do not tell the direction of an axis."""
 BEAM_TILT: Final = 1.0471975511965976
 """A beam whose plane tilts more (60 degrees) from the bisecting plane does not stand."""
+UPRIGHT_BEAMS: Final = 0.2617993877991494
+"""Beams where spheres meet are upright if most tilt less (15 degrees)."""
+AXIS_STEP: Final = 1e-12
+"""Axes are at rest when none turns by more (radians)."""
 RIM_LEAN: Final = 0.3490658503988659
 """Axes of the boundary may lean by this (20 degrees) to make the beams there flat."""
 RIM_CLOSED: Final = 1e-7
@@ -227,8 +233,6 @@ CLOSED: Final = 1e-6
 """A surface whose ends lie this close, relative to its size, is closed there."""
 ON_EDGE: Final = 1e-12
 """Points of a surface this close to an edge, relative to the surface's size, lie on it."""
-OVERLAP: Final = 1e-6
-"""Beams that run into each other by less, in thicknesses, touch (rounding of mitres)."""
 SINGLE_IS_ENOUGH: Final = 0.01
 """Share of the error of a triangulation that rounding its points to float32 may add."""
 
@@ -242,3 +246,7 @@ MOSTLY_EVEN: Final = 0.95
 """Share of edges of nearly the length asked for below which remeshing warns."""
 TORSION_FREE: Final = 1e-8
 """Fourth singular value of the spheres around a node, relative to the first, that is none."""
+ROUGHER: Final = 1e-3
+"""Spheres whose mean angle is larger than that of planes by more, relatively, are rougher."""
+WIDER_GAP: Final = 1e-3
+"""Gaps that are wider by more than this share of the mean edge are worth a warning."""

@@ -5,6 +5,7 @@ checks        What keeps a panel from being made: crossing boundaries, lost corn
 congruent     Identical panels: those that a rigid motion carries onto each other.
 cutting       Cutting panels out of the spheres of a mesh, by one plane per edge.
 facts         What is to be known of every panel: for schedules, drawings, files and audits.
+joints        Joints between panels: steps, gaps and holes.
 mould_blanks  Mould blanks: the smallest cap that holds each panel, and how many of which
               size.
 mould_caps    Moulds as surfaces: the cap of each, and where the panels lie on it.

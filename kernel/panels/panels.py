@@ -11,6 +11,8 @@ from typing import Literal
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, unit
+from ..meshes.creases import crease_edges
+from ..meshes.mesh import Mesh
 from ..parts.records import PER_CORNER
 from ..spheres.arcs import Arcs, patch_areas, sphere_arcs
 from ..spheres.incidence import meet_lines
@@ -153,6 +155,13 @@ def corner_points(
     step, exists = meet_lines(near, foot, direction)
     points = references + foot + step[:, None] * direction
     return np.where(exists[:, None], points, references), exists
+
+
+def mark_creases(panels: Panels, mesh: Mesh, crease: float) -> Panels:
+    """Mark the edges at which the planes of faces turn by more than an angle, in radians."""
+    beyond = np.zeros(1, bool)
+    marks = np.concatenate([crease_edges(mesh, crease), beyond])
+    return replace(panels, is_crease=marks[panels.edge_ids])
 
 
 def opposite_corners(panels: Panels) -> IntArray:

@@ -267,12 +267,21 @@ def _call(step: Step, arguments: Mapping[str, Any]) -> Value:
         # What comes by wire was checked as a type; only small values are looked at again.
         if value is None or isinstance(value, bool | int | float | str):
             check_value(port, value, f"{step.name}.{name}")
-        inputs[name] = convert(port.type, value)
+        inputs[name] = _converted(port, value, f"{step.name}.{name}")
     value = step.node.function(**inputs)
     if step.node.has_fields and not isinstance(value, step.node.result_type):
         kind = step.node.result_type.__name__
         raise TypeError(f"node {step.node.name} must return {kind}, not {type(value).__name__}")
     return value
+
+
+def _converted(port: Port, value: Value, where: str) -> Value:
+    try:
+        return convert(port.type, value)
+    except (TypeError, ValueError, OverflowError):
+        # A list into which wires were put may hold what the input does not accept.
+        check_value(port, value, where)
+        raise
 
 
 def _call_each(step: Step, arguments: Mapping[str, Any]) -> Value:

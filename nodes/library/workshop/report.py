@@ -1,7 +1,8 @@
 """The report of a panelling."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -11,8 +12,11 @@ from ....kernel.meshes.mesh import mean_edge_length
 from ....kernel.reports import Report
 from ....kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ....kernel.support.annulus_construction import AnnuliReport
+from ....kernel.support.beam_supports import SupportReport
+from ....kernel.support.feasibility import FeasibilityReport
 from ....kernel.support.node_axes import NodesReport
-from ...graphs.node import node
+from ....kernel.tolerances import ROUGHER, WIDER_GAP
+from ...graphs.node import node, warn
 from ...graphs.ports import Units
 from ..cluster import BlanksReport, MouldsReport
 from ..fabricate import CutReport
@@ -42,12 +46,16 @@ class PanellingReport(Report):
     moulds : dict
         ``count``, ``radii``, ``panels_per_mould`` and ``blanks``.
     support : dict or None
-        ``torsion_deg_max`` of inner nodes, ``beam_tilt_deg_p95`` of inner edges,
-        ``beam_tilt_deg_max`` of annuli made, and ``landed``.
+        ``kind`` and the one ``asked`` for, ``torsion_deg_max`` of nodes,
+        ``beam_tilt_deg_p95`` of inner edges, ``beam_tilt_deg_max`` of annuli made,
+        ``landed``, and ``feasibility`` as in `FeasibilityReport`; of beams in the walls of
+        panels also ``gap``, ``lean_deg_max`` and the least ``node_radius``.
     panels, beams : dict
         ``written`` and ``rejected``.
     audit : dict or None
         As in `AuditReport`.
+    buildable : bool
+        Whether no panel or beam is rejected and the audit, if there is one, has no errors.
     """
 
     input: dict[str, Any]
@@ -61,9 +69,10 @@ class PanellingReport(Report):
     panels: dict[str, Any]
     beams: dict[str, Any]
     audit: dict[str, Any] | None
+    buildable: bool
 
 
-@node
+@node(version="2")
 def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     sphere_mesh: SphereMesh,
     optimum: OptimumReport,
@@ -76,6 +85,9 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     beams: BeamsReport | None = None,
     landing: LandingReport | None = None,
     units: Units = "m",
+    feasibility: FeasibilityReport | None = None,
+    support: Literal["axis", "exact", "bisector"] | None = None,
+    plain: CutReport | None = None,
 ) -> PanellingReport:
     """Gather the reports of a panelling into one.
 
@@ -96,12 +108,18 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     nodes : NodesReport, optional
         Report of `support_structure`.
     annuli : AnnuliReport, optional
-        Report of `annulus_support`.
+        Report of `annulus_support`, `axis_support` or `bisector_support`.
     beams : BeamsReport, optional
         Report of `beams`.
     landing : LandingReport, optional
         Report of `land_nodes`.
     units : str
+    feasibility : FeasibilityReport, optional
+        Result of `support_feasibility`.
+    support : {"axis", "exact", "bisector"}, optional
+        The kind of support that was asked for.
+    plain : CutReport, optional
+        Report of panels as they would be without moulds and support, to say what these cost.
 
     Returns
     -------
@@ -125,6 +143,14 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         angles["unclustered"] = optimum["angles_deg"]["spherical"]
         found = {name: moulds[name] for name in found}
     miss = float(vertex_error(sphere_mesh).max())
+    _warn_of_losses(angles, cut, plain)
+    made_beams = {
+        "written": beams["written"] if beams else 0,
+        "rejected": [
+            entry for found in (annuli, beams) if found for entry in found["rejected"]
+        ],
+    }
+    is_whole = not (cut["rejected"] or made_beams["rejected"])
     return PanellingReport(
         input={
             "vertices": mesh.n_vertices,
@@ -139,24 +165,11 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         edge_gap=dict(cut["edge_gap"]),
         thickness=dict(cut["thickness"]),
         moulds=found | {"blanks": list(blanks["blanks"]) if blanks else []},
-        support=None
-        if nodes is None
-        else {
-            "torsion_deg_max": nodes["torsion_deg"]["max"],
-            "beam_tilt_deg_p95": nodes["beam_tilt_deg"]["p95"],
-            "beam_tilt_deg_max": (annuli["tilt_deg"] if annuli else nodes["beam_tilt_deg"])[
-                "max"
-            ],
-            "landed": bool(landing and landing["landed"]),
-        },
+        support=_support(nodes, annuli, landing, feasibility, support),
         panels={"written": cut["written"], "rejected": list(cut["rejected"])},
-        beams={
-            "written": beams["written"] if beams else 0,
-            "rejected": [
-                entry for found in (annuli, beams) if found for entry in found["rejected"]
-            ],
-        },
+        beams=made_beams,
         audit=dict(audit) if audit is not None else None,
+        buildable=is_whole and not (audit and audit["errors"]),
     )
 
 
@@ -164,10 +177,92 @@ def _built(
     sphere_mesh: SphereMesh, optimum: OptimumReport
 ) -> tuple[dict[str, dict[str, float]], dict[str, Any]]:
     """Angles and creases of an optimum, as they are built."""
+    creases: dict[str, Any] = optimum.get("creases") or {"angle_deg": 180.0, "edges": []}
     is_crease = np.zeros(len(sphere_mesh.mesh.topology.edge_corners), bool)
-    is_crease[optimum["creases"]["edges"]] = True
+    is_crease[creases["edges"]] = True
     sharp = angle_summary(sphere_mesh, is_crease)
     return (
         {**optimum["angles_deg"], "spherical": angle_summary(sphere_mesh, ~is_crease)},
-        {**optimum["creases"], "mean_deg": sharp["mean"], "max_deg": sharp["max"]},
+        {
+            **creases,
+            "count": len(creases["edges"]),
+            "mean_deg": sharp["mean"],
+            "max_deg": sharp["max"],
+        },
     )
+
+
+def _warn_of_losses(
+    angles: Mapping[str, Mapping[str, float]], cut: CutReport, plain: CutReport | None
+) -> None:
+    """Say where flat panels, or panels without moulds and support, would be better."""
+    spherical, planar = angles["spherical"]["mean"], angles["planar"]["mean"]
+    if spherical > planar * (1 + ROUGHER):
+        warn(
+            f"rougher than flat panels: neighbours meet at {spherical:.3g} degrees in the "
+            f"mean, flat ones at {planar:.3g}; more moulds, or none, may be smoother"
+        )
+    if plain is None:
+        return
+    if cut["written"] < plain["written"]:
+        warn(
+            f"{cut['written']} panels instead of {plain['written']} without moulds and "
+            "support: more moulds, or --support bisector, may keep them"
+        )
+    wide, usual = cut["edge_gap"]["relative_to_edge"], plain["edge_gap"]["relative_to_edge"]
+    if wide > usual + WIDER_GAP:
+        warn(
+            f"gaps between edges are up to {100 * wide:.2g} % of an edge, and without moulds "
+            f"and support {100 * usual:.2g} %: more moulds, or --support exact, may close them"
+        )
+
+
+def _support(
+    nodes: NodesReport | None,
+    annuli: AnnuliReport | None,
+    landing: LandingReport | None,
+    feasibility: FeasibilityReport | None,
+    asked: str | None,
+) -> dict[str, Any] | None:
+    """What a user must know of the support; None if there is none."""
+    common = {
+        "landed": bool(landing and landing["landed"]),
+        "feasibility": dict(feasibility) if feasibility else None,
+    }
+    if isinstance(annuli, SupportReport):
+        _warn_of_support(annuli, feasibility, asked)
+        return {
+            "kind": annuli.kind,
+            "asked": asked or annuli.kind,
+            "torsion_deg_max": annuli.torsion_deg["max"],
+            "beam_tilt_deg_p95": annuli.inner_tilt_deg["p95"],
+            "beam_tilt_deg_max": annuli.tilt_deg["max"],
+            "gap": annuli.gap,
+            "lean_deg_max": annuli.lean_deg["max"],
+            "node_radius": annuli.node_radius,
+            **common,
+        }
+    if nodes is None:
+        return None
+    return {
+        "kind": asked or "exact",
+        "asked": asked or "exact",
+        "torsion_deg_max": nodes["torsion_deg"]["max"],
+        "beam_tilt_deg_p95": nodes["beam_tilt_deg"]["p95"],
+        "beam_tilt_deg_max": (annuli["tilt_deg"] if annuli else nodes["beam_tilt_deg"])["max"],
+        **common,
+    }
+
+
+def _warn_of_support(
+    annuli: SupportReport, feasibility: FeasibilityReport | None, asked: str | None
+) -> None:
+    """Say what became of beams on node axes where they were asked for and are not good."""
+    if feasibility is None or asked != "axis" or feasibility.verdict == "feasible":
+        return
+    instead = (
+        "upright beams with node cylinders instead (--support bisector)"
+        if annuli.kind == "bisector"
+        else "remesh, or take upright beams (--support bisector)"
+    )
+    warn(f"support {feasibility.verdict}: {feasibility.reason}: {instead}")

@@ -11,6 +11,7 @@ from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.creases import crease_edges
 from spheremesh.kernel.optimization.angle_minimization import minimize_angles, pencil_angles
 from spheremesh.kernel.panels.cutting import cut_panels, edge_gaps
+from spheremesh.kernel.panels.panels import mark_creases
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.sphere_meshes.sphere_mesh import intersection_angles
 from spheremesh.kernel.spheres.circles import face_circles
@@ -97,7 +98,8 @@ def test_panels_meet_at_mitred_creases() -> None:
     """Their walls lie in the plane that bisects the faces, and flat panels leave no gap."""
     mesh = barrel(2.0)
     found, report = minimize_angles(fit_spheres(mesh), crease=CREASE)
-    panels, rejected = cut_panels(found, thickness=0.05, crease=CREASE)
+    cut, rejected = cut_panels(found, thickness=0.05)
+    panels = mark_creases(cut, mesh, CREASE)
     assert not rejected
     assert panels.is_crease.sum() == 2 * report.is_crease.sum()
     edges = panels.edge_ids[panels.is_crease]

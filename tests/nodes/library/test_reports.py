@@ -38,6 +38,8 @@ FITTING = {
     "landing": ("land_nodes",),
     "annuli_report": ("annulus_support",),
     "beams_report": ("beams", "drilling_marks"),  # older graphs wire either
+    "feasibility": (),
+    "plain": ("panels",),
 }
 PLACES = [
     (node, name)
@@ -67,7 +69,7 @@ def _wire(graph: sm.Graph, target: str) -> object:
 
 def test_every_input_that_is_a_report_is_tried() -> None:
     assert {name for _, name in PLACES} == set(FITTING)
-    assert len(PLACES) == 3 + 9
+    assert len(PLACES) == 3 + 11
 
 
 @pytest.mark.parametrize(("node", "name"), PLACES)

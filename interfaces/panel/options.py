@@ -4,8 +4,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from ..fabrication.mesh_files.reader import read_content
-from ..kernel.errors import InputError
+from ...fabrication.mesh_files.reader import read_content
+from ...kernel.errors import InputError
+
+SupportKind = Literal["axis", "exact", "bisector"]
 
 
 @dataclass(frozen=True)
@@ -35,8 +37,7 @@ class PanelOptions:
     offset : {"constant", "power"}
         Whether the thickness is the same everywhere, or the difference of squared radii.
     edges : {"bisector", "intersection"} or None
-        How panels are cut; by default where the spheres meet if there is a support, else
-        upright.
+        How panels are cut without a support; upright by default. With one, its beams say.
     tolerance : float or None
         How far vertices may move, in mean edges; at 0 the faces have to lie on circles, and by
         default they need not.
@@ -44,13 +45,19 @@ class PanelOptions:
         Angle at which neighbours shall meet, in degrees.
     crease : float
         Edges at which flat faces turn by more, in degrees, stay sharp; 180 for none.
-    support : bool
-        Whether to ask for nodes without torsion, and to write beams.
+    support : {"axis", "exact", "bisector"} or None
+        Which beams to write: on node axes, on exact nodes, or upright; None for none.
     depth, beam_thickness : float or None
         Of the beams, in model units; by default a quarter of the mean edge, and a tenth of the
         depth.
     node_radius : float
         Radius of the node cylinders, in model units; 0 for mitred beams.
+    bearing : float
+        Clear distance from panel to beam, in model units.
+    allow_step, allow_gap : float
+        What the workshop allows between neighbours, in millimetres.
+    allow_torsion : float
+        What it allows between beams and node axes, in degrees.
     """
 
     mesh: Path | None = None
@@ -68,10 +75,14 @@ class PanelOptions:
     tolerance: float | None = None
     target_angle: float = 0.0
     crease: float = 40.0
-    support: bool = False
+    support: SupportKind | None = None
     depth: float | None = None
     beam_thickness: float | None = None
     node_radius: float = 0.0
+    bearing: float = 0.0
+    allow_step: float = 5.0
+    allow_gap: float = 5.0
+    allow_torsion: float = 0.1
 
 
 def model_units(options: PanelOptions) -> tuple[str, bool]:
