@@ -112,6 +112,13 @@ class _PanelCommand(click.Command):
     help="Angle at which neighbours shall meet, in degrees.",
 )
 @click.option(
+    "--crease",
+    type=click.FloatRange(0, 180),
+    default=40.0,
+    show_default=True,
+    help="Edges at which flat faces turn by more degrees stay sharp; 180 for none.",
+)
+@click.option(
     "--support",
     type=click.Choice(SUPPORTS),
     metavar="[axis|exact|bisector]",

@@ -73,22 +73,22 @@ def panel_graph(
     moves: dict[str, Param] = {}
     if options.tolerance:
         moves = {"tolerance": graph.param("tolerance", options.tolerance, min=0)}
-    if keeps_spheres:
-        start = graph.add("fit_spheres", "start", mesh=mesh, ring=0)
-        optimum = graph.add("keep_spheres", "optimum", sphere_mesh=start)
-    else:
-        optimum = _optimum(graph, options, mesh, moves)
+    crease = graph.param("crease", options.crease, min=0, max=180)
+    optimum = _kept_spheres(graph, mesh, crease) if keeps_spheres else None
+    optimum = optimum or _optimum(graph, options, mesh, moves, crease)
     design = spheres = optimum.sphere_mesh
     labels, clusters, blanks = None, None, None
     if options.moulds is not None:
         count = graph.param("moulds", options.moulds, min=1)
-        moulds = graph.add("cluster_radii", "moulds", sphere_mesh=spheres, k=count, **moves)
+        moulds = graph.add(
+            "cluster_radii", "moulds", sphere_mesh=spheres, k=count, crease=crease, **moves
+        )
         spheres, labels, clusters = moulds.sphere_mesh, moulds.labels, moulds.report
     kind = beams or options.support
     annuli = add_annuli(graph, options, kind, spheres, design) if kind else None
     layers: dict[str, Any] = {
         "thickness": thickness, "joint_gap": joint_gap, "side": options.side,
-        "layer": _LAYERS[options.offset],
+        "layer": _LAYERS[options.offset], "crease": crease,
     }  # fmt: skip
     panels = graph.add(
         "panels", "panels", sphere_mesh=spheres, labels=labels, **layers,
@@ -146,12 +146,21 @@ def _mesh(graph: Graph, options: PanelOptions) -> Step | Wire:
     return graph.add("read_mesh", "mesh", path=path, layer=options.layer, **rows)
 
 
+def _kept_spheres(graph: Graph, mesh: Step | Wire, crease: Param) -> Step:
+    """The spheres that the mesh has already, in place of an optimum."""
+    start = graph.add("fit_spheres", "start", mesh=mesh, ring=0)
+    return graph.add("keep_spheres", "optimum", sphere_mesh=start, crease=crease)
+
+
 def _optimum(
-    graph: Graph, options: PanelOptions, mesh: Step | Wire, moves: Mapping[str, Param]
-) -> Step:
+    graph: Graph, options: PanelOptions, mesh: Step | Wire, moves: Mapping[str, Param],
+    crease: Param,
+) -> Step:  # fmt: skip
     """The spheres: of smallest angles alone, or of more than that."""
     start = graph.add("fit_spheres", "start", mesh=mesh)
-    target = {"target_angle": options.target_angle} if options.target_angle else {}
+    target: dict[str, Any] = {"crease": crease}
+    if options.target_angle:
+        target["target_angle"] = options.target_angle
     if not moves:
         allowed = {} if options.tolerance is None else {"max_miss": options.tolerance}
         return graph.add("minimize_angles", "optimum", sphere_mesh=start, **target, **allowed)
