@@ -85,15 +85,15 @@ def panel_graph(
         )
         spheres, labels, clusters = moulds.sphere_mesh, moulds.labels, moulds.report
     kind = beams or options.support
-    annuli = add_annuli(graph, options, kind, spheres, design) if kind else None
     layers: dict[str, Any] = {
         "thickness": thickness, "joint_gap": joint_gap, "side": options.side,
         "layer": _LAYERS[options.offset], "crease": crease,
     }  # fmt: skip
+    annuli = add_annuli(graph, options, kind, spheres, design, layers) if kind else None
+    cut = annuli.cut if annuli else {"edges": options.edges or "bisector"}
     panels = graph.add(
-        "panels", "panels", sphere_mesh=spheres, labels=labels, **layers,
-        **(annuli.cut if annuli else {"edges": options.edges or "bisector"}),
-    )  # fmt: skip
+        "panels", "panels", sphere_mesh=spheres, labels=labels, **{**layers, **cut}
+    )
     support = add_beams(graph, options, annuli, panels.panels) if annuli else None
     plain: dict[str, Wire] = {}
     if support or spheres is not design:

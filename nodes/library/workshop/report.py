@@ -261,7 +261,8 @@ def _warn_of_support(
     if feasibility is None or asked != "axis" or feasibility.verdict == "feasible":
         return
     instead = (
-        "upright beams with node cylinders instead (--support bisector)"
+        "upright beams with node cylinders instead (--support bisector); for axes in common "
+        "remesh to quadrilaterals or hexagons"
         if annuli.kind == "bisector"
         else "remesh, or take upright beams (--support bisector)"
     )
