@@ -74,8 +74,12 @@ def panel_graph(
     if options.tolerance:
         moves = {"tolerance": graph.param("tolerance", options.tolerance, min=0)}
     crease = graph.param("crease", options.crease, min=0, max=180)
-    optimum = _kept_spheres(graph, mesh, crease) if keeps_spheres else None
-    optimum = optimum or _optimum(graph, options, mesh, moves, crease)
+    if keeps_spheres:
+        optimum = _kept_spheres(graph, mesh, crease)
+    elif options.support == "exact":
+        optimum = _exact(graph, options, mesh)
+    else:
+        optimum = _optimum(graph, options, mesh, moves, crease)
     design = spheres = optimum.sphere_mesh
     labels, clusters, blanks = None, None, None
     if options.moulds is not None:
@@ -150,6 +154,17 @@ def _kept_spheres(graph: Graph, mesh: Step | Wire, crease: Param) -> Step:
     """The spheres that the mesh has already, in place of an optimum."""
     start = graph.add("fit_spheres", "start", mesh=mesh, ring=0)
     return graph.add("keep_spheres", "optimum", sphere_mesh=start, crease=crease)
+
+
+def _exact(graph: Graph, options: PanelOptions, mesh: Step | Wire) -> Step:
+    """The spheres of an exact support; for one mould with the same radius from the start."""
+    bounds = {
+        "max_height": graph.param("max_height", options.max_height, min=0),
+        "max_slide": graph.param("max_slide", options.max_slide, min=0),
+    }
+    return graph.add(
+        "exact_support", "optimum", mesh=mesh, one_radius=options.moulds == 1, **bounds
+    )
 
 
 def _optimum(

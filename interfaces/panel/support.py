@@ -92,7 +92,9 @@ def add_annuli(
         )  # fmt: skip
         cut: dict[str, Any] = {"edges": "bisector", "joint_gap": joint}
     else:
-        if spheres is not design:
+        if kind == "exact":
+            depth["axes"] = graph.add("common_axes", "axes", sphere_mesh=design)
+        elif spheres is not design:
             # Moulds change the spheres: where those before have exact nodes, their axes count.
             axes = graph.add("node_axes", "axes", sphere_mesh=design)
             depth["axes"] = axes
