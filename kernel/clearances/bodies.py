@@ -8,6 +8,7 @@ unions of such bodies.
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
@@ -148,7 +149,10 @@ def join_bodies(groups: Iterable[Bodies]) -> Bodies:
     return Bodies(*(np.concatenate([group[name] for group in listed]) for name in listed[0]))
 
 
-_BEAM_EDGES = np.array([[0, 12, 6], [3, 13, 9], [2, 14, 8], [5, 15, 11]])
+HALF_ARC: Final = 0.35
+"""Half of an arc lies over its chord by no more than this share of what the whole does."""
+
+_BEAM_EDGES: Final = np.array([[0, 12, 6], [3, 13, 9], [2, 14, 8], [5, 15, 11]])
 """Points of the four long edges: corners by end, face and level, then the middles."""
 
 
@@ -180,11 +184,13 @@ def beam_bodies(beams: Beams) -> Bodies:
     table = np.concatenate([np.stack(rows, 1), ends.reshape(count, 4, 5)], 1)
     points = beams.corners.reshape(count, 12, 3)
     points = np.concatenate([points, _beam_middles(beams)], 1)
-    bulges = norm(points[:, -6:] - points[:, -6:].mean(axis=1, keepdims=True)).max(axis=1)
+    starts, middles, ends = np.moveaxis(points[:, _BEAM_EDGES], 2, 0)
+    sagittas = norm(middles - (starts + ends) / 2).max(axis=1)
     whole = Bodies(
         np.arange(count), annuli.origins, table,
         np.stack(axes + [0 * across] * 4, 1), points,
-        np.broadcast_to(_BEAM_EDGES, (count, *_BEAM_EDGES.shape)).copy(), _boxes(points, annuli.origins, 1e-3 * bulges),
+        np.broadcast_to(_BEAM_EDGES, (count, *_BEAM_EDGES.shape)),
+        _boxes(points, annuli.origins, HALF_ARC * sagittas),
     )  # fmt: skip
     return _split_beams(beams, whole)
 

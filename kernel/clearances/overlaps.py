@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm
-from .bodies import Bodies, common_frame, face_slopes, face_values, select_bodies
+from .bodies import HALF_ARC, Bodies, common_frame, face_slopes, face_values, select_bodies
 from .interior_point import minimize_within
 
 _BATCH = 1 << 13
@@ -60,7 +60,7 @@ def _reach(normals: FloatArray, points: FloatArray, edges: IntArray) -> FloatArr
     """How far bodies reach along normals (n, m, 3): no less than they do.
 
     The points of the bodies, and their edges: a half of an arc lies over its chord by no more
-    than 0.35 of what the whole does, most in its middle and none at its ends.
+    than `HALF_ARC` of what the whole does, most in its middle and none at its ends.
     """
     values = np.einsum("nmi,nki->nmk", normals, points)
     result = values.max(axis=2)
@@ -75,7 +75,7 @@ def _reach(normals: FloatArray, points: FloatArray, edges: IntArray) -> FloatArr
         values[row[..., None], columns, edges[:, None, :, k]] for k in range(3)
     )
     lean = np.divide(after - before, along**2, out=np.zeros_like(before), where=along > 0)
-    bulge = 0.35 * (
+    bulge = HALF_ARC * (
         np.abs(middle - (before + after) / 2) + 2 * dot(rises, rises)[:, None] * np.abs(lean)
     )
     for end in (before, after):
@@ -179,7 +179,7 @@ def _nearest_starts(points: FloatArray, others: FloatArray, count: int) -> list[
     result: list[FloatArray] = []
     for _ in range(count):
         best = flat.argmin(axis=1)
-        i, j = np.unravel_index(best, apart.shape[1:])
+        i, j = np.divmod(best, apart.shape[2])
         pair = np.stack([points[row, i], others[row, j]], 1)
         result.append(pair)
         near = norm(points - pair[:, :1]) < 0.3

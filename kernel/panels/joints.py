@@ -57,8 +57,8 @@ def _along_joints(
     starts = np.stack([panels.corners[first], panels.corners[following[second]] + shift], 1)
     ends = np.stack([panels.corners[following[first]], panels.corners[second] + shift], 1)
     middle = (starts + ends).mean(axis=1) / 2
-    normal: FloatArray = panels.plane_normals[first] - panels.plane_normals[second]
-    normal = unit(normal)
+    away: FloatArray = panels.plane_normals[first] - panels.plane_normals[second]
+    normal = unit(away)
     chord = (ends - starts).mean(axis=1)
     chord = chord - dot(chord, normal)[:, None] * normal
     rise = unit(np.cross(chord, normal))
