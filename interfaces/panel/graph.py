@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from ...nodes.graphs.graph import Graph
-from ...nodes.graphs.wires import Param, Step, Wire
+from ...nodes.graphs.specification.wires import Param, Step, Wire
 from .options import PanelOptions, fineness, model_units
 
 _LAYERS: Final = {"constant": "offset", "power": "power"}

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from threading import Event as Flag
 from types import MappingProxyType
 from typing import Any
 
@@ -12,30 +13,27 @@ import numpy as np
 
 from ...fabrication.output_folder import OutputFolder
 from .annotations import Value
-from .cache import Cache, digest
 from .errors import GraphError, nearest
-from .file import add_content, decode_graph, encode_graph, read_graph, write_graph
-from .files import Folders
-from .mermaid import mermaid_text
 from .node import find_node, known_graph, replaced
 from .ports import UNITS, Port, check_range, check_slider
-from .results import own, snapshot
-from .run import OnStep, Run, output, run_steps
-from .wires import (
-    Each,
-    Param,
-    Place,
-    Step,
-    Target,
-    Wire,
-    check_name,
-    check_owner,
-    connect,
-    connect_all,
-    output_wire,
-    parents,
-    sources,
+from .running.events import OnEvent, OnStep, Watch
+from .running.files import Folders
+from .running.run import Run, output, run_steps
+from .specification.connections import Place, check_name, check_owner, connect, connect_all
+from .specification.file import (
+    add_content,
+    decode_graph,
+    encode_graph,
+    read_graph,
+    write_graph,
 )
+from .specification.mermaid import mermaid_text
+from .specification.wires import Each, Param, Step, Target, Wire, output_wire, sources
+from .stores.digests import digest
+from .stores.disk import DiskStore
+from .stores.entries import Store
+from .stores.memory import MemoryStore
+from .stores.results import own, snapshot
 
 
 class Graph:
@@ -46,8 +44,9 @@ class Graph:
     title : str
     units : {"mm", "cm", "m", "in", "ft"}
         Of the model.
-    cache : Cache, optional
-        Results, to share them with other graphs.
+    cache : Store or path, optional
+        Where results are kept: a `MemoryStore` or `DiskStore` to share them with other graphs,
+        or the folder of a `DiskStore`. In memory of its own by default.
 
     Examples
     --------
@@ -66,13 +65,17 @@ class Graph:
     """
 
     def __init__(
-        self, title: str = "", units: str = "m", *, cache: Cache | None = None
+        self,
+        title: str = "",
+        units: str = "m",
+        *,
+        cache: Store | str | os.PathLike[str] | None = None,
     ) -> None:
         if units not in UNITS:
             raise GraphError(f"units = {units!r}: must be one of {', '.join(UNITS)}")
         self.title = title
         self.units = units
-        self._cache = cache or Cache()
+        self._cache = _store(cache)
         self._params: dict[str, Param] = {}
         self._values: dict[str, Any] = {}
         self._steps: dict[str, Step] = {}
@@ -92,7 +95,7 @@ class Graph:
     @property
     def ends(self) -> tuple[Step, ...]:  # numpydoc ignore=RT01
         """The steps that no other step uses."""
-        used = {name for step in self._steps.values() for name in parents(step)}
+        used = {name for step in self._steps.values() for name in step.parents}
         return tuple(step for name, step in self._steps.items() if name not in used)
 
     @property
@@ -222,6 +225,8 @@ class Graph:
         self,
         *targets: Target,
         on_step: OnStep | None = None,
+        on_event: OnEvent | None = None,
+        cancel: Flag | None = None,
         read_from: str | os.PathLike[str] | None = None,
         write_to: str | os.PathLike[str] | OutputFolder | None = None,
     ) -> Value:
@@ -235,7 +240,13 @@ class Graph:
             Outputs, whole steps, or their names ``"step.port"``.
         on_step : callable, optional
             Called with the name of each step touched and ``"running"``, ``"done"``,
-            ``"cached"`` or ``"failed"``.
+            ``"cached"``, ``"failed"`` or ``"cancelled"``.
+        on_event : callable, optional
+            Called with an `Event` for all that happens: seconds, bytes, and the progress of
+            long steps.
+        cancel : threading.Event, optional
+            Set from another thread, or while on_event is called, it ends the run between steps
+            and inside those that say how far they are.
         read_from, write_to : path or OutputFolder, optional
             Folders of the relative paths that nodes read and write; the working directory by
             default. A file that a step has written is read where it was written. An
@@ -250,6 +261,8 @@ class Graph:
         ------
         NodeError
             If a step fails; ``cause`` is what its function raised.
+        RunCancelledError
+            If the run was called off; what is done is kept.
         GraphError, InputError
             If a step would write over a file that a step reads, or where it must not.
         """
@@ -267,7 +280,7 @@ class Graph:
             values,
             self.units,
             self._cache,
-            on_step or (lambda _step, _state: None),
+            Watch(on_step, on_event, cancel),
             Folders(_folder(read_from), output_to),
         )
         text = partial(encode_graph, self.title, self.units, self.params, run.steps)
@@ -281,7 +294,7 @@ class Graph:
                 self._messages.pop(name, None)
                 if messages:
                     self._messages[name] = messages
-            self._cache.trim(2 * len(self._steps))
+            self._cache.trim()
         return values[0] if len(values) == 1 else values
 
     def wire(self, name: str) -> Step | Wire:
@@ -330,15 +343,17 @@ class Graph:
         return encode_graph(self.title, self.units, self.params, self._steps)
 
     @classmethod
-    def from_json(cls, text: str, *, cache: Cache | None = None) -> "Graph":
+    def from_json(
+        cls, text: str, *, cache: Store | str | os.PathLike[str] | None = None
+    ) -> "Graph":
         """The graph of a graph file's text.
 
         Parameters
         ----------
         text : str
             From `to_json`; if it is no valid graph, the error says where.
-        cache : Cache, optional
-            Results, to share them with other graphs.
+        cache : Store or path, optional
+            Where results are kept.
 
         Returns
         -------
@@ -385,6 +400,12 @@ class Graph:
             Text that Markdown viewers draw.
         """
         return mermaid_text(self._values, self._steps)
+
+
+def _store(cache: Store | str | os.PathLike[str] | None) -> Store:
+    if cache is None:
+        return MemoryStore()
+    return DiskStore(cache) if isinstance(cache, str | os.PathLike) else cache
 
 
 def _folder(path: str | os.PathLike[str] | None) -> Path | None:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import cache, cached_property
 from types import UnionType
 from typing import (
     Annotated,
@@ -23,14 +23,17 @@ from typing import (
 )
 
 from .annotations import Hint, Value
-from .cache import digest
 from .errors import GraphError, nearest
 from .ports import Port, check_value
+from .stores.digests import digest
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 # A step has attributes of its own; its outputs are found beside them.
-RESERVED_OUTPUTS = ("graph", "inputs", "name", "node")
+RESERVED_OUTPUTS = (
+    "graph", "inputs", "name", "node", "wires", "sources", "parents", "is_mapped", "nesting",
+    "unfinished",
+)  # fmt: skip
 
 
 class NodeWarning(UserWarning):
@@ -71,14 +74,32 @@ class Node:
     result_type: Hint = field(repr=False)
     edition: int = 0
 
-    @property
+    @cached_property
     def has_fields(self) -> bool:  # numpydoc ignore=RT01
         """Whether the result is a NamedTuple, its fields the outputs."""
         return _is_named_tuple(self.result_type)
 
+    @cached_property
+    def file_inputs(self) -> tuple[Port, ...]:  # numpydoc ignore=RT01
+        """The inputs that are paths of files."""
+        return tuple(port for port in self.inputs.values() if port.reads or port.writes)
+
+    @cached_property
+    def is_writer(self) -> bool:  # numpydoc ignore=RT01
+        """Whether it writes files."""
+        return any(port.writes for port in self.file_inputs)
+
+    @cached_property
+    def label(self) -> str:  # numpydoc ignore=RT01
+        """Name and version."""
+        return f"{self.name} {self.version}"
+
 
 REGISTRY: dict[str, Node] = {}
 
+Report = Callable[[float, str], None]
+
+_report: ContextVar[Report | None] = ContextVar("report", default=None)
 _messages: ContextVar[list[str] | None] = ContextVar("messages", default=None)
 _graph_text: ContextVar[Callable[[], str] | None] = ContextVar("graph_text", default=None)
 
@@ -206,6 +227,42 @@ def warn(text: str) -> None:
     if messages is not None:
         messages.append(text)
     warnings.warn(text, NodeWarning, stacklevel=2)
+
+
+def progress(share: float, text: str = "") -> None:
+    """Say how far the node that is running has come; a run that was called off ends here.
+
+    Parameters
+    ----------
+    share : float
+        From 0 to 1.
+    text : str
+        What it does, in a few words.
+    """
+    report = _report.get()
+    if report is not None:
+        report(share, text)
+
+
+@contextmanager
+def reporting_to(report: Report) -> Generator[None]:
+    """Let nodes say how far they have come.
+
+    Parameters
+    ----------
+    report : callable
+        Given the share and a text, from the thread of the node.
+
+    Yields
+    ------
+    None
+        While the block runs, `progress` calls it.
+    """
+    token = _report.set(report)
+    try:
+        yield
+    finally:
+        _report.reset(token)
 
 
 def running_graph() -> str:

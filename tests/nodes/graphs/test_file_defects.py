@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 import spheremesh as sm
 from spheremesh.nodes import GraphError, node
-from spheremesh.nodes.graphs import file
 from spheremesh.nodes.graphs.node import running_graph
+from spheremesh.nodes.graphs.specification import file
 
 
 class Parts(NamedTuple):

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 import spheremesh as sm
 from spheremesh.nodes import GraphError, node
-from spheremesh.nodes.graphs import file
 from spheremesh.nodes.graphs.node import running_graph
+from spheremesh.nodes.graphs.specification import file
 
 
 class Parts(NamedTuple):
@@ -231,7 +231,7 @@ def test_ports_of_old_files_are_read_by_their_present_names(
 
 def test_the_table_of_renamed_ports_names_present_ports() -> None:
     code = """
-from spheremesh.nodes.graphs.file import RENAMED_PORTS
+from spheremesh.nodes.graphs.specification.file import RENAMED_PORTS
 from spheremesh.nodes.graphs.node import find_node
 for name, ports in RENAMED_PORTS.items():
     found = find_node(name)

@@ -10,12 +10,12 @@ from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 from typing import Any, Protocol, TypeVar, cast
 
-from ...fabrication.files import replacing
-from .annotations import Value
+from ....fabrication.files import replacing
+from ..annotations import Value
+from ..errors import GraphError, nearest
+from ..node import Node, find_node
+from ..ports import Port
 from .encoding import MOST_BYTES, Names, decode, encode, parse_json
-from .errors import GraphError, nearest
-from .node import Node, find_node
-from .ports import Port
 from .wires import Param, Step, Wire
 
 _Parsed = TypeVar("_Parsed")

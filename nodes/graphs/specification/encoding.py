@@ -10,9 +10,9 @@ from typing import Any, Final, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from .annotations import Value
-from .errors import GraphError
-from .wires import Each, Param, Wire
+from ..annotations import Value
+from ..errors import GraphError
+from .wires import Each, Param, Wire, each
 
 
 @singledispatch
@@ -90,7 +90,8 @@ def _(value: NDArray[Any]) -> Value:
 
 @encode.register
 def _(value: Each) -> Value:
-    return {"each": encode(value.items)}
+    rules = {name: rule for name in ("match", "axis") if (rule := getattr(value, name))}
+    return {"each": encode(value.items), **rules}
 
 
 @encode.register
@@ -129,7 +130,7 @@ def decode(value: Value, names: Names) -> Value:
         return value
     tagged = cast("dict[str, Value]", value)
     tag = next((tag for tag in tagged if tag in _DECODERS), "")
-    if not tag or not tagged.keys() <= {tag, "dtype" if tag == "array" else tag}:
+    if not tag or not tagged.keys() <= {tag, *_BESIDE.get(tag, ())}:
         raise GraphError(
             f"cannot read {_shown(tagged)}: expected a value or one of {', '.join(_DECODERS)}"
         )
@@ -176,7 +177,9 @@ _DTYPES: Final = (
 _DECODERS: dict[str, Callable[[dict[str, Value], Names], Value]] = {
     "wire": lambda tagged, names: names.wire(tagged["wire"]),
     "param": lambda tagged, names: names.slider(tagged["param"]),
-    "each": lambda tagged, names: Each(decode(tagged["each"], names)),
+    "each": lambda tagged, names: each(
+        decode(tagged["each"], names), **{n: x for n, x in tagged.items() if n != "each"}
+    ),
     "array": _array,
     "mapping": lambda tagged, names: {
         key: decode(item, names) for key, item in tagged["mapping"].items()
@@ -184,6 +187,9 @@ _DECODERS: dict[str, Callable[[dict[str, Value], Names], Value]] = {
     "float": _float,
 }
 
+
+_BESIDE: Final = {"array": ("dtype",), "each": ("match", "axis")}
+"""What may stand beside a tag."""
 
 MOST_BYTES: Final = 2**26
 _MOST_VALUES: Final = 1_000_000

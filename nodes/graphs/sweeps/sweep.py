@@ -7,34 +7,11 @@ from functools import lru_cache
 from itertools import product
 from typing import Any
 
-from .annotations import Value
-from .cache import Cache
-from .errors import GraphError
-from .graph import Graph
-from .wires import Each, Param, Step, Target, Wire
-
-
-def each(values: Value) -> Each:
-    """Map a step over a list, instead of giving it the list as one value.
-
-    With several lists the longest counts and the shorter ones repeat their last item. The
-    outputs of the step are lists.
-
-    Parameters
-    ----------
-    values : list, Step, Wire or Param
-        The list, or what gives it.
-
-    Returns
-    -------
-    Each
-        To be given for an input in `Graph.add`.
-    """
-    if isinstance(values, Step | Wire | Param | Sequence) or hasattr(values, "__array__"):
-        return Each(values)
-    if isinstance(values, Iterable):
-        return Each(list(values))  # pyright: ignore[reportUnknownArgumentType]
-    raise GraphError(f"each needs a list or a wire, not {type(values).__name__}")
+from ..annotations import Value
+from ..errors import GraphError
+from ..graph import Graph
+from ..specification.wires import Param, Step, Target
+from ..stores.memory import MemoryStore
 
 
 def sweep(
@@ -132,10 +109,10 @@ def _run_text(
 
 
 @lru_cache(maxsize=1)
-def _worker_cache(text: str) -> Cache:
+def _worker_cache(text: str) -> MemoryStore:
     """What the points of one sweep share within a process."""
     del text
-    return Cache()
+    return MemoryStore()
 
 
 def _run_point(graph: Graph, targets: Sequence[Target], point: Mapping[str, Any]) -> Value:
