@@ -22,8 +22,8 @@ def key_of(parts: Iterable[bytes]) -> bytes:
 
 def node_part(node: Node, origin: Callable[[Callable[..., Any]], str]) -> bytes:
     """What a key says of a node: a new version or another function gives other results."""
-    text = f"{node.name} {node.version} {node.edition} {origin(node.function)}"
-    return text.encode()
+    code = "" if node.inner is not None else origin(node.function)
+    return f"{node.name} {node.version} {node.edition} {code}".encode()
 
 
 def value_part(value: Value) -> bytes:

@@ -2,8 +2,9 @@
 
 import warnings
 from collections.abc import Iterable, Mapping
+from contextvars import ContextVar
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 from ..annotations import Value
 from ..errors import GraphError
@@ -17,6 +18,9 @@ from .events import Event, RunCancelledError, Watch
 from .files import FileUses, Folders, is_file, is_wired, is_written, note_known_files
 from .keys import given_part, key_of, node_part
 
+Aliases: TypeAlias = Mapping[str, Mapping[str, Wire]]
+
+_running: ContextVar["Run | None"] = ContextVar("running", default=None)
 _IMMUTABLE: Final = frozenset((int, float, bool, str, type(None), Wire, Param))
 
 
@@ -37,6 +41,8 @@ class Run:
     folders : Folders
         Where the relative paths are that nodes read and write. What a step has written is read
         where it was written.
+    aliases : mapping of str to mapping of str to Wire
+        What the outputs of steps that are inner graphs are, by name and port.
     entries : dict of str to Entry
         Results at hand so far.
     given : dict of (str, str) to object
@@ -53,6 +59,7 @@ class Run:
     store: Store
     watch: Watch = field(default_factory=Watch)
     folders: Folders = field(default_factory=Folders)
+    aliases: Aliases = field(default_factory=dict[str, Mapping[str, Wire]])
     keys: dict[str, bytes] = field(default_factory=dict[str, bytes])
     entries: dict[str, Entry] = field(default_factory=dict[str, Entry])
     given: dict[tuple[str, str], Value] = field(default_factory=dict[tuple[str, str], Value])
@@ -60,15 +67,19 @@ class Run:
     passing: set[str] = field(default_factory=set[str])
 
 
-def run_steps(run: Run, targets: Iterable[str]) -> None:
+def running() -> Run | None:
+    """The run that the present function is called by, if there is one."""
+    return _running.get()
+
+
+def run_steps(run: Run, targets: Iterable[Step | Wire | Param]) -> None:
     """Bring the entries of steps up to date, running as little as possible.
 
     Parameters
     ----------
     run : Run
         Its keys and entries are filled in.
-    targets : iterable of str
-        Names of steps.
+    targets : iterable of Step, Wire or Param
 
     Raises
     ------
@@ -79,7 +90,7 @@ def run_steps(run: Run, targets: Iterable[str]) -> None:
     RunCancelledError
         If the run is called off; what is done is kept.
     """
-    wanted = list(targets)
+    wanted = list(dict.fromkeys(name for t in targets for name in _names(run, t)))
     needed = _ancestors(run, wanted)
     for step in needed:
         if step.unfinished:
@@ -117,10 +128,28 @@ def output(run: Run, source: Step | Wire | Param) -> Value:
     if isinstance(source, Param):
         return own(run.values[source.name])
     step = source.step if isinstance(source, Wire) else source
+    if step.name in run.aliases:
+        wires = run.aliases[step.name]
+        if isinstance(source, Wire) or len(wires) == 1:
+            port = source.port.name if isinstance(source, Wire) else next(iter(wires))
+            return output(run, wires[port])
+        return step.node.result_type(*(output(run, wire) for wire in wires.values()))
     value = run.entries[step.name].value
     if isinstance(source, Wire) and step.node.has_fields:
         value = getattr(value, source.port.name)
     return own(value)
+
+
+def _names(run: Run, target: Step | Wire | Param) -> list[str]:
+    """The steps that a target is of; those within an inner graph that give its outputs."""
+    if isinstance(target, Param):
+        return []
+    step = target.step if isinstance(target, Wire) else target
+    if step.name not in run.aliases:
+        return [step.name]
+    wires = run.aliases[step.name]
+    ports = [target.port.name] if isinstance(target, Wire) else list(wires)
+    return [wires[port].step.name for port in ports]
 
 
 def _ancestors(run: Run, targets: Iterable[str]) -> list[Step]:
@@ -209,10 +238,14 @@ def _execute(run: Run, step: Step) -> Entry:
     except Exception as error:
         raise failure(run.folders, step, error) from error
     caller = Caller(run.store, run.watch, run.folders)
-    if step.is_mapped:
-        call = Call(step, arguments, written, _parts(run, step, states=False))
-        return perform_each(caller, call, _node_part(run, step))
-    return perform(caller, Call(step, arguments, written, {}))
+    token = _running.set(run)
+    try:
+        if step.is_mapped:
+            call = Call(step, arguments, written, _parts(run, step, states=False))
+            return perform_each(caller, call, _node_part(run, step))
+        return perform(caller, Call(step, arguments, written, {}))
+    finally:
+        _running.reset(token)
 
 
 def _given(run: Run, step: Step, port: Port) -> Value:
@@ -276,5 +309,9 @@ def _node_part(run: Run, step: Step) -> bytes:
     node = step.node
     part = run.node_parts.get(id(node))
     if part is None:
-        part = run.node_parts[id(node)] = node_part(node, run.store.origin)
+        part = node_part(node, run.store.origin)
+        if node.inner is not None:
+            steps = node.inner.specification.steps.values()
+            part = key_of([part, *(_node_part(run, step) for step in steps)])
+        run.node_parts[id(node)] = part
     return part

@@ -10,7 +10,7 @@ from ..kinds import accepts, fits
 from ..node import Node
 from ..ports import REQUIRED, Port, check_value
 from ..stores.digests import digest
-from .wires import Each, Param, Step, Wire, axes_of, sources
+from .wires import Each, Param, Step, Wire, axes_of, output_wire, sources
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,11 +19,18 @@ class Place:
 
     Attributes
     ----------
+    graph : object
+        What its steps and sliders have in common.
+    steps : mapping of str to Step
+        Those of the graph at present.
     values : mapping of str to object
         Of its sliders.
+    step : str
+        Name of the step.
     """
 
     graph: object
+    steps: Mapping[str, Step]
     values: Mapping[str, Any]
     step: str
 
@@ -51,14 +58,14 @@ def connect(place: Place, port: Port, given: Value, at: str = "") -> Value:
     where = f"{place.step}.{port.name}{at}"
     if isinstance(given, Each):
         return replace(given, items=_connect_each(place, port, given.items))
+    if isinstance(given, Step | Wire):
+        given = present(place.graph, place.steps, given)
     if isinstance(given, Step):
-        given = _only_output(given, port.type, where)
+        given = only_output(given, port.type, where)
     if isinstance(given, Wire):
-        check_owner(place.graph, given)
         _check_wire(given, given.type, port, where)
     elif isinstance(given, Param):
-        check_owner(place.graph, given)
-        value = place.values[given.name]
+        value = _present_value(place, given)
         _check_literal(port, value, f"param {given.name} for {where}")
     elif isinstance(given, list | tuple) and _has_sources(given):
         if not accepts(port.type, []):
@@ -90,6 +97,31 @@ def check_owner(graph: object, target: Step | Wire | Param) -> None:
     if owner.graph is not graph:
         name = str(target) if isinstance(target, Wire) else target.name
         raise GraphError(f"{name} is part of another graph")
+
+
+def present(graph: object, steps: Mapping[str, Step], target: Step | Wire) -> Step | Wire:
+    """A step or output as it is now: who holds one knows how it was when it was added.
+
+    Raises
+    ------
+    GraphError
+        If it is of another graph, or there is none of that name any more.
+    """
+    check_owner(graph, target)
+    step = target.step if isinstance(target, Wire) else target
+    now = steps.get(step.name)
+    if now is None:
+        raise GraphError(f"there is no step {step.name!r} any more; {nearest('', steps)}")
+    if now is step:
+        return target
+    return output_wire(now, target.port.name) if isinstance(target, Wire) else now
+
+
+def _present_value(place: Place, param: Param) -> Value:
+    check_owner(place.graph, param)
+    if param.name not in place.values:
+        raise GraphError(f"there is no param {param.name!r} any more")
+    return place.values[param.name]
 
 
 def check_name(name: str, what: str) -> None:
@@ -170,15 +202,16 @@ def _has_sources(values: Value) -> bool:
 
 def _connect_each(place: Place, port: Port, items: Value) -> Value:
     where = f"{place.step}.{port.name}"
+    if isinstance(items, Step | Wire):
+        items = present(place.graph, place.steps, items)
     if isinstance(items, Step):
-        items = _only_output(items, list[port.type], where)
+        items = only_output(items, list[port.type], where)
     if isinstance(items, Wire):
-        check_owner(place.graph, items)
         if not fits(items.type, Iterable[Any]):
             raise GraphError(f"{where}: each needs a list, {items} is {type_name(items.type)}")
         _check_wire(items, element_type(items.type), port, f"each of {where}")
         return items
-    values = place.values[items.name] if isinstance(items, Param) else items
+    values = _present_value(place, items) if isinstance(items, Param) else items
     is_list = hasattr(values, "__len__") and getattr(values, "ndim", 1) > 0
     if isinstance(values, str | bytes) or not is_list:
         raise GraphError(f"{where}: each needs a list, not {type(values).__name__}")
@@ -188,7 +221,10 @@ def _connect_each(place: Place, port: Port, items: Value) -> Value:
     return items if isinstance(items, Param) else connected
 
 
-def _only_output(step: Step, kind: Hint, where: str) -> Wire:
+def only_output(step: Step, kind: Hint = Any, where: str = "its place") -> Wire:
+    """The output of a step that has one; the error of another says which would fit."""
+    if not step.node.is_known:
+        return output_wire(step, "")
     if len(step.wires) == 1:
         return step.wires[0]
     fitting = [str(wire) for wire in step.wires if fits(wire.type, kind)]

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any, TypeAlias, cast
 
 from ..annotations import Hint, Value
@@ -18,9 +19,9 @@ class Param:
     Attributes
     ----------
     graph : object
-        The graph that it belongs to.
+        What all that belongs to a graph and its copies has in common.
     value : object
-        Its value when the graph was put together; `Graph.values` holds the present one.
+        Its value when the slider was made; that of `Graph.params` is the present one.
     """
 
     graph: object = field(repr=False)
@@ -37,7 +38,8 @@ class Wire:
     port: Port
 
     def __str__(self) -> str:
-        return f"{self.step.name}.{self.port.name}"
+        # The only output of a step whose node is not known has no name.
+        return f"{self.step.name}.{self.port.name}".removesuffix(".")
 
     @property
     def type(self) -> Hint:  # numpydoc ignore=RT01
@@ -68,6 +70,7 @@ class Each:
     axis: str = ""
 
 
+_EMPTY: Mapping[str, Any] = MappingProxyType({})
 MATCHES = ("longest", "shortest", "same")
 
 
@@ -122,6 +125,10 @@ def each(values: Value, *, match: str = "", axis: str = "") -> Each:
     raise GraphError(f"each needs a list or a wire, not {type(values).__name__}")
 
 
+def _empty() -> Mapping[str, Any]:
+    return _EMPTY
+
+
 @dataclass(frozen=True, eq=False)
 class Step:
     """A node within a graph; its outputs are its attributes.
@@ -129,15 +136,21 @@ class Step:
     Attributes
     ----------
     graph : object
-        The graph that it belongs to.
+        What all that belongs to a graph and its copies has in common.
     inputs : mapping of str to object
         What was given for the inputs: `Wire`, `Param`, `Each` or a value.
+    unfinished : str
+        Why it cannot be run; empty for a step that is finished.
+    extra : mapping of str to object
+        Entries of a graph file that others put there.
     """
 
     graph: object = field(repr=False)
     name: str
     node: Node
     inputs: Mapping[str, Any] = field(repr=False)
+    unfinished: str = ""
+    extra: Mapping[str, Any] = field(default_factory=_empty, repr=False)
 
     def __getattr__(self, port: str) -> Wire:
         if port.startswith("_"):
@@ -170,11 +183,6 @@ class Step:
         eaches = (value for value in self.inputs.values() if isinstance(value, Each))
         return len({value.axis for value in eaches})
 
-    @property
-    def unfinished(self) -> str:  # numpydoc ignore=RT01
-        """Why it cannot be run; empty for a step that is finished."""
-        return ""
-
 
 def output_wire(step: Step, port: str) -> Wire:
     """An output of a step by name.
@@ -185,6 +193,8 @@ def output_wire(step: Step, port: str) -> Wire:
         If there is none; the message gives the nearest.
     """
     outputs = step.node.outputs
+    if not step.node.is_known:
+        return Wire(step, Port(name=port))
     if port not in outputs:
         raise UnknownPortError(
             f"step {step.name!r} (node {step.node.name}) has no output {port!r}; "
