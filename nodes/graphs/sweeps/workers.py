@@ -15,9 +15,10 @@ from concurrent.futures import (
     as_completed,
     wait,
 )
+from contextlib import suppress
+from importlib import import_module
 from typing import Any, Final
 
-from ..annotations import Value
 from ..errors import GraphError
 from .tasks import Outcome, Study, run_task
 
@@ -26,6 +27,8 @@ Task = tuple[int, Mapping[str, Any], str]
 Outcomes = Generator[tuple[int, Outcome]]
 
 _RETRIES: Final = 2
+_LOOK_AGAIN: Final = 5.0
+"""Seconds after which results that were announced are asked for again."""
 _DIED: Final = "the process that ran it died: out of memory, killed, or a library at fault"
 
 
@@ -67,16 +70,19 @@ def in_processes(workers: int, study: Study, tasks: Sequence[Task]) -> Outcomes:
         Number of a point, and what became of it.
     """
     pending, suspects = list(reversed(tasks)), list[Task]()
+    deaths: dict[int, int] = {}
     context = multiprocessing.get_context("spawn")
     while pending or suspects:
         # After a death those under way run one at a time, so that it is known whose it was.
         queue, width = (suspects, 1) if suspects else (pending, workers)
         with ProcessPoolExecutor(width, mp_context=context) as pool:
             lost = yield from _until_death(pool, width, study, queue)
-        if queue is pending:
-            suspects += lost
-        else:
-            yield from ((number, Outcome(error=_DIED)) for number, _, _ in lost)
+        for task in lost:
+            deaths[task[0]] = deaths.get(task[0], 0) + (queue is suspects)
+            if deaths[task[0]] > _RETRIES - 1:
+                yield task[0], Outcome(error=_DIED)
+            else:
+                suspects.append(task)
 
 
 def _until_death(
@@ -118,23 +124,49 @@ def on_dask(client: Any, study: Study, tasks: Sequence[Task]) -> Outcomes:  # no
     (int, Outcome)
         Number of a point, and what became of it.
     """
-    from importlib import import_module
-
-    distributed = import_module("distributed")
     shared = client.submit(_same, study, pure=False)
-    futures = {
-        client.submit(run_task, shared, *task[1:], pure=False, retries=_RETRIES): task[0]
-        for task in tasks
-    }
-    finished = distributed.as_completed(futures, with_results=True, raise_errors=False)
+
+    def _submitted(tasks: Sequence[Task]) -> dict[Any, Task]:
+        return {client.submit(run_task, shared, *task[1:], pure=False): task for task in tasks}
+
+    suspects: list[Task] = []
+    for task, outcome in _finished(_submitted(tasks)):
+        if outcome is None:
+            suspects.append(task)  # or another point on the same worker did it
+        else:
+            yield task[0], outcome
+    for suspect in suspects:
+        for task, outcome in _finished(_submitted([suspect])):
+            yield task[0], outcome or Outcome(error=_DIED)
+
+
+def _finished(futures: dict[Any, Task]) -> Generator[tuple[Task, Outcome | None]]:
+    """Tasks and their outcomes as they are done; None where workers died of one.
+
+    Results may be lost with a worker after they were announced: the scheduler makes them again,
+    and they are waited for again.
+    """
+    wait_for_any = import_module("distributed").wait
     try:
-        for future, result in finished:
-            if future.status == "finished":
-                yield futures[future], result
-            else:
-                yield futures[future], Outcome(error=_lost(result))
+        while futures:
+            with suppress(TimeoutError):
+                wait_for_any(list(futures), timeout=_LOOK_AGAIN, return_when="FIRST_COMPLETED")
+            for future in [each for each in futures if each.done()]:
+                with suppress(TimeoutError):
+                    outcome = _dask_outcome(future)
+                    yield futures.pop(future), outcome
     finally:
-        client.cancel(list(futures))
+        for future in futures:
+            future.cancel()
+
+
+def _dask_outcome(future: Any) -> Outcome | None:  # noqa: ANN401
+    if future.status == "finished":
+        return future.result(timeout=_LOOK_AGAIN)
+    if future.status == "cancelled":
+        return Outcome(error="it was cancelled on the cluster")
+    error = future.exception(timeout=_LOOK_AGAIN)
+    return None if type(error).__name__ == "KilledWorker" else Outcome(error=_described(error))
 
 
 def _same(study: Study) -> Study:
@@ -142,17 +174,13 @@ def _same(study: Study) -> Study:
     return study
 
 
-def _lost(result: Value) -> str:
-    error = result[1] if isinstance(result, tuple) else result
-    name = type(error).__name__
-    return _DIED if name == "KilledWorker" else f"{name}: {' '.join(str(error).split())}"
+def _described(error: object) -> str:
+    return f"{type(error).__name__}: {' '.join(str(error).split())}"
 
 
 def _outcome(future: "Future[Outcome]") -> Outcome:
     error = future.exception()
-    if error is None:
-        return future.result()
-    return Outcome(error=f"{type(error).__name__}: {' '.join(str(error).split())}")
+    return future.result() if error is None else Outcome(error=_described(error))
 
 
 def is_dask(executor: object) -> bool:
