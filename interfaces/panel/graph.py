@@ -5,7 +5,8 @@ from typing import Any, Final
 
 from ...kernel.support.beam_supports import own_spheres
 from ...nodes.graphs.graph import Graph
-from ...nodes.graphs.wires import Param, Step, Wire
+from ...nodes.graphs.specification.wires import Param, Step, Wire
+from ...nodes.graphs.stores.entries import Store
 from .options import PanelOptions, SupportKind, fineness, model_units
 from .support import add_annuli, add_beams
 
@@ -13,21 +14,23 @@ _LAYERS: Final = {"constant": "offset", "power": "power"}
 """Port of `panels` by option: --layer names a layer of the input."""
 
 
-def feasible_panel_graph(options: PanelOptions) -> Graph:
+def feasible_panel_graph(options: PanelOptions, store: Store | None = None) -> Graph:
     """The graph of the main job, as the mesh allows it.
 
     A support on node axes keeps spheres that the mesh has already if their nodes are exact;
     where no beams on node axes can stand, they are upright. Both are found before anything is
-    optimised.
+    optimised, with results of the store if there is one.
     """
     graph = panel_graph(options)
+    store = graph.cache = store or graph.cache
     if options.support != "axis":
         return graph
     may_keep = not (options.target_angle or options.tolerance)
     if may_keep and own_spheres(graph.run(_source(graph))) is not None:
-        return panel_graph(options, keeps_spheres=True)
-    if graph.run("feasibility")["verdict"] == "no":
-        return panel_graph(options, "bisector")
+        graph = panel_graph(options, keeps_spheres=True)
+    elif graph.run("feasibility")["verdict"] == "no":
+        graph = panel_graph(options, "bisector")
+    graph.cache = store
     return graph
 
 
@@ -104,9 +107,7 @@ def panel_graph(
         # What there would be without moulds and beams, to say what these cost.
         plain["plain"] = graph.add("panels", "plain", sphere_mesh=design, **layers).report
     if options.moulds is not None:
-        blanks = graph.add("mould_blanks", "blanks", panels=panels.panels)
-        for name, path in (("mould_drawing", "moulds.dxf"), ("mould_picture", "moulds.svg")):
-            graph.add("write_mould_drawings", name, panels=panels.panels, path=path)
+        blanks = _add_blanks(graph, panels.panels)
     audit = graph.add(
         "audit", "audit", panels=panels.panels, cut=panels.report,
         max_step=options.allow_step, max_gap=options.allow_gap,
@@ -122,6 +123,13 @@ def panel_graph(
         made["beams"] = support.beams
     _add_writers(graph, mesh, made)
     return graph
+
+
+def _add_blanks(graph: Graph, panels: Wire) -> Step:
+    """Blanks of the moulds, and their drawings."""
+    for name, path in (("mould_drawing", "moulds.dxf"), ("mould_picture", "moulds.svg")):
+        graph.add("write_mould_drawings", name, panels=panels, path=path)
+    return graph.add("mould_blanks", "blanks", panels=panels)
 
 
 def _add_writers(graph: Graph, mesh: Step | Wire, made: Mapping[str, Wire]) -> None:
