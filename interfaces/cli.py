@@ -130,6 +130,16 @@ class _PanelCommand(click.Command):
     help="Radius of cylinders at the nodes, before which beams end square; 0 for mitres.",
 )
 @click.option(
+    "--max-height",
+    type=click.FloatRange(min=0),
+    help="How far vertices may leave the surface for --support exact, in mean edges; 0.06.",
+)
+@click.option(
+    "--max-slide",
+    type=click.FloatRange(min=0),
+    help="How far vertices may slide in the surface for --support exact, in mean edges; 0.7.",
+)
+@click.option(
     "--bearing",
     type=click.FloatRange(min=0),
     default=0.0,
@@ -183,6 +193,7 @@ def panel(  # numpydoc ignore=PR01
             "--edges and --support exclude each other: panels are cut where their beams stand; "
             "drop one"
         )
+    _check_exact(options)
     _warn_of_no_beams(options)
     with _errors(), _progress() as progress:
         options["units"], is_assumed = model_units(PanelOptions(**options))
@@ -191,6 +202,28 @@ def panel(  # numpydoc ignore=PR01
     print_report(report, out, files, as_json=as_json, is_assumed=is_assumed)
     if strict and has_errors(report):
         sys.exit(GATE_FAILED)
+
+
+def _check_exact(options: dict[str, Any]) -> None:
+    """Options of exact supports go with no other support, and others not with them."""
+    given = {name: options.pop(name) for name in ("max_height", "max_slide")}
+    asked = {name: value for name, value in given.items() if value is not None}
+    if options["support"] != "exact":
+        if asked:
+            names = ", ".join(f"--{name.replace('_', '-')}" for name in asked)
+            raise click.UsageError(f"{names} bounds --support exact; add it, or drop the bound")
+        return
+    options.update(asked)
+    if options["tolerance"] is not None:
+        raise click.UsageError(
+            "--tolerance does not go with --support exact: bound the moves of vertices by "
+            "--max-height and --max-slide"
+        )
+    if options["target_angle"]:
+        raise click.UsageError(
+            "--target-angle does not go with --support exact, where neighbours meet as "
+            "smoothly as they can; drop one"
+        )
 
 
 def _warn_of_no_beams(options: Mapping[str, Any]) -> None:

@@ -141,8 +141,8 @@ MIRROR_LEAST: Final = 1e-6
 """Mirror points nearer than this, in mean edges, do not tell the direction of an axis."""
 BEAM_TILT: Final = 1.0471975511965976
 """A beam whose plane tilts more (60 degrees) from the bisecting plane does not stand."""
-UPRIGHT_BEAMS: Final = 0.3490658503988659
-"""Beams where spheres meet are upright if most tilt less (20 degrees)."""
+UPRIGHT_BEAMS: Final = 0.2617993877991494
+"""Beams where spheres meet are upright if most tilt less (15 degrees)."""
 AXIS_STEP: Final = 1e-12
 """Axes are at rest when none turns by more (radians)."""
 RIM_LEAN: Final = 0.3490658503988659
@@ -205,6 +205,15 @@ UMBILIC: Final = 1e-3
 PLANAR_DAMPING: Final = 1e-11
 """Least damping of a step towards planar nodes: with less, rounding is larger than the step."""
 
+# Exact supports
+
+RIDGE: Final = 1e-9
+"""How much it counts that a quadric is flat, relative to its fit, where neighbours tell not."""
+EXACT_ENERGY: Final = 1e-26
+"""Sum of squared misses of all conditions, in mean edges and radians, that is rounding."""
+STEP_RIDGE: Final = 1e-12
+"""Least damping of a step, relative to the diagonal of its system: rounding."""
+
 # Fabrication
 
 COINCIDENT: Final = 1e-6
@@ -230,6 +239,8 @@ SINGLE_IS_ENOUGH: Final = 0.01
 
 VERTEX_MISS: Final = 0.01
 """Vertices farther from their sphere than this share of the mean edge are worth a warning."""
+FLATTENED: Final = 0.25
+"""Spheres of which less than this share of the curvature is left have become nearly planes."""
 LITTLE_GAIN: Final = 0.05
 """A relative gain of spheres over planes that is worth saying to be small."""
 MOSTLY_EVEN: Final = 0.95

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, Final
 
+from ...kernel.support.beam_supports import own_spheres
 from ...nodes.graphs.graph import Graph
 from ...nodes.graphs.wires import Param, Step, Wire
 from .options import PanelOptions, SupportKind, fineness, model_units
@@ -13,17 +14,26 @@ _LAYERS: Final = {"constant": "offset", "power": "power"}
 
 
 def feasible_panel_graph(options: PanelOptions) -> Graph:
-    """The graph of the main job, with upright beams where none on node axes can stand.
+    """The graph of the main job, as the mesh allows it.
 
-    Whether they can is found from the mesh, before anything is optimised.
+    A support on node axes keeps spheres that the mesh has already if their nodes are exact;
+    where no beams on node axes can stand, they are upright. Both are found before anything is
+    optimised.
     """
     graph = panel_graph(options)
-    if options.support == "axis" and graph.run("feasibility")["verdict"] == "no":
+    if options.support != "axis":
+        return graph
+    may_keep = not (options.target_angle or options.tolerance)
+    if may_keep and own_spheres(graph.run(_source(graph))) is not None:
+        return panel_graph(options, keeps_spheres=True)
+    if graph.run("feasibility")["verdict"] == "no":
         return panel_graph(options, "bisector")
     return graph
 
 
-def panel_graph(options: PanelOptions, beams: SupportKind | None = None) -> Graph:
+def panel_graph(
+    options: PanelOptions, beams: SupportKind | None = None, *, keeps_spheres: bool = False
+) -> Graph:
     """The graph of the main job.
 
     Parameters
@@ -32,6 +42,8 @@ def panel_graph(options: PanelOptions, beams: SupportKind | None = None) -> Grap
         What is asked for.
     beams : {"axis", "exact", "bisector"}, optional
         The kind of support that is made; by default that which is asked for.
+    keeps_spheres : bool
+        Whether the spheres of the mesh stay as they are.
 
     Returns
     -------
@@ -61,7 +73,13 @@ def panel_graph(options: PanelOptions, beams: SupportKind | None = None) -> Grap
     moves: dict[str, Param] = {}
     if options.tolerance:
         moves = {"tolerance": graph.param("tolerance", options.tolerance, min=0)}
-    optimum = _optimum(graph, options, mesh, moves)
+    if keeps_spheres:
+        start = graph.add("fit_spheres", "start", mesh=mesh, ring=0)
+        optimum = graph.add("keep_spheres", "optimum", sphere_mesh=start)
+    elif options.support == "exact":
+        optimum = _exact(graph, options, mesh)
+    else:
+        optimum = _optimum(graph, options, mesh, moves)
     design = spheres = optimum.sphere_mesh
     labels, clusters, blanks = None, None, None
     if options.moulds is not None:
@@ -69,15 +87,15 @@ def panel_graph(options: PanelOptions, beams: SupportKind | None = None) -> Grap
         moulds = graph.add("cluster_radii", "moulds", sphere_mesh=spheres, k=count, **moves)
         spheres, labels, clusters = moulds.sphere_mesh, moulds.labels, moulds.report
     kind = beams or options.support
-    annuli = add_annuli(graph, options, kind, spheres, design) if kind else None
     layers: dict[str, Any] = {
         "thickness": thickness, "joint_gap": joint_gap, "side": options.side,
         "layer": _LAYERS[options.offset],
     }  # fmt: skip
+    annuli = add_annuli(graph, options, kind, spheres, design, layers) if kind else None
+    cut = annuli.cut if annuli else {"edges": options.edges or "bisector"}
     panels = graph.add(
-        "panels", "panels", sphere_mesh=spheres, labels=labels, **layers,
-        **(annuli.cut if annuli else {"edges": options.edges or "bisector"}),
-    )  # fmt: skip
+        "panels", "panels", sphere_mesh=spheres, labels=labels, **{**layers, **cut}
+    )
     support = add_beams(graph, options, annuli, panels.panels) if annuli else None
     plain: dict[str, Wire] = {}
     if support or spheres is not design:
@@ -100,12 +118,23 @@ def panel_graph(options: PanelOptions, beams: SupportKind | None = None) -> Grap
     made = {"panels": panels.panels}
     if support:
         made["beams"] = support.beams
+    _add_writers(graph, mesh, made)
+    return graph
+
+
+def _add_writers(graph: Graph, mesh: Step | Wire, made: Mapping[str, Wire]) -> None:
+    """Files of the parts; those of moulds and beams stand beside what they show."""
+    panels = made["panels"]
     graph.add("write_step", "step", **made, path="panels.step")
     graph.add("write_3dm", "rhino", **made, path="model.3dm", reference=mesh)
-    graph.add("write_schedule", "table", panels=panels.panels, path="schedule.csv")
+    graph.add("write_schedule", "table", panels=panels, path="schedule.csv")
     graph.add("write_schedule", "list", **made, path="schedule.json")
-    graph.add("render", "picture", panels=panels.panels, path="preview.png")
-    return graph
+    graph.add("render", "picture", panels=panels, path="preview.png")
+
+
+def _source(graph: Graph) -> str:
+    """Name of the output that is the mesh: of the file, or repaired."""
+    return "mesh.mesh" if graph.steps["mesh"].node.name == "repair_mesh" else "mesh"
 
 
 def _mesh(graph: Graph, options: PanelOptions) -> Step | Wire:
@@ -117,6 +146,17 @@ def _mesh(graph: Graph, options: PanelOptions) -> Step | Wire:
     if options.repair:
         return graph.add("repair_mesh", "mesh", mesh=path, layer=options.layer, **rows).mesh
     return graph.add("read_mesh", "mesh", path=path, layer=options.layer, **rows)
+
+
+def _exact(graph: Graph, options: PanelOptions, mesh: Step | Wire) -> Step:
+    """The spheres of an exact support; for one mould with the same radius from the start."""
+    bounds = {
+        "max_height": graph.param("max_height", options.max_height, min=0),
+        "max_slide": graph.param("max_slide", options.max_slide, min=0),
+    }
+    return graph.add(
+        "exact_support", "optimum", mesh=mesh, one_radius=options.moulds == 1, **bounds
+    )
 
 
 def _optimum(

@@ -106,6 +106,16 @@ def beams_under_panels(
     return beams, (*refused, *rejected)
 
 
+def lowered_annuli(
+    annuli: Annuli, panels: Panels, thickness: float, bearing: float = 0.0
+) -> Annuli:
+    """Annuli below the panels that rest on them, as `beams_under_panels` has them."""
+    annuli = outer_side_up(annuli)
+    if annuli.n_annuli == 0 or panels.n_panels == 0:
+        return annuli
+    return _lowered(annuli, _rests(annuli, panels, thickness, bearing))
+
+
 def _rests(annuli: Annuli, panels: Panels, thickness: float, bearing: float) -> _Rests:
     """The panels left and right of beams, and the circles below which their tops are clear."""
     beams, sides = np.nonzero(_panel_rows(panels, annuli.edge_faces) >= 0)

@@ -7,13 +7,16 @@ these planes are those in which the spheres meet.
 """
 
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
+from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from ..meshes.mesh import Mesh, mean_edge_length
-from ..panels.cutting import EdgeMode, cutting_planes, flatten_nearly_plane, gaps_along_edges
+from ..panels.cutting import cutting_planes, flatten_nearly_plane, gaps_along_edges
+from ..panels.edge_axes import EdgeMode, outward_axes
+from ..sphere_meshes.fit import fit_spheres
+from ..sphere_meshes.planarity_circularity import planarity
 from ..sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ..tolerances import BEAM_TILT, COMMON_VERTEX, NODE_TORSION, UPRIGHT_BEAMS
 from .annulus_construction import AnnuliReport, AnnulusSupport, annulus_report
@@ -25,6 +28,12 @@ from .beam_axes import (
     upright_directions,
 )
 from .node_axes import support_structure
+
+TOLD_BULGE: Final = 1e-5
+"""Faces whose corners lie farther off their plane, in mean edges, tell their own sphere."""
+
+MOSTLY_TOLD: Final = 0.9
+"""Share of the faces that have to tell their own sphere for a mesh to have spheres."""
 
 WallKind = Literal["axis", "bisector"]
 
@@ -91,6 +100,19 @@ def exact_directions(sphere_mesh: SphereMesh) -> FloatArray | None:
     return directions if is_exact else None
 
 
+def own_spheres(mesh: Mesh) -> SphereMesh | None:
+    """The spheres that a mesh has already, if their nodes are exact; None if not.
+
+    Its faces have to tell them: nearly all of them bulge, where plane ones would leave the
+    sphere open or be planes already.
+    """
+    is_told = planarity(mesh) > TOLD_BULGE * mean_edge_length(mesh)
+    if is_told.mean() < MOSTLY_TOLD:
+        return None
+    spheres = fit_spheres(mesh, 0)
+    return None if exact_directions(spheres) is None else spheres
+
+
 def inner_tilt(sphere_mesh: SphereMesh, planes: FloatArray) -> FloatArray:
     """Angles (E,) between planes (B, 3) of all edges and those that bisect the faces.
 
@@ -134,7 +156,7 @@ def bisector_axes(sphere_mesh: SphereMesh) -> FloatArray:
     system = across @ (gram + LEAN_WEIGHT**2 * np.eye(3)) @ across
     is_used = norm(upright)[:, None, None] > 0
     system = np.where(is_used, system + upright[:, :, None] * upright[:, None], np.eye(3))
-    leans = np.linalg.solve(system, pull[..., None])[..., 0]
+    leans: FloatArray = np.linalg.solve(system, pull[..., None])[..., 0]
     return axis_points(mesh, -unit(upright - leans))
 
 
@@ -192,7 +214,7 @@ def beam_support_report(
     size = mean_edge_length(mesh)
     used = np.zeros(mesh.n_vertices, bool)
     used[mesh.corners] = True
-    directions = unit(axes.points[:, 1] - axes.points[:, 0])
+    directions = -outward_axes(mesh, axes.points)
     planes = wall_planes(sphere_mesh, kind, axes.points)
     torsion = np.degrees(node_torsion(beam_edges(mesh), planes, directions))[used]
     lean = np.degrees(lean_angles(mesh, directions))[used]

@@ -15,7 +15,7 @@ from ...kernel.reports import Report
 from ...kernel.sphere_meshes.fit import face_planes
 from ...kernel.sphere_meshes.planarity_circularity import circularity
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
-from ...kernel.tolerances import CIRCULAR, LITTLE_GAIN, VERTEX_MISS
+from ...kernel.tolerances import CIRCULAR, FLATTENED, LITTLE_GAIN, VERTEX_MISS
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
 from .arrays import EdgeWeights, FaceRadii, FaceVectors, Vector
@@ -259,6 +259,8 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
         )
     if target_angle == 0 and support == 0:
         _warn_of_little_gain(outcome)
+    if support > 0:
+        _warn_of_support(sphere_mesh, result, outcome)
     stages = [_stage(stage) for stage in run.stages]
     report = EnergyReport(run.converged, stages, run.corners, run.vertex_move, **outcome)
     return EnergyOptimum(result, report)
@@ -318,6 +320,35 @@ def _outcome(sphere_mesh: SphereMesh, design: Mesh) -> dict[str, dict[str, Any]]
             "relative_to_edge": miss / mean_edge_length(sphere_mesh.mesh),
         },
     }
+
+
+def _warn_of_support(
+    start: SphereMesh, result: SphereMesh, outcome: dict[str, dict[str, Any]]
+) -> None:
+    """Say where nodes without torsion cost what spheres are for."""
+    planar, spherical = (
+        outcome["angles_deg"][kind]["mean"] for kind in ("planar", "spherical")
+    )
+    bends = [
+        float(np.median(np.abs(each.local_spheres[:, 0]))) * mean_edge_length(each.mesh)
+        for each in (start, result)
+    ]
+    before = angle_summary(start)["mean"]
+    found: list[str] = []
+    if bends[1] < FLATTENED * bends[0] and spherical > (1 + LITTLE_GAIN) * before:
+        share = 100 * bends[1] / bends[0]
+        found.append(
+            f"flatten to {share:.0f} % of their curvature ({before:.3g} to {spherical:.3g} "
+            "degrees)"
+        )
+    if spherical > planar:
+        found.append(f"are rougher than planes ({planar:.3g} to {spherical:.3g} degrees)")
+    if found:
+        warn(
+            f"for nodes without torsion spheres {' and '.join(found)}: the net does not follow "
+            "the lines of curvature; let its vertices slide (exact_support), or leave spheres "
+            "as they are and take axis_support"
+        )
 
 
 def _warn_of_little_gain(outcome: dict[str, dict[str, Any]]) -> None:

@@ -16,7 +16,7 @@ from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import Mesh, mean_edge_length
 from spheremesh.kernel.meshes.triangulation import triangulate
 from spheremesh.kernel.surfaces.circular_nets import vase_net
-from spheremesh.nodes import roof_mesh
+from spheremesh.nodes import ellipsoid_mesh, evolve_spheres, roof_mesh, tangent_sphere_shex
 
 
 def grid(heights: Any) -> Mesh:  # noqa: ANN401
@@ -46,7 +46,8 @@ def panel(*arguments: str | Path) -> Result:
 
 
 def report_of(mesh: Path, **options: Any) -> dict[str, Any]:  # noqa: ANN401
-    graph = feasible_panel_graph(PanelOptions(mesh=mesh, **options))
+    allowed = {"allow_step": 200.0, "allow_gap": 200.0}  # of edges of about a metre
+    graph = feasible_panel_graph(PanelOptions(mesh=mesh, **{**allowed, **options}))
     report = graph.run("report")
     texts = [text for messages in graph.messages.values() for text in messages]
     return {**report, "warnings": texts}
@@ -136,6 +137,25 @@ def test_upright_beams_that_were_asked_for_are_no_matter_of_a_warning(bumps: Pat
     report = report_of(bumps, support="bisector")
     assert report["support"]["asked"] == "bisector"
     assert not any(text.startswith("support") for text in report["warnings"])
+
+
+@pytest.mark.parametrize("moulds", [None, 2])
+def test_hexagons_keep_their_exact_nodes(tmp_path: Path, moulds: int | None) -> None:
+    """The spheres of the file stay, and beams stand where they meet; moulds open gaps alone."""
+    grown = evolve_spheres(triangulate(ellipsoid_mesh(12, 6)))
+    hexagons = tangent_sphere_shex(grown.mesh, grown.spheres).sphere_mesh
+    path = write_mesh(hexagons.mesh, tmp_path / "hexagons.obj")
+    report = report_of(path, support="axis", moulds=moulds, repair=moulds is None)
+    assert report["support"]["torsion_deg_max"] < 1e-3
+    assert report["support"]["beam_tilt_deg_p95"] < 15
+    if moulds is None:
+        assert report["edge_gap"]["relative_to_edge"] < 1e-9
+    said = [text for text in report["warnings"] if "spheres with exact nodes" in text]
+    rougher = (
+        report["angles_deg"].get("unclustered", report["angles_deg"]["spherical"])["mean"]
+        > report["angles_deg"]["planar"]["mean"]
+    )
+    assert bool(said) == rougher
 
 
 def test_a_given_node_radius_is_taken(bumps: Path) -> None:
