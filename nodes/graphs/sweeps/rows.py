@@ -224,7 +224,7 @@ def _flatten(value: Value, name: str, target: str, found: dict[str, Any]) -> Non
     if hasattr(value, "_asdict"):
         value = value._asdict()
     if isinstance(value, np.generic):
-        value = value.item()
+        value = cast("Any", value).item()
     if isinstance(value, Mapping):
         for key, item in cast("Mapping[str, Any]", value).items():
             _flatten(item, f"{name}.{key}" if name else str(key), target, found)
