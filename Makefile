@@ -47,6 +47,7 @@ lint: system
 
 bench: system
 	$(BIN)/python benchmarks/run.py
+	$(BIN)/python benchmarks/angles.py targets large
 	$(BIN)/python benchmarks/energy.py large scipy
 
 install: $(INSTALLED)

@@ -2,13 +2,16 @@
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Final, cast
 
 import click
 
 MOST_ROWS: Final = 2000
 MOST_VALUES: Final = 100_000
+
+SUPPORTS: Final = ("axis", "exact", "bisector")
+"""Words that --support takes; without one it means the first."""
 
 
 def rows_option(
@@ -65,6 +68,29 @@ def plain_value(value: Any) -> Any:  # noqa: ANN401
     if value is None or isinstance(value, bool | int | str):
         return value
     return type(value).__name__
+
+
+def spell_support(arguments: Sequence[str]) -> list[str]:
+    """Arguments in which --support has a word of its own.
+
+    Only the words of `SUPPORTS` are taken: in ``--support roof.obj`` the file is the mesh.
+
+    Examples
+    --------
+    >>> spell_support(["--support", "roof.obj"]), spell_support(["--support", "exact"])
+    (['--support=axis', 'roof.obj'], ['--support=exact'])
+    """
+    result: list[str] = []
+    left = list(arguments)
+    while left:
+        argument = left.pop(0)
+        if argument == "--":
+            return [*result, argument, *left]
+        if argument == "--support":
+            word = left.pop(0) if left and left[0] in SUPPORTS else SUPPORTS[0]
+            argument = f"--support={word}"
+        result.append(argument)
+    return result
 
 
 def setting(text: str) -> tuple[str, Any]:

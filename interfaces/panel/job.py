@@ -15,6 +15,9 @@ from ...nodes.graphs.running.files import FileUses, Folders, note_known_files
 GRAPH: Final = "graph.json"
 """Name of the graph of a job beside its files."""
 
+MOST_LOST: Final = 0.1
+"""Share of the beams made in place of those asked for that may be missing."""
+
 Progress = Callable[[str, str], None]
 
 
@@ -81,6 +84,8 @@ def run_job(
     ) as output:
         _check_files(graph, output)
         run = partial(graph.run, on_step=clock.note, write_to=output)
+        if graph.steps["optimum"].node.name == "exact_support":
+            _refuse_no_support(run("optimum.report"))
         _refuse_nothing(run("panels.report"), "panels")
         _refuse_unfinished(run("optimum.report", on_step=None))
         if "annuli" in graph.steps:
@@ -89,6 +94,7 @@ def run_job(
         found = run("report")
         if found["support"]:
             _refuse_nothing(found["beams"], "beams")
+            _refuse_few_beams(found["support"], found["beams"])
         run(*graph.ends)
         graph.save(output.staging / GRAPH)
         source = graph.steps["mesh"]
@@ -106,8 +112,8 @@ def run_job(
             "warnings": [
                 text
                 for step, messages in graph.messages.items()
-                # The angles alone are of no interest once more is asked for.
-                if step != "angles"
+                # What there would be otherwise is of no interest once more is asked for.
+                if step not in {"angles", "plain"}
                 for text in messages
             ],
         }
@@ -143,12 +149,28 @@ def _refuse_unfinished(optimum: Mapping[str, Any]) -> None:
         )
 
 
+def _refuse_no_support(exact: Mapping[str, Any]) -> None:
+    if exact["verdict"] == "no":
+        raise ConvergenceError(exact["reason"])
+
+
 def _refuse_nothing(made: Mapping[str, Any], what: str) -> None:
     if made["written"] == 0:
         rejected = made["rejected"]
         shown = "; ".join(f"{part['id']}: {part['reason']}" for part in rejected[:3])
         more = f"; {len(rejected) - 3} more" if len(rejected) > 3 else ""
         raise InputError(f"none of the {len(rejected)} {what} can be made: {shown}{more}")
+
+
+def _refuse_few_beams(support: Mapping[str, Any], beams: Mapping[str, Any]) -> None:
+    """Refuse upright beams that nobody asked for where many cannot be made either."""
+    written, lost = beams["written"], len(beams["rejected"])
+    if support["kind"] != support["asked"] and lost > MOST_LOST * (written + lost):
+        raise InputError(
+            f"no support for this mesh: {support['feasibility']['reason']}; of "
+            f"{written + lost} upright beams {lost} cannot be made either; remesh it, let "
+            "vertices move (--tolerance 0.1), or leave out --support"
+        )
 
 
 class _StepClock:

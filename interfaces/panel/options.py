@@ -7,6 +7,8 @@ from typing import Any, Literal
 from ...fabrication.mesh_files.reader import read_content
 from ...kernel.errors import InputError
 
+SupportKind = Literal["axis", "exact", "bisector"]
+
 
 @dataclass(frozen=True)
 class PanelOptions:
@@ -35,20 +37,30 @@ class PanelOptions:
     offset : {"constant", "power"}
         Whether the thickness is the same everywhere, or the difference of squared radii.
     edges : {"bisector", "intersection"} or None
-        How panels are cut; by default where the spheres meet if there is a support, else
-        upright.
+        How panels are cut without a support; upright by default. With one, its beams say.
     tolerance : float or None
         How far vertices may move, in mean edges; at 0 the faces have to lie on circles, and by
         default they need not.
     target_angle : float
         Angle at which neighbours shall meet, in degrees.
-    support : bool
-        Whether to ask for nodes without torsion, and to write beams.
+    crease : float
+        Edges at which flat faces turn by more, in degrees, stay sharp; 180 for none.
+    support : {"axis", "exact", "bisector"} or None
+        Which beams to write: on node axes, on exact nodes, or upright; None for none.
     depth, beam_thickness : float or None
         Of the beams, in model units; by default a quarter of the mean edge, and a tenth of the
         depth.
     node_radius : float
         Radius of the node cylinders, in model units; 0 for mitred beams.
+    max_height, max_slide : float
+        How far vertices may move for an exact support, off the surface and within it, in mean
+        edges.
+    bearing : float
+        Clear distance from panel to beam, in model units.
+    allow_step, allow_gap : float
+        What the workshop allows between neighbours, in millimetres.
+    allow_torsion : float
+        What it allows between beams and node axes, in degrees.
     """
 
     mesh: Path | None = None
@@ -65,10 +77,17 @@ class PanelOptions:
     edges: Literal["bisector", "intersection"] | None = None
     tolerance: float | None = None
     target_angle: float = 0.0
-    support: bool = False
+    crease: float = 40.0
+    support: SupportKind | None = None
     depth: float | None = None
     beam_thickness: float | None = None
     node_radius: float = 0.0
+    max_height: float = 0.06
+    max_slide: float = 0.7
+    bearing: float = 0.0
+    allow_step: float = 5.0
+    allow_gap: float = 5.0
+    allow_torsion: float = 0.1
 
 
 def model_units(options: PanelOptions) -> tuple[str, bool]:
