@@ -216,7 +216,8 @@ def _chosen(
 
 
 def _is_field(name: str, field: str) -> bool:
-    return name == field or name.endswith(f".{field}") or name.startswith(f"{field}.")
+    """Whether a field is a part of a name, from dot to dot."""
+    return f".{field}." in f".{name}."
 
 
 def _flatten(value: Value, name: str, target: str, found: dict[str, Any]) -> None:
