@@ -145,6 +145,14 @@ def shared(kills: int, processes: int = 8) -> None:
         f"{processes} processes on one store: {len(counts)} steps, run at most "
         f"{max(counts.values())} times; right: {values == {repr(right(0.5))}}"
     )
+
+    def is_wrong(name: str, process: subprocess.Popen[bytes], seed: float) -> bool:
+        _, errors = process.communicate()
+        if process.returncode:
+            print(name, errors.decode()[-2000:])
+            return True
+        return (folder / name).read_text() != repr(right(seed))
+
     running: dict[str, tuple[subprocess.Popen[bytes], float]] = {}
     killed = finished = wrong = number = 0
     while killed < kills:
@@ -162,12 +170,11 @@ def shared(kills: int, processes: int = 8) -> None:
             if process.poll() is not None:
                 del running[other]
                 finished += 1
-                text = (folder / other).read_text() if process.returncode == 0 else "failed"
-                wrong += text != repr(right(seed))
+                wrong += is_wrong(other, process, seed)
     for name, (worker, seed) in running.items():
-        failed = worker.wait() != 0
+        worker.wait()
         finished += 1
-        wrong += failed or (folder / name).read_text() != repr(right(seed))
+        wrong += is_wrong(name, worker, seed)
     left = len(list((folder / "cache").rglob(".unfinished*")))
     print(f"{killed} killed, {finished} finished, {wrong} wrong, {left} unfinished files left")
 
