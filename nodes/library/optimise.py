@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 
-from ...kernel.arrays import FloatArray
+from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.errors import ConvergenceError, InputError, name_ids
 from ...kernel.meshes.creases import crease_edges
 from ...kernel.meshes.mesh import Mesh, mean_edge_length
@@ -181,7 +181,8 @@ def minimize_angles(
             "way only; shorter faces across the bend gain more"
         )
     if target_angle == 0:
-        warn_of_losses(result, sphere_mesh.mesh, _counted(edge_weights, run.is_crease))
+        weights = _weights(edge_weights, run.is_crease)
+        warn_of_losses(result, sphere_mesh.mesh, weights, run.is_crease)
     report = AnglesReport(
         converged=run.converged,
         iterations=list(run.iterations),
@@ -193,7 +194,7 @@ def minimize_angles(
     return AnglesOptimum(result, report)
 
 
-def _counted(weights: FloatArray | None, is_crease: FloatArray) -> FloatArray:
+def _weights(weights: FloatArray | None, is_crease: BoolArray) -> FloatArray:
     """Weight of each edge (E,), 0 on creases."""
     return np.where(is_crease, 0.0, 1.0 if weights is None else weights)
 
@@ -265,7 +266,7 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     Examples
     --------
     >>> from spheremesh.nodes import fit_spheres, optimize_spheres, vase_mesh
-    >>> optimum = optimize_spheres(fit_spheres(vase_mesh(8, 4)), angle=0.01)
+    >>> optimum = optimize_spheres(fit_spheres(vase_mesh(12, 4)), angle=0.01)
     >>> optimum.report["converged"], optimum.report["corners"]
     (True, 'soft')
     """
@@ -274,7 +275,7 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
         fairness=fairness, closeness=closeness,
     )  # fmt: skip
     is_crease = crease_edges(sphere_mesh.mesh, np.radians(crease))
-    smooth = _counted(edge_weights, is_crease)
+    smooth = _weights(edge_weights, is_crease)
     conditions = optimization.Conditions(
         np.radians(target_angle), smooth, tolerance, fixed_radii, interior, boundary,
         max_iterations,
@@ -298,7 +299,7 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
             "tolerance to let them move"
         )
     if target_angle == 0 and support == 0:
-        warn_of_losses(result, sphere_mesh.mesh, smooth)
+        warn_of_losses(result, sphere_mesh.mesh, smooth, is_crease)
     stages = [_stage(stage) for stage in run.stages]
     report = EnergyReport(run.converged, stages, run.corners, run.vertex_move, **outcome)
     return EnergyOptimum(result, report)

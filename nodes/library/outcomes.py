@@ -11,7 +11,7 @@ from ...kernel.meshes.mesh import Mesh, mean_edge_length
 from ...kernel.reports import Report
 from ...kernel.sphere_meshes.fit import face_planes
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
-from ...kernel.tolerances import LITTLE_GAIN, SAME_ENERGY
+from ...kernel.tolerances import LITTLE_GAIN
 from ..graphs.node import warn
 
 
@@ -62,8 +62,10 @@ def outcome_of(
     }
 
 
-def warn_of_losses(sphere_mesh: SphereMesh, design: Mesh, weights: FloatArray) -> None:
-    """Say where spheres are hardly smoother than flat panels, or sharper at some edge.
+def warn_of_losses(
+    sphere_mesh: SphereMesh, design: Mesh, weights: FloatArray, is_crease: BoolArray
+) -> None:
+    """Say where spheres are hardly smoother than flat panels, or much sharper at some edge.
 
     Parameters
     ----------
@@ -73,19 +75,21 @@ def warn_of_losses(sphere_mesh: SphereMesh, design: Mesh, weights: FloatArray) -
         The mesh as designed, with the same faces.
     weights : (E,) float array
         Weight of each interior edge; edges of weight 0 are meant to be sharp.
+    is_crease : (E,) bool array
+        Edges that are left sharp, whatever they weigh.
     """
-    counts = weights > 0
+    counts = (weights > 0) & ~is_crease
     if not counts.any():
         return
     planar = angle_summary(face_planes(design), counts)
     spherical = angle_summary(sphere_mesh, counts)
-    along = "" if counts.all() else " along the weighted edges"
+    along = "" if counts[~is_crease].all() else " along the weighted edges"
     if spherical["mean"] > (1 - LITTLE_GAIN) * planar["mean"]:
         warn(
             f"spheres gain little over planes here ({planar['mean']:.3g} to "
             f"{spherical['mean']:.3g} degrees{along}): the surface is nearly minimal or flat"
         )
-    if spherical["max"] > planar["max"] * (1 + SAME_ENERGY):
+    if spherical["max"] > (1 + LITTLE_GAIN) * planar["max"]:
         warn(
             f"the sharpest edge{along} rises from {planar['max']:.3g} to "
             f"{spherical['max']:.3g} degrees, while the mean goes from {planar['mean']:.3g} to "

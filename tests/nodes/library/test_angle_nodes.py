@@ -1,5 +1,6 @@
 """Nodes of the smallest angles: creases, caps, and what is said of them."""
 
+import importlib
 import json
 import warnings
 from pathlib import Path
@@ -69,8 +70,6 @@ def test_creases_are_counted_apart() -> None:
 
 @pytest.mark.filterwarnings("ignore:vertices miss", "ignore:.* panels are flatter")
 def test_creases_reach_panels_files_and_reports(tmp_path: Path) -> None:
-    import rhino3dm
-
     optimum = minimize_angles(fit_spheres(house()))
     moulds = cluster_radii(optimum.sphere_mesh, k=3, relax=False)
     cut = panels(moulds.sphere_mesh, thickness=0.02, labels=moulds.labels)
@@ -79,7 +78,8 @@ def test_creases_reach_panels_files_and_reports(tmp_path: Path) -> None:
     assert report["creases"]["count"] == 8
     assert report["angles_deg"]["spherical"]["max"] < report["creases"]["max_deg"]
     assert report["angles_deg"]["spherical"] == moulds.report["angles_deg"]
-    file = rhino3dm.File3dm.Read(write_3dm(cut.panels, str(tmp_path / "house.3dm")))
+    library: Any = importlib.import_module("rhino3dm")
+    file = library.File3dm.Read(write_3dm(cut.panels, str(tmp_path / "house.3dm")))
     layers = {layer.Index: layer.Name for layer in file.Layers}
     names = [layers[each.Attributes.LayerIndex] for each in file.Objects]
     assert names.count("Creases") == 2 * 8
@@ -123,7 +123,7 @@ def test_sharper_edges_are_told() -> None:
             report = minimize_angles(fit_spheres(mesh), crease=180).report
         planar, spherical = (report["angles_deg"][k] for k in ("planar", "spherical"))
         assert any("sharpest edge" in text for text in texts) == (
-            spherical["max"] > planar["max"] * (1 + 1e-9)
+            spherical["max"] > planar["max"] * 1.05
         )
 
 
