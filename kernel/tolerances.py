@@ -240,6 +240,8 @@ SINGLE_IS_ENOUGH: Final = 0.01
 
 VERTEX_MISS: Final = 0.01
 """Vertices farther from their sphere than this share of the mean edge are worth a warning."""
+FLATTENED: Final = 0.25
+"""Spheres of which less than this share of the curvature is left have become nearly planes."""
 LITTLE_GAIN: Final = 0.05
 """A relative gain of spheres over planes that is worth saying to be small."""
 MOSTLY_EVEN: Final = 0.95

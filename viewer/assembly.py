@@ -123,8 +123,8 @@ def _gathered(panels: Panels, beams: Beams) -> _Scene:
 
 def _flat(part: BeamTriangles, origin: FloatArray, color: tuple[float, float, float]) -> _Scene:
     count, size = part.points.shape[:2]
-    ids: IntArray = np.arange(count)
-    triangles = (part.triangles + size * ids[:, None, None]).reshape(-1, 3)
+    ids: IntArray = np.arange(int(count))
+    triangles: IntArray = (part.triangles + int(size) * ids[:, None, None]).reshape(-1, 3)
     return _Scene(
         origin, part.points.reshape(-1, 3) - origin, part.normals.reshape(-1, 3), triangles,
         np.tile(color, (len(triangles), 1)), np.repeat(ids, len(part.triangles)),

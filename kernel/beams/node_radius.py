@@ -37,7 +37,7 @@ def least_node_radius(annuli: Annuli, thickness: float, node_gap: float = 0.0) -
     ends, nodes = _around_nodes(annuli), annuli.edge_vertices.ravel()
     half = thickness / 2 * np.abs(dot(np.repeat(annuli.frames[:, 2], 2, axis=0), ends.left))
     corners = annuli.corners.reshape(-1, 2, 3)
-    need = _needs(ends, nodes, corners - corners[:, :1], half)
+    before = need = _needs(ends, nodes, corners - corners[:, :1], half)
     for _ in range(RADIUS_ROUNDS):
         cut, exists = cut_corners(annuli, (need[nodes] + node_gap).reshape(-1, 2, 1))
         exists = np.repeat(exists, 2)[:, None, None]

@@ -22,9 +22,19 @@ With the sign changed: positive where functions bend down.
 """
 
 _STAY = 0.99
+"""Share of the way to the bound that a step may go."""
+
 _CENTERING = 0.15
-_LEAST = 1e-9
-_LEAST_GAP = 1e-17
+"""To which share of it each step takes the gap to the minimum."""
+
+_BEGIN = 0.01
+"""Slack to begin with: small, so that of several minima that near the start is found."""
+
+_LEAST = 1e-13
+"""Least curvature of a system, along directions in which nothing changes."""
+
+_LEAST_GAP = 1e-16
+"""Where the gap to the minimum ends; unknowns then still move along nearly parallel faces."""
 
 
 def minimize_within(
@@ -48,7 +58,7 @@ def minimize_within(
     functions, curvature : callable
         The functions g ≥ 0.
     rounds : int
-        Number of steps; each takes the gap down to about a sixth.
+        Number of steps; each takes the gap to the minimum down to about a sixth.
 
     Returns
     -------
@@ -57,8 +67,8 @@ def minimize_within(
     """
     unknowns = start.copy()
     values, slopes = functions(unknowns)
-    slacks = np.maximum(values, 0.1)
-    forces = np.full_like(slacks, 0.1)
+    slacks = np.maximum(values, _BEGIN)
+    forces = _BEGIN**2 / slacks
     eye = np.eye(start.shape[1])
     for _ in range(rounds):
         gap = dot(slacks, forces)[:, None] / slacks.shape[1]

@@ -5,7 +5,7 @@ measured here. What cannot be made is listed with its reason.
 """
 
 from dataclasses import replace
-from typing import Literal, NamedTuple, get_args
+from typing import NamedTuple, get_args
 
 import numpy as np
 
@@ -21,10 +21,9 @@ from ..spheres.minkowski import angle
 from ..spheres.rows import recenter
 from ..tolerances import PLANE_SAGITTA, SAME_PLANE
 from .checks import NO_PANEL, Found, rejection_reasons
+from .edge_axes import EdgeMode, check_axes, outward_axes
 from .panels import Panels, corner_points
 from .thickness import ThicknessRule, ThicknessSide, panel_faces
-
-EdgeMode = Literal["bisector", "intersection", "axis"]
 
 
 def flatten_nearly_plane(sphere_mesh: SphereMesh) -> SphereMesh:
@@ -67,7 +66,7 @@ def cutting_planes(
         plane through their vertices and the normal of their sphere. ``axis``: the plane
         through the two vertices and along the sum of their node axes, on the boundary as well.
     axes : (V, 2, 3) float array, optional
-        Two points of each node axis, from the outer to the inner side: for ``axis`` alone.
+        Two points of each node axis, in any order: for ``axis`` alone.
 
     Returns
     -------
@@ -93,7 +92,7 @@ def cutting_planes(
     bisecting = across + across[twins]
     upright = np.where(is_interior[:, None], bisecting, unit(rows[:, 1:4]))
     if edges == "axis" and axes is not None:
-        outward = unit(axes[:, 0] - axes[:, 1])
+        outward = outward_axes(mesh, axes)
         upright = outward[mesh.corners] + outward[mesh.corners[topology.next_corners]]
     # No plane bisects two faces that fold back onto each other.
     upright[norm(upright) < SAME_PLANE] = 0
@@ -293,7 +292,7 @@ def cut_panels(
         edges=(edges, EdgeMode), side=(side, ThicknessSide), layer=(layer, ThicknessRule)
     )
     _check_sizes(sphere_mesh.mesh.n_faces, thickness, joint_gap, labels)
-    check_axes(sphere_mesh.mesh.n_vertices, edges, axes)
+    check_axes(sphere_mesh.mesh, edges, axes)
     cuts = _cut_edges(sphere_mesh, edges, axes, joint_gap)
     mesh, topology = cuts.sphere_mesh.mesh, cuts.sphere_mesh.mesh.topology
     rows = cuts.sphere_mesh.local_spheres
@@ -358,24 +357,3 @@ def _check_sizes(
             raise InputError(f"{name} must be a length of at least 0, not {value}")
     if labels is not None and len(labels) != n_faces:
         raise InputError(f"labels must name a mould for each of the {n_faces} faces")
-
-
-def check_axes(n_vertices: int, edges: EdgeMode, axes: FloatArray | None) -> None:
-    """Refuse axes that are missing, not wanted, or not those of the vertices.
-
-    Raises
-    ------
-    InputError
-        If so.
-    """
-    if (edges == "axis") != (axes is not None):
-        raise InputError(
-            "edges='axis' needs axes, two points of each node axis as axis_support gives them"
-            if axes is None
-            else f"axes are for edges='axis', not for {edges!r}: leave them out"
-        )
-    if axes is not None and not (axes.shape == (n_vertices, 2, 3) and np.isfinite(axes).all()):
-        raise InputError(
-            f"axes must be two points for each of the {n_vertices} vertices, of shape "
-            f"({n_vertices}, 2, 3), not {axes.shape}"
-        )

@@ -12,7 +12,8 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, dot
 from ..errors import InputError
 from ..meshes.mesh import mean_edge_length
-from ..panels.cutting import EdgeMode, flatten_nearly_plane
+from ..panels.cutting import flatten_nearly_plane
+from ..panels.edge_axes import EdgeMode
 from ..parts.findings import rejected_report
 from ..parts.records import RejectedPart, reject_parts
 from ..reports import Report
@@ -157,7 +158,7 @@ def annuli_in_planes(
     edges : {"bisector", "axis"}
         Planes of the annuli, which are the walls of the panels, see `cutting_planes`.
     axes : (V, 2, 3) float array
-        Two points of each node axis, from the outer to the inner side.
+        Two points of each node axis, in any order.
     depth, kappa : float or None
         As in `annulus_support`.
     max_tilt : float

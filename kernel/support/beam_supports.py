@@ -13,7 +13,8 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from ..meshes.mesh import Mesh, mean_edge_length
-from ..panels.cutting import EdgeMode, cutting_planes, flatten_nearly_plane, gaps_along_edges
+from ..panels.cutting import cutting_planes, flatten_nearly_plane, gaps_along_edges
+from ..panels.edge_axes import EdgeMode, outward_axes
 from ..sphere_meshes.fit import fit_spheres
 from ..sphere_meshes.planarity_circularity import circularity
 from ..sphere_meshes.sphere_mesh import SphereMesh, vertex_error
@@ -152,7 +153,7 @@ def bisector_axes(sphere_mesh: SphereMesh) -> FloatArray:
     system = across @ (gram + LEAN_WEIGHT**2 * np.eye(3)) @ across
     is_used = norm(upright)[:, None, None] > 0
     system = np.where(is_used, system + upright[:, :, None] * upright[:, None], np.eye(3))
-    leans = np.linalg.solve(system, pull[..., None])[..., 0]
+    leans: FloatArray = np.linalg.solve(system, pull[..., None])[..., 0]
     return axis_points(mesh, -unit(upright - leans))
 
 
@@ -210,7 +211,7 @@ def beam_support_report(
     size = mean_edge_length(mesh)
     used = np.zeros(mesh.n_vertices, bool)
     used[mesh.corners] = True
-    directions = unit(axes.points[:, 1] - axes.points[:, 0])
+    directions = -outward_axes(mesh, axes.points)
     planes = wall_planes(sphere_mesh, kind, axes.points)
     torsion = np.degrees(node_torsion(beam_edges(mesh), planes, directions))[used]
     lean = np.degrees(lean_angles(mesh, directions))[used]

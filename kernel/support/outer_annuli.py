@@ -6,7 +6,8 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..meshes.mesh import Mesh, face_centroids, face_normals, local_corners
-from ..panels.cutting import EdgeMode, cutting_planes
+from ..panels.cutting import cutting_planes
+from ..panels.edge_axes import EdgeMode, outward_axes
 from ..parts.records import part_ids
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.incidence import meet_lines
@@ -49,7 +50,7 @@ def annuli_on_walls(
     """Annuli in the planes in which panels are cut; where circles are real.
 
     Edges are "bisector" or "axis" as in `cutting_planes`, the axes (V, 2, 3) two points of each
-    node axis, from the outer to the inner side.
+    node axis, in any order.
 
     Notes
     -----
@@ -69,7 +70,7 @@ def annuli_on_walls(
     square = minkowski(mean, mean)
     is_real = is_left & is_right & (square > DEGENERATE) & planes.any(axis=1)
     outer = mean / np.sqrt(np.where(is_real, square, 1.0))[:, None]
-    directions = unit(axes[:, 1] - axes[:, 0])[sides.vertices]
+    directions = -outward_axes(sphere_mesh.mesh, axes)[sides.vertices]
     return _annuli_on(sides, planes, feet, outer, directions, is_real)
 
 

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 
+from ...kernel.analysis import angle_summary
 from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.errors import ConvergenceError, InputError, name_ids
 from ...kernel.meshes.creases import crease_edges
@@ -14,7 +15,7 @@ from ...kernel.optimization import whole_energy as optimization
 from ...kernel.optimization.energies.table import EnergyWeights
 from ...kernel.sphere_meshes.planarity_circularity import circularity
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
-from ...kernel.tolerances import CIRCULAR, OPENING, VERTEX_MISS
+from ...kernel.tolerances import CIRCULAR, FLATTENED, LITTLE_GAIN, OPENING, VERTEX_MISS
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
 from .arrays import CreaseAngle, EdgeWeights, FaceRadii, FaceVectors, Vector
@@ -300,6 +301,8 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
         )
     if target_angle == 0 and support == 0:
         warn_of_losses(result, sphere_mesh.mesh, smooth, is_crease)
+    if support > 0:
+        _warn_of_support(sphere_mesh, result, outcome, ~is_crease)
     stages = [_stage(stage) for stage in run.stages]
     report = EnergyReport(run.converged, stages, run.corners, run.vertex_move, **outcome)
     return EnergyOptimum(result, report)
@@ -344,3 +347,33 @@ def _stage(stage: optimization.Stage) -> dict[str, Any]:
         "iterations": stage.iterations,
         "energies": {name: list(map(float, e)) for name, e in stage.energies.items()},
     }
+
+
+def _warn_of_support(
+    start: SphereMesh, result: SphereMesh, outcome: dict[str, dict[str, Any]],
+    is_smooth: BoolArray,
+) -> None:  # fmt: skip
+    """Say where nodes without torsion cost what spheres are for."""
+    planar, spherical = (
+        outcome["angles_deg"][kind]["mean"] for kind in ("planar", "spherical")
+    )
+    bends = [
+        float(np.median(np.abs(each.local_spheres[:, 0]))) * mean_edge_length(each.mesh)
+        for each in (start, result)
+    ]
+    before = angle_summary(start, is_smooth)["mean"]
+    found: list[str] = []
+    if bends[1] < FLATTENED * bends[0] and spherical > (1 + LITTLE_GAIN) * before:
+        share = 100 * bends[1] / bends[0]
+        found.append(
+            f"flatten to {share:.0f} % of their curvature ({before:.3g} to {spherical:.3g} "
+            "degrees)"
+        )
+    if spherical > planar:
+        found.append(f"are rougher than planes ({planar:.3g} to {spherical:.3g} degrees)")
+    if found:
+        warn(
+            f"for nodes without torsion spheres {' and '.join(found)}: the net does not follow "
+            "the lines of curvature; let its vertices slide (exact_support), or leave spheres "
+            "as they are and take axis_support"
+        )

@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from ....kernel.meshes.mesh import mean_edge_length
-from ....kernel.panels.cutting import check_axes
+from ....kernel.panels.edge_axes import check_axes
 from ....kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ....kernel.support import beam_supports
 from ....kernel.support.annuli import Annuli
@@ -72,8 +72,9 @@ def axis_support(
     max_tilt : float
         Beams whose plane tilts more from the plane that bisects the faces are rejected.
     axes : (V, 2, 3) float array, optional
-        Two points of each node axis, outer side first; by default those of the spheres where
-        all nodes are exact already (hexagons, remeshed nets), else the best for the mesh.
+        Two points of each node axis, as `node_axes` and `support_structure` give them; by
+        default those of the spheres where all nodes are exact already (hexagons, remeshed
+        nets), else the best for the mesh.
 
     Returns
     -------
@@ -97,7 +98,7 @@ def axis_support(
     if axes is None:
         chosen = beam_supports.support_axes(sphere_mesh)
     else:
-        check_axes(mesh.n_vertices, "axis", axes)
+        check_axes(mesh, "axis", axes)
         chosen = beam_supports.NodeAxes(axes, is_exact=False)
     if depth is None and kappa is None:
         depth = edge / 4
