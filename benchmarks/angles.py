@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from spheremesh import Mesh, nodes
-from spheremesh.kernel.arrays import FloatArray
+from spheremesh.kernel.arrays import FloatArray, IntArray
 from spheremesh.kernel.optimization.angle_minimization import minimize_angles, pencil_angles
 from spheremesh.kernel.optimization.pencil_energy import (
     PencilCoupling,
@@ -34,10 +34,10 @@ CREASE = np.radians(40)
 
 def grid(points: FloatArray) -> Mesh:
     """Quads of a table of points (m, n, 3)."""
-    rows, columns = points.shape[:2]
-    place = np.arange(rows * columns).reshape(rows, columns)
-    faces = np.stack([place[:-1, :-1], place[1:, :-1], place[1:, 1:], place[:-1, 1:]], -1)
-    return Mesh(points.reshape(-1, 3), faces.reshape(-1, 4))
+    rows, columns = len(points), len(points[0])
+    place: IntArray = np.arange(rows * columns).reshape(rows, columns)
+    sides = [place[:-1, :-1], place[1:, :-1], place[1:, 1:], place[:-1, 1:]]
+    return Mesh(points.reshape(-1, 3), np.stack([side.ravel() for side in sides], 1))
 
 
 def flat(count: int, length: float) -> Mesh:

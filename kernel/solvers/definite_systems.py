@@ -110,7 +110,7 @@ def lowest_mode(matrix: GraphMatrix) -> tuple[float, FloatArray]:
         values, vectors = np.linalg.eigh(rows.toarray())
         return float(values[0]), np.asarray(vectors[:, 0], np.float64)
     try:
-        values, vectors = eigsh(
+        values, vectors = cast("Any", eigsh)(
             rows, k=1, which="SA", v0=irregular(size), tol=1e-6, maxiter=size
         )
     except ArpackNoConvergence:

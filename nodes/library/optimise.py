@@ -145,14 +145,15 @@ def minimize_angles(
     >>> {kind: round(found["mean"], 1) for kind, found in report["angles_deg"].items()}
     {'planar': 24.9, 'spherical': 15.6}
     """
-    if max_opening is None:
-        max_opening = 180.0 if target_angle > 0 else np.degrees(OPENING)
+    opening = float(np.pi) if target_angle > 0 else OPENING
+    if max_opening is not None:
+        opening = float(np.radians(max_opening))
     result, run = angle_minimization.minimize_angles(
         sphere_mesh,
         np.radians(target_angle),
         edge_weights,
         np.radians(crease),
-        np.radians(max_opening),
+        opening,
     )
     if not run.converged:
         raise ConvergenceError(
