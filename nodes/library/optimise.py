@@ -19,7 +19,7 @@ from ...kernel.tolerances import CIRCULAR, FLATTENED, LITTLE_GAIN, OPENING, VERT
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
 from .arrays import CreaseAngle, EdgeWeights, FaceRadii, FaceVectors, Vector
-from .outcomes import OptimumReport, outcome_of, warn_of_losses
+from .outcomes import OptimumReport, flatten_rejected, outcome_of, warn_of_losses
 
 Weight = Annotated[float, Port(min=0)]
 
@@ -46,7 +46,7 @@ class AnglesReport(OptimumReport):
         How far vertices lie from the circles of their faces, in mean edges.
     taken_back : int
         Faces whose panels are flatter than those of the least energy, because these would be
-        rougher than flat ones in the mean.
+        rougher than flat ones in the mean, or could not be cut.
     """
 
     converged: bool
@@ -160,13 +160,15 @@ def minimize_angles(
             f"the angles did not converge in {sum(run.iterations)} steps (last step "
             f"{run.step:.1e} rad): look for nearly degenerate faces"
         )
-    if max_miss is not None and run.circle_miss > max(max_miss, CIRCULAR):
-        misses = circularity(result.mesh) / mean_edge_length(result.mesh)
-        faces = np.flatnonzero(misses > max(max_miss, CIRCULAR)).tolist()
-        raise ConvergenceError(
-            f"the vertices of faces {name_ids(faces)} lie on no circle: they miss it by up to "
-            f"{run.circle_miss:.3g} mean edges and {max_miss:g} is allowed; give a tolerance "
-            "of about that size"
+    if max_miss is not None:
+        _refuse_far_corners(result.mesh, run.circle_miss, max(max_miss, CIRCULAR))
+    flattened: list[int] = []
+    if target_angle == 0:
+        result, flattened = flatten_rejected(result, run.is_crease)
+    if flattened:
+        warn(
+            f"the panels of faces {name_ids(flattened)} are flat: pieces of their spheres "
+            "cannot be cut; smaller or rounder faces there let them bulge"
         )
     found = outcome_of(result, sphere_mesh.mesh, run.is_crease, crease)
     relative = found["vertex_error"]["relative_to_edge"]
@@ -191,9 +193,20 @@ def minimize_angles(
         energies=list(run.energies),
         **found,
         circle_miss=run.circle_miss,
-        taken_back=taken_back,
+        taken_back=taken_back + len(flattened),
     )
     return AnglesOptimum(result, report)
+
+
+def _refuse_far_corners(mesh: Mesh, miss: float, allowed: float) -> None:
+    """Raise an error if corners lie farther from the circles of their faces than allowed."""
+    if miss <= allowed:
+        return
+    faces = np.flatnonzero(circularity(mesh) / mean_edge_length(mesh) > allowed).tolist()
+    raise ConvergenceError(
+        f"the vertices of faces {name_ids(faces)} lie on no circle: they miss it by up to "
+        f"{miss:.3g} mean edges and {allowed:g} is allowed; give a tolerance of about that size"
+    )
 
 
 def _weights(weights: FloatArray | None, is_crease: BoolArray) -> FloatArray:

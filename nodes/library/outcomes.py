@@ -6,12 +6,13 @@ from typing import Any
 import numpy as np
 
 from ...kernel.analysis import angle_summary
-from ...kernel.arrays import BoolArray, FloatArray
-from ...kernel.meshes.mesh import Mesh, mean_edge_length
+from ...kernel.arrays import BoolArray, FloatArray, norm
+from ...kernel.meshes.mesh import Mesh, local_corners, mean_edge_length
+from ...kernel.panels.cutting import cut_panels
 from ...kernel.reports import Report
 from ...kernel.sphere_meshes.fit import face_planes
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
-from ...kernel.tolerances import LITTLE_GAIN
+from ...kernel.tolerances import DEEP_CAP, LITTLE_GAIN
 from ..graphs.node import warn
 
 
@@ -60,6 +61,44 @@ def outcome_of(
             "max_deg": sharp["max"],
         },
     }
+
+
+def flatten_rejected(
+    sphere_mesh: SphereMesh, is_crease: BoolArray
+) -> tuple[SphereMesh, list[int]]:
+    """Planes for the faces whose panels can be made flat, but not of their spheres.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+        Spheres of smallest angles.
+    is_crease : (E,) bool array
+        Edges that are left sharp.
+
+    Returns
+    -------
+    sphere_mesh : SphereMesh
+        The same with planes there; planes everywhere if that is smoother in the mean.
+    faces : list of int
+        The faces that are flat now.
+    """
+    mesh = sphere_mesh.mesh
+    reach = np.maximum.reduceat(norm(local_corners(mesh)), mesh.offsets[:-1])
+    # Only deep caps are refused: most meshes have none, and cutting takes longer than all else.
+    if (2 * reach * np.abs(sphere_mesh.local_spheres[:, 0])).max() < np.sin(DEEP_CAP):
+        return sphere_mesh, []
+    planes = face_planes(mesh)
+    spoilt = {part.element_id for part in cut_panels(sphere_mesh)[1]}
+    faces = sorted(spoilt - {part.element_id for part in cut_panels(planes)[1]})
+    if not faces:
+        return sphere_mesh, []
+    rows = sphere_mesh.local_spheres.copy()
+    rows[faces] = planes.local_spheres[faces]
+    result = SphereMesh.from_local(mesh, rows)
+    means = [angle_summary(each, ~is_crease)["mean"] for each in (result, planes)]
+    if means[0] > means[1]:
+        return planes, list(range(mesh.n_faces))
+    return result, faces
 
 
 def warn_of_losses(

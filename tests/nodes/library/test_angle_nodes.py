@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from spheremesh import Mesh
+from spheremesh.kernel.optimization import angle_minimization
 from spheremesh.nodes import (
     cluster_radii,
     enneper_mesh,
@@ -23,6 +24,7 @@ from spheremesh.nodes import (
     roof_mesh,
     strip_weights,
     torus_mesh,
+    triangulate,
     vase_mesh,
     write_3dm,
     write_schedule,
@@ -147,3 +149,21 @@ def test_targets_have_no_bound_unless_asked_for() -> None:
     bound = minimize_angles(face_planes(squares), target_angle=90, max_opening=60)
     assert bound.report["converged"]
     assert bound.report["angles_deg"]["spherical"]["max"] < 89
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("seed", range(3))
+def test_spheres_cost_no_panel(seed: int) -> None:
+    """On noise, faces that cannot be cut from spheres are flat."""
+    net = roof_mesh(6, 8)
+    ends = net.vertices[net.topology.edge_vertices]
+    edge = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).mean()
+    noise = np.random.default_rng(seed).normal(size=net.vertices.shape)
+    mesh = triangulate(Mesh(net.vertices + 0.25 * edge * noise, net.faces))
+    found = minimize_angles(fit_spheres(mesh))
+    lost = {part["id"] for part in panels(found.sphere_mesh).report["rejected"]}
+    assert lost <= {part["id"] for part in panels(face_planes(mesh)).report["rejected"]}
+    planar, spherical = (found.report["angles_deg"][k] for k in ("planar", "spherical"))
+    assert spherical["mean"] <= planar["mean"] * (1 + 1e-9)
+    free = angle_minimization.minimize_angles(fit_spheres(mesh), crease=np.radians(40))
+    assert panels(free[0]).report["rejected"]
