@@ -16,6 +16,7 @@ from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.spheres.arcs import Arcs, arc_points, sphere_arcs
+from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.kernel.spheres.incidence import evaluate, normals, signed_distance
 from spheremesh.kernel.spheres.rows import center_radius, from_center_radius, normalize, rescale
 from spheremesh.kernel.support.annuli import Annuli, corner_mismatch
@@ -296,7 +297,9 @@ def test_annuli_whose_axes_lean_across_their_arcs_are_listed() -> None:
         for half in ((a, b, c), (a, c, d))
     ]
     mesh = Mesh(quads.vertices, halves)
-    rough = minimize_angles(fit_spheres(mesh))[0]
+    angles = np.random.default_rng(6).uniform(-0.7, 0.7, mesh.n_faces)
+    pencils = circle_pencils(face_circles(mesh)[0])
+    rough = SphereMesh.from_local(mesh, pencil_spheres(*pencils, angles))
     found = annulus_support(rough, 0.1 * mean_edge_length(mesh))
     assert any("leans across the arc" in beam.reason for beam in found.rejected)
     annuli = found.annuli
