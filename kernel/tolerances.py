@@ -215,6 +215,15 @@ UMBILIC: Final = 1e-3
 PLANAR_DAMPING: Final = 1e-11
 """Least damping of a step towards planar nodes: with less, rounding is larger than the step."""
 
+# Exact supports
+
+RIDGE: Final = 1e-9
+"""How much it counts that a quadric is flat, relative to its fit, where neighbours tell not."""
+EXACT_ENERGY: Final = 1e-26
+"""Sum of squared misses of all conditions, in mean edges and radians, that is rounding."""
+STEP_RIDGE: Final = 1e-12
+"""Least damping of a step, relative to the diagonal of its system: rounding."""
+
 # Fabrication
 
 COINCIDENT: Final = 1e-6

@@ -6,28 +6,49 @@ All nodes of the library can be imported from here by name or with ``*``.
 from collections.abc import Callable
 from typing import Any
 
+from ..kernel.progress import listen
 from .graphs.errors import GraphError, NodeError
 from .graphs.graph import Graph
-from .graphs.node import REGISTRY, Node, NodeWarning, find_node, load_library, node, warn
+from .graphs.node import (
+    REGISTRY,
+    Node,
+    NodeWarning,
+    find_node,
+    load_library,
+    node,
+    progress,
+    warn,
+)
 from .graphs.ports import Port, ReadPath, Units, WritePath
-from .graphs.sweep import each, sweep
+from .graphs.running.events import Event, RunCancelledError
+from .graphs.specification.wires import each
+from .graphs.stores.disk import DiskStore
+from .graphs.stores.memory import MemoryStore
+from .graphs.sweeps.sweep import sweep
 
 __all__ = [
+    "DiskStore",
+    "Event",
     "Graph",
     "GraphError",
+    "MemoryStore",
     "Node",
     "NodeError",
     "NodeWarning",
     "Port",
     "ReadPath",
+    "RunCancelledError",
     "Units",
     "WritePath",
     "each",
     "find_node",
     "node",
+    "progress",
     "sweep",
     "warn",
 ]
+
+listen(progress)  # long computations of the kernel tell it of the node that runs them
 
 # The nodes are found when first asked for, by the registry: a new function in a module of
 # nodes/library needs no line here, and `import spheremesh` does not import the library.

@@ -9,8 +9,8 @@ from typing import Any, Final
 from ... import __version__
 from ...fabrication.output_folder import REPORT, OutputFolder, output_folder
 from ...kernel.errors import ConvergenceError, InputError
-from ...nodes.graphs.files import FileUses, Folders, note_known_files
 from ...nodes.graphs.graph import Graph
+from ...nodes.graphs.running.files import FileUses, Folders, note_known_files
 
 GRAPH: Final = "graph.json"
 """Name of the graph of a job beside its files."""
@@ -84,6 +84,8 @@ def run_job(
     ) as output:
         _check_files(graph, output)
         run = partial(graph.run, on_step=clock.note, write_to=output)
+        if graph.steps["optimum"].node.name == "exact_support":
+            _refuse_no_support(run("optimum.report"))
         _refuse_nothing(run("panels.report"), "panels")
         _refuse_unfinished(run("optimum.report", on_step=None))
         if "annuli" in graph.steps:
@@ -145,6 +147,11 @@ def _refuse_unfinished(optimum: Mapping[str, Any]) -> None:
             f"its stage {stage['name']!r}: allow more tolerance, or look for nearly degenerate "
             "faces"
         )
+
+
+def _refuse_no_support(exact: Mapping[str, Any]) -> None:
+    if exact["verdict"] == "no":
+        raise ConvergenceError(exact["reason"])
 
 
 def _refuse_nothing(made: Mapping[str, Any], what: str) -> None:

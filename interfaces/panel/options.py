@@ -52,6 +52,9 @@ class PanelOptions:
         depth.
     node_radius : float
         Radius of the node cylinders, in model units; 0 for mitred beams.
+    max_height, max_slide : float
+        How far vertices may move for an exact support, off the surface and within it, in mean
+        edges.
     bearing : float
         Clear distance from panel to beam, in model units.
     allow_step, allow_gap : float
@@ -79,6 +82,8 @@ class PanelOptions:
     depth: float | None = None
     beam_thickness: float | None = None
     node_radius: float = 0.0
+    max_height: float = 0.06
+    max_slide: float = 0.7
     bearing: float = 0.0
     allow_step: float = 5.0
     allow_gap: float = 5.0

@@ -69,7 +69,8 @@ def _print_verdict(report: Mapping[str, Any], *, is_error: bool = False) -> None
     if report["buildable"]:
         return
     causes: dict[str, list[tuple[float, str]]] = {}
-    for found in (report["audit"] or {"errors": []})["errors"]:
+    errors: list[dict[str, Any]] = report["audit"]["errors"] if report["audit"] else []
+    for found in errors:
         text = f"{found['id']} {found['message']}"
         causes.setdefault(found["code"], []).append((found["size"] or 0.0, text))
     for part in (*report["panels"]["rejected"], *report["beams"]["rejected"]):

@@ -1,9 +1,10 @@
 """The beams of the main job: which annuli, and what is made of them."""
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from ...nodes.graphs.graph import Graph
-from ...nodes.graphs.wires import Step, Wire
+from ...nodes.graphs.specification.wires import Step, Wire
 from .options import PanelOptions, SupportKind
 
 
@@ -45,7 +46,12 @@ class SupportSteps(NamedTuple):
 
 
 def add_annuli(
-    graph: Graph, options: PanelOptions, kind: SupportKind, spheres: Wire, design: Wire
+    graph: Graph,
+    options: PanelOptions,
+    kind: SupportKind,
+    spheres: Wire,
+    design: Wire,
+    layers: Mapping[str, Any],
 ) -> AnnuliSteps:
     """Add the annuli of a support to a graph.
 
@@ -61,6 +67,8 @@ def add_annuli(
         What the panels are cut from.
     design : Wire
         The same before moulds.
+    layers : mapping
+        Thickness and joint of the panels, as inputs of `panels`.
 
     Returns
     -------
@@ -75,17 +83,23 @@ def add_annuli(
     if options.beam_thickness is not None:
         thickness["thickness"] = graph.param("beam_thickness", options.beam_thickness, min=0)
     if kind == "bisector":
-        cut: dict[str, Any] = {"edges": "bisector"}
         annuli = graph.add(
             "bisector_support", "annuli", sphere_mesh=spheres, **depth, **thickness
         )
+        cut: dict[str, Any] = {"edges": "bisector"}
     else:
-        if spheres is not design:
+        if kind == "exact":
+            depth["axes"] = graph.add("common_axes", "axes", sphere_mesh=design)
+        elif spheres is not design:
             # Moulds change the spheres: where those before have exact nodes, their axes count.
             axes = graph.add("node_axes", "axes", sphere_mesh=design)
             depth["axes"] = axes
         annuli = graph.add("axis_support", "annuli", sphere_mesh=spheres, **depth)
         cut = {"edges": "axis", "axes": annuli.axes}
+    cut["joint_gap"] = graph.add(
+        "least_joint", "joint", sphere_mesh=spheres, axes=annuli.axes, edges=cut["edges"],
+        thickness=layers["thickness"], joint_gap=layers["joint_gap"],
+    )  # fmt: skip
     return AnnuliSteps(kind, annuli, cut, thickness, feasibility)
 
 
@@ -128,12 +142,12 @@ def _cut_beams(graph: Graph, options: PanelOptions, support: AnnuliSteps, panels
     """Beams of annuli; upright ones miss the node axes and end at cylinders."""
     annuli, thickness = support.annuli.annuli, support.thickness
     sizes: dict[str, Any] = dict(thickness)
+    if options.bearing:
+        sizes["bearing"] = graph.param("bearing", options.bearing, min=0)
     if options.node_radius:
         sizes["node_radius"] = graph.param("node_radius", options.node_radius, min=0)
     elif support.kind == "bisector":
         sizes["node_radius"] = graph.add(
-            "least_node_radius", "node_radius", annuli=annuli, **thickness
+            "least_node_radius", "node_radius", annuli=annuli, panels=panels, **sizes
         )
-    if options.bearing:
-        sizes["bearing"] = graph.param("bearing", options.bearing, min=0)
     return graph.add("beams", "beams", annuli=annuli, panels=panels, **sizes)

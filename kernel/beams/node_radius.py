@@ -7,6 +7,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray, dot, norm, unit
 from ..support.annuli import Annuli
 from .beams import cut_corners, inward_directions
+from .cutting import node_points
 
 ROOM: Final = 3.0
 """Length of a beam, in radii of its node cylinders, that leaves a third of it between them."""
@@ -36,12 +37,12 @@ def least_node_radius(annuli: Annuli, thickness: float, node_gap: float = 0.0) -
         return 0.0
     ends, nodes = _around_nodes(annuli), annuli.edge_vertices.ravel()
     half = thickness / 2 * np.abs(dot(np.repeat(annuli.frames[:, 2], 2, axis=0), ends.left))
-    corners = annuli.corners.reshape(-1, 2, 3)
-    before = need = _needs(ends, nodes, corners - corners[:, :1], half)
+    corners, axes = annuli.corners.reshape(-1, 2, 3), node_points(annuli).reshape(-1, 1, 3)
+    before = need = _needs(ends, nodes, corners - axes, half)
     for _ in range(RADIUS_ROUNDS):
         cut, exists = cut_corners(annuli, (need[nodes] + node_gap).reshape(-1, 2, 1))
         exists = np.repeat(exists, 2)[:, None, None]
-        shifts = np.where(exists, cut.reshape(-1, 2, 3), corners) - corners[:, :1]
+        shifts = np.where(exists, cut.reshape(-1, 2, 3), corners) - axes
         before, need = need, _needs(ends, nodes, shifts, half)
     need = np.maximum(before, need)
     lengths = norm(annuli.corners[:, 1] - annuli.corners[:, 0]).min(axis=1)

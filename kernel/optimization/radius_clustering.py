@@ -78,6 +78,9 @@ def cluster_radii(
     than its circle (R < ρ): such a face goes to the sharpest mould on which it lies, and the
     flattest mould grows, where necessary, to carry all of its faces.
 
+    Spheres that have one radius already stay: they may pass through vertices that lie on no
+    circle.
+
     References
     ----------
     Meshes with Spherical Faces, Sec. 4.3.
@@ -88,6 +91,9 @@ def cluster_radii(
         raise InputError(
             f"sagittas of one mould differ by a length of 0 or more, not by {same_sagitta}"
         )
+    own = 2 * np.abs(sphere_mesh.local_spheres[:, 0])
+    if np.ptp(own) <= SAME_CURVATURE * own.min():
+        return sphere_mesh, _one_mould(own)
     circles, _ = face_circles(sphere_mesh.mesh)
     radii = np.sqrt(circles.radii_squared)
     angles = pencil_angles(sphere_mesh, circles)
@@ -117,6 +123,17 @@ def cluster_radii(
             labels.astype(np.int64), 1 / moulds, np.bincount(labels), chosen != nearest
         )
     return SphereMesh.from_local(sphere_mesh.mesh, rows), clusters
+
+
+def _one_mould(curvatures: FloatArray) -> RadiusClusters:
+    """The mould of panels that have one radius already."""
+    count = len(curvatures)
+    return RadiusClusters(
+        np.zeros(count, np.int64),
+        np.array([1 / curvatures.mean()]),
+        np.array([count]),
+        np.zeros(count, bool),
+    )
 
 
 def relax_moulds(

@@ -46,7 +46,8 @@ def panel(*arguments: str | Path) -> Result:
 
 
 def report_of(mesh: Path, **options: Any) -> dict[str, Any]:  # noqa: ANN401
-    graph = feasible_panel_graph(PanelOptions(mesh=mesh, **options))
+    allowed = {"allow_step": 200.0, "allow_gap": 200.0}  # of edges of about a metre
+    graph = feasible_panel_graph(PanelOptions(mesh=mesh, **{**allowed, **options}))
     report = graph.run("report")
     texts = [text for messages in graph.messages.values() for text in messages]
     return {**report, "warnings": texts}

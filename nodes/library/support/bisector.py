@@ -1,19 +1,24 @@
 """Upright beams for any mesh: their planes bisect the faces, cylinders take up the torsion."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated, Final, Literal, NamedTuple
 
 import numpy as np
 
+from ....kernel.beams.layers import lowered_annuli
 from ....kernel.beams.node_radius import least_node_radius as least_radius
 from ....kernel.meshes.mesh import mean_edge_length
+from ....kernel.panels.panels import Panels
 from ....kernel.sphere_meshes.sphere_mesh import SphereMesh
-from ....kernel.support import beam_supports
+from ....kernel.support import beam_supports, clear_joints
 from ....kernel.support.annuli import Annuli, mean_end_depth
 from ....kernel.support.annulus_construction import annuli_in_planes
-from ...graphs.node import node
+from ...graphs.node import node, warn
 from ...graphs.ports import Length, Port
 from ..arrays import VertexAxes
 from .rejected import warn_of_rejected
+
+WORTH_SAYING: Final = 1e-3
+"""Joints wider than this, in mean edges, that nobody asked for are said."""
 
 
 class BisectorSupport(NamedTuple):
@@ -86,6 +91,8 @@ def least_node_radius(
     annuli: Annuli,
     thickness: Annotated[float | None, Port(min=0)] = None,
     node_gap: Length = 0.0,
+    panels: Panels | None = None,
+    bearing: Length = 0.0,
 ) -> float:
     """Find the least radius of node cylinders at which no two beams run into each other.
 
@@ -97,6 +104,10 @@ def least_node_radius(
         `beams`.
     node_gap : float
         Width of the gap between beams and node cylinders.
+    panels : Panels, optional
+        Panels that rest on the beams: these begin below, as in `beams`.
+    bearing : float
+        Clear distance from panel to beam, in model units.
 
     Returns
     -------
@@ -113,4 +124,53 @@ def least_node_radius(
     """
     if thickness is None:
         thickness = mean_end_depth(annuli) / 10
+    if panels is not None:
+        annuli = lowered_annuli(annuli, panels, thickness, bearing)
     return least_radius(annuli, thickness, node_gap)
+
+
+@node
+def least_joint(
+    sphere_mesh: SphereMesh,
+    axes: VertexAxes,
+    thickness: Length = 0.0,
+    joint_gap: Length = 0.0,
+    edges: Literal["bisector", "axis"] = "bisector",
+) -> float:
+    """Find the least joint at which panels on beams clear each other at the nodes.
+
+    Parameters
+    ----------
+    sphere_mesh : SphereMesh
+    axes : (V, 2, 3) float array
+        Two points of each node axis, as `bisector_support` or `axis_support` gives them.
+    thickness : float
+        Thickness of the panels, in model units; surfaces need no joint.
+    joint_gap : float
+        Width that is asked for: the result is at least that.
+    edges : {"bisector", "axis"}
+        How the panels will be cut.
+
+    Returns
+    -------
+    float
+        Width of the joints, in model units.
+
+    Examples
+    --------
+    >>> from spheremesh.nodes import bisector_support, fit_spheres, least_joint, triangulate
+    >>> from spheremesh.nodes import vase_mesh
+    >>> spheres = fit_spheres(triangulate(vase_mesh(12, 6)))
+    >>> axes = bisector_support(spheres).axes
+    >>> bool(0 < least_joint(spheres, axes, thickness=0.02) < 0.02)
+    True
+    """
+    width = clear_joints.least_joint(sphere_mesh, edges, axes, thickness)
+    if width <= joint_gap:
+        return joint_gap
+    if width > WORTH_SAYING * mean_edge_length(sphere_mesh.mesh):
+        warn(
+            f"joints are {width:.3g} wide, so that panels which are no neighbours clear each "
+            "other at nodes with torsion"
+        )
+    return width

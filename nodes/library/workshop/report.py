@@ -22,6 +22,7 @@ from ..cluster import BlanksReport, MouldsReport
 from ..fabricate import CutReport
 from ..outcomes import OptimumReport
 from ..support.beams import BeamsReport
+from ..support.exact import ExactSupportReport
 from ..support.structure import LandingReport
 from .audit import AuditReport
 
@@ -54,6 +55,10 @@ class PanellingReport(Report):
         ``written`` and ``rejected``.
     audit : dict or None
         As in `AuditReport`.
+    design_move : dict
+        How far vertices moved off the design: ``max`` in model units and
+        ``relative_to_edge``; for exact supports also the largest ``height`` off the surface
+        and ``slide`` in it, in mean edges.
     buildable : bool
         Whether no panel or beam is rejected and the audit, if there is one, has no errors.
     """
@@ -69,6 +74,7 @@ class PanellingReport(Report):
     panels: dict[str, Any]
     beams: dict[str, Any]
     audit: dict[str, Any] | None
+    design_move: dict[str, float]
     buildable: bool
 
 
@@ -96,7 +102,7 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     sphere_mesh : SphereMesh
         What the panels were cut from.
     optimum : OptimumReport
-        Report of `minimize_angles` or `optimize_spheres`.
+        Report of `minimize_angles`, `optimize_spheres` or `exact_support`.
     cut : CutReport
         Report of `panels`.
     moulds : MouldsReport, optional
@@ -165,10 +171,11 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         edge_gap=dict(cut["edge_gap"]),
         thickness=dict(cut["thickness"]),
         moulds=found | {"blanks": list(blanks["blanks"]) if blanks else []},
-        support=_support(nodes, annuli, landing, feasibility, support),
+        support=_support(optimum, nodes, annuli, landing, feasibility, support),
         panels={"written": cut["written"], "rejected": list(cut["rejected"])},
         beams=made_beams,
         audit=dict(audit) if audit is not None else None,
+        design_move=_design_move(optimum, moulds, mean_edge_length(mesh)),
         buildable=is_whole and not (audit and audit["errors"]),
     )
 
@@ -190,6 +197,19 @@ def _built(
             "max_deg": sharp["max"],
         },
     )
+
+
+def _design_move(
+    optimum: OptimumReport, moulds: MouldsReport | None, edge: float
+) -> dict[str, float]:
+    """How far vertices moved in all: at most what optimum and moulds did one by one."""
+    moved = moulds["vertex_move"] if moulds is not None else 0.0
+    if isinstance(optimum, ExactSupportReport):
+        found = optimum.design_move
+        total = found["relative_to_edge"] + moved
+        return found | {"relative_to_edge": total, "max": found["max"] + moved * edge}
+    total = moved + float(optimum.get("vertex_move", 0.0))
+    return {"max": total * edge, "relative_to_edge": total}
 
 
 def _warn_of_losses(
@@ -218,6 +238,7 @@ def _warn_of_losses(
 
 
 def _support(
+    optimum: OptimumReport,
     nodes: NodesReport | None,
     annuli: AnnuliReport | None,
     landing: LandingReport | None,
@@ -225,14 +246,15 @@ def _support(
     asked: str | None,
 ) -> dict[str, Any] | None:
     """What a user must know of the support; None if there is none."""
+    landed = landing is not None and landing["landed"]
     common = {
-        "landed": bool(landing and landing["landed"]),
+        "landed": landed or (isinstance(optimum, ExactSupportReport) and optimum.landed),
         "feasibility": dict(feasibility) if feasibility else None,
     }
     if isinstance(annuli, SupportReport):
         _warn_of_support(annuli, feasibility, asked)
         return {
-            "kind": annuli.kind,
+            "kind": "exact" if asked == "exact" else annuli.kind,
             "asked": asked or annuli.kind,
             "torsion_deg_max": annuli.torsion_deg["max"],
             "beam_tilt_deg_p95": annuli.inner_tilt_deg["p95"],
@@ -261,7 +283,8 @@ def _warn_of_support(
     if feasibility is None or asked != "axis" or feasibility.verdict == "feasible":
         return
     instead = (
-        "upright beams with node cylinders instead (--support bisector)"
+        "upright beams with node cylinders instead (--support bisector); for axes in common "
+        "remesh to quadrilaterals or hexagons"
         if annuli.kind == "bisector"
         else "remesh, or take upright beams (--support bisector)"
     )

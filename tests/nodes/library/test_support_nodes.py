@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from spheremesh import Mesh, SphereMesh
-from spheremesh.kernel.arrays import FloatArray, norm
+from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
 from spheremesh.kernel.beams.beams import Beams
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
@@ -28,6 +28,7 @@ from spheremesh.nodes import (
     fit_spheres,
     keep_spheres,
     land_nodes,
+    least_joint,
     least_node_radius,
     minimize_angles,
     node_axes,
@@ -291,6 +292,28 @@ def test_twisted_beams_end_clear_of_each_other_at_the_least_radius() -> None:
         solids = [shape for shape, *_ in cadquery_solids(beams=two)]
         volume = solids[0].intersect(solids[1]).Volume()  # in cubic millimetres
         assert volume < 1e-3 if share == 1 else volume > 1
+
+
+def test_joints_keep_panels_in_their_sectors() -> None:
+    """Corners of the inner faces, seen along the axis, do not pass the planes through it."""
+    triangles = face_planes(triangulate(roof_mesh(4, 6)))
+    mesh, axes = triangles.mesh, bisector_support(triangles).axes
+    down = unit(axes[:, 1] - axes[:, 0])
+    with pytest.warns(UserWarning, match="joints are .* wide, so that panels"):
+        joint = least_joint(triangles, axes, thickness=0.1)
+    assert least_joint(triangles, axes) == 0
+    assert least_joint(triangles, axes, thickness=0.1, joint_gap=1.0) == 1.0
+    farthest: list[float] = []
+    for width in (0.0, joint):
+        cut = panels(triangles, thickness=0.1, joint_gap=width).panels
+        assert cut.n_panels == mesh.n_faces
+        chords = mesh.vertices[mesh.corners[cut.next_corners]] - mesh.vertices[mesh.corners]
+        points = cut.inner_corners + cut.origins[cut.corner_panels]
+        inner = ~mesh.topology.is_boundary_vertex[mesh.corners]
+        walls = unit(np.cross(down[mesh.corners], chords))
+        farthest.append(float(dot(walls, points - mesh.vertices[mesh.corners])[inner].max()))
+    assert farthest[0] > 1e-3
+    assert farthest[1] < 1e-9
 
 
 def nearest_beams(made: Beams) -> list[int]:
