@@ -9,7 +9,9 @@ from ..arrays import FloatArray, sum_by
 from ..errors import InputError
 from ..meshes.mesh import Mesh, with_vertices
 from ..remesh.planar.conditions import must_be_planar
+from ..sphere_meshes.fit import face_planes
 from ..sphere_meshes.sphere_mesh import SphereMesh
+from ..support.feasibility import judge_support
 from .curvatures import common_curvatures, one_curvature
 from .descent import descend
 from .design_surface import design_surface
@@ -110,7 +112,8 @@ def find_exact_support(mesh: Mesh, bounds: Bounds, *, one_radius: bool = False) 
     Notes
     -----
     Where the best common curvature leads to beams that tilt, or to no net, larger and smaller
-    ones are tried: near a curvature of the surface the net is badly determined.
+    ones are tried: near a curvature of the surface the net is badly determined. Meshes
+    whose beams could not stand on node axes anyway (`judge_support`) get one trial.
     """
     _check_bounds(bounds)
     _refuse_triangles(mesh)
@@ -120,7 +123,9 @@ def find_exact_support(mesh: Mesh, bounds: Bounds, *, one_radius: bool = False) 
     surface = design_surface(design)
     curvatures = (one_curvature if one_radius else common_curvatures)(design)
     attempts: list[Attempt] = []
-    for factor, is_flat in TRIALS:
+    # Where even with fixed vertices no axes please the beams, sliding hardly ever helps.
+    is_hopeless = judge_support(face_planes(design)).verdict == "no"
+    for factor, is_flat in TRIALS[:1] if is_hopeless else TRIALS:
         setting = make_setting(
             design, surface, _searched(bounds), factor * curvatures,
             has_one_radius=one_radius, is_flat=is_flat,
