@@ -111,7 +111,8 @@ def pairs_of(plates: Panels, bars: Beams, count: int, seed: int) -> Iterator[tup
         chosen = random.permutation(len(rows))[:count]
         i, j = rows[chosen], others[chosen]
         points = nearest_points(_some(first, i), _some(second, j))
-        for a, b, pair in zip(first.parts[i], second.parts[j], points, strict=True):
+        parts = first.parts[i].tolist(), second.parts[j].tolist()
+        for a, b, pair in zip(*parts, points, strict=True):
             yield f"{kind}-{other}", judge(shapes[kind][a], shapes[other][b], pair)
 
 

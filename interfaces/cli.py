@@ -9,26 +9,29 @@ error.
 
 import json
 import sys
-import traceback
 import warnings
-from collections.abc import Generator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from .option_values import SUPPORTS, joined_option, plain_value, rows_option, spell_support
+from .cache_option import cache_options, chosen_store
+from .console import GATE_FAILED, shown_progress, told_errors
+from .option_values import (
+    SUPPORTS,
+    joined_option,
+    plain_value,
+    rows_option,
+    setting,
+    spell_support,
+)
+from .sweep_command import sweep
 
 if TYPE_CHECKING:
     from ..fabrication.output_folder import OutputFolder
     from ..nodes.graphs.graph import Graph
     from .panel.job import Progress
-
-FAULT: Final = 1
-BAD_INPUT: Final = 3
-NOT_CONVERGED: Final = 4
-GATE_FAILED: Final = 5
 
 UNITS: Final = ("mm", "cm", "m", "in", "ft")
 
@@ -112,6 +115,13 @@ class _PanelCommand(click.Command):
     help="Angle at which neighbours shall meet, in degrees.",
 )
 @click.option(
+    "--crease",
+    type=click.FloatRange(0, 180),
+    default=40.0,
+    show_default=True,
+    help="Edges at which flat faces turn by more degrees stay sharp; 180 for none.",
+)
+@click.option(
     "--support",
     type=click.Choice(SUPPORTS),
     metavar="[axis|exact|bisector]",
@@ -169,12 +179,15 @@ class _PanelCommand(click.Command):
 @click.option("--overwrite", is_flag=True, help="Replace files that spheremesh did not write.")
 @click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report alone.")
+@cache_options
 def panel(  # numpydoc ignore=PR01
     out: Path,
     *,
     overwrite: bool,
     strict: bool,
     as_json: bool,
+    cache: Path | None,
+    no_cache: bool,
     **options: Any,  # noqa: ANN401
 ) -> None:
     """Panel a MESH with spheres and write CAD files, schedule and report.
@@ -195,9 +208,10 @@ def panel(  # numpydoc ignore=PR01
         )
     _check_exact(options)
     _warn_of_no_beams(options)
-    with _errors(), _progress() as progress:
+    with told_errors(), shown_progress() as progress:
         options["units"], is_assumed = model_units(PanelOptions(**options))
-        graph = feasible_panel_graph(PanelOptions(**options))
+        store = chosen_store(cache, no_cache=no_cache)
+        graph = feasible_panel_graph(PanelOptions(**options), store)
         report, files = run_job(graph, out, progress, overwrite=overwrite)
     print_report(report, out, files, as_json=as_json, is_assumed=is_assumed)
     if strict and has_errors(report):
@@ -246,9 +260,11 @@ def _warn_of_no_beams(options: Mapping[str, Any]) -> None:
 @click.option("--allow-outside", is_flag=True, help="Let steps write outside of the folder.")
 @click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
 @click.option("--json", "as_json", is_flag=True, help="Print the targets' values as JSON.")
+@cache_options
 def run(  # numpydoc ignore=PR01
     graph_file: Path, settings: tuple[str, ...], targets: tuple[str, ...], out: Path, *,
     overwrite: bool, allow_outside: bool, strict: bool, as_json: bool,
+    **keeping: Any,  # noqa: ANN401
 ) -> None:  # fmt: skip
     """Run a graph: all of it, or what a target needs.
 
@@ -260,7 +276,7 @@ def run(  # numpydoc ignore=PR01
     from .panel import is_panel_job, run_job
     from .panel.output import has_errors, print_report
 
-    with _errors(), _progress() as progress:
+    with told_errors(), shown_progress() as progress:
         from ..nodes.graphs.graph import Graph
 
         with warnings.catch_warnings(record=True) as caught:
@@ -268,7 +284,8 @@ def run(  # numpydoc ignore=PR01
             graph = Graph.load(graph_file)
         for warning in caught:
             click.echo(f"warning: {warning.message}", err=True)
-        graph.set(**dict(_setting(text) for text in settings))
+        graph.cache = chosen_store(**keeping)
+        graph.set(**dict(setting(text) for text in settings))
         if targets or not is_panel_job(graph):
             with output_folder(
                 out, inputs=(graph_file,), overwrite=overwrite, allow_outside=allow_outside
@@ -309,7 +326,7 @@ def _print_values(graph: "Graph", values: Mapping[str, Any], *, as_json: bool) -
 @click.argument("name", required=False)
 def nodes(name: str | None) -> None:  # numpydoc ignore=PR01
     """List the nodes, or explain one."""
-    with _errors():
+    with told_errors():
         from ..nodes.graphs.node import REGISTRY, find_node, load_library
         from .node_help import print_node
 
@@ -328,73 +345,10 @@ def nodes(name: str | None) -> None:  # numpydoc ignore=PR01
 @click.argument("graph_file", metavar="GRAPH.json", type=click.Path(path_type=Path))
 def graph(graph_file: Path) -> None:  # numpydoc ignore=PR01
     """Print a graph as a Mermaid flowchart."""
-    with _errors():
+    with told_errors():
         from ..nodes.graphs.graph import Graph
 
         click.echo(Graph.load(graph_file).mermaid())
 
 
-@contextmanager
-def _errors() -> Generator[None]:
-    """Turn the library's errors into one line and an exit code."""
-    from ..kernel.errors import ConvergenceError, MissingLibraryError, SpheremeshError
-    from ..nodes.graphs.errors import GraphError, NodeError
-
-    try:
-        # Warnings of nodes are part of the report; they are printed with it.
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            yield
-    except BrokenPipeError:
-        raise  # whoever reads our output has seen enough; click ends in silence
-    except (SpheremeshError, GraphError, NodeError, OSError) as error:
-        cause = error.cause if isinstance(error, NodeError) else error
-        text = error.reason if isinstance(error, NodeError) else str(error)
-        code = NOT_CONVERGED if isinstance(cause, ConvergenceError) else BAD_INPUT
-        if isinstance(cause, MissingLibraryError):
-            code = FAULT
-        # An OSError is the disk's or the system's: full, too many files.
-        elif not isinstance(cause, SpheremeshError | GraphError | OSError):
-            text, code = f"{error} ({_origin(cause)}): a fault of the node, report it", FAULT
-        message = " ".join(text.split())
-        click.echo(f"spheremesh: {message}", err=True)
-        sys.exit(code)
-
-
-def _origin(error: BaseException | None) -> str:
-    """Kind of an error that no input should cause, and the line that raised it."""
-    where = (
-        traceback.extract_tb(error.__traceback__)[-1] if error and error.__traceback__ else None
-    )
-    at = f", {Path(where.filename).name} line {where.lineno}" if where else ""
-    return type(error).__name__ + at
-
-
-@contextmanager
-def _progress() -> "Generator[Progress]":
-    """Show the running step on a terminal; stay silent elsewhere."""
-    if not sys.stderr.isatty():
-        yield lambda _step, _state: None
-        return
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    with console.status("reading") as status:
-
-        def _show(step: str, state: str) -> None:
-            if state == "running":
-                status.update(step)
-            else:
-                console.print(f"{step}: {state}", style="dim")
-
-        yield _show
-
-
-def _setting(text: str) -> tuple[str, Any]:
-    name, equals, value = text.partition("=")
-    if not equals:
-        raise click.UsageError(f"--set takes NAME=VALUE, not {text!r}")
-    try:
-        return name, json.loads(value)
-    except (ValueError, RecursionError):  # a ValueError: too many digits, too
-        return name, value
+main.add_command(sweep)

@@ -42,7 +42,9 @@ AXIS_SLACK: Final = 0.004363323129985824
 SAME_LENGTH: Final = 1e-6
 """Lengths that differ by a smaller share are equal, and an index decides."""
 CREASE: Final = 0.6981317007977318
-"""Triangles that meet at a larger angle (40 degrees) make a crease, not a curved surface."""
+"""Faces that meet at a larger angle (40 degrees) make a crease, not a curved surface."""
+SAME_TURN: Final = 1e-6
+"""An angle between faces that passes another by less (radians) is equal to it."""
 
 # Repair
 
@@ -107,6 +109,14 @@ ROUNDED_DIRECTION: Final = 1e-28
 
 ANGLE_STEP: Final = 1e-9
 """An angle minimisation has converged when no unknown moves by more (radians)."""
+NEGATIVE_MODE: Final = 1e-8
+"""An eigenvalue above minus this share of the largest entry of its matrix is not negative."""
+SAME_ENERGY: Final = 1e-9
+"""Energies that differ by a smaller share are equal, and the bulge decides."""
+SAME_BULGE: Final = 1e-6
+"""Optima whose spheres bulge alike up to this share bulge alike."""
+OPENING: Final = 1.0471975511965976
+"""Half opening (60 degrees) up to which a spherical cap is taken for a panel."""
 AT_BOUND: Final = 1e-9
 """Vertices this close to the bound of their displacement, relative to it, lie on it."""
 ENERGY_CHANGE: Final = 1e-6

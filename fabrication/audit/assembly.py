@@ -9,6 +9,7 @@ import numpy as np
 from ...kernel.arrays import FloatArray, IntArray, dot, norm
 from ...kernel.beams.beams import Beams, scale_beams
 from ...kernel.beams.cutting import node_points
+from ...kernel.beams.layers import rest_clearances
 from ...kernel.beams.node_cylinders import NodeCylinders, node_cylinders
 from ...kernel.clearances.bodies import (
     Bodies,
@@ -86,7 +87,10 @@ def _overlaps(subject: Assembly) -> list[Finding]:
     ):
         if first is None or second is None:
             continue
-        rows, others, depths = overlapping_parts(first, second, subject.limits.overlap_mm)
+        clear = _resting(subject) if code == "P207" else frozenset[tuple[int, int]]()
+        rows, others, depths = overlapping_parts(
+            first, second, subject.limits.overlap_mm, clear
+        )
         message = f"overlaps {other} {{1}} by {{0:.3g}} mm: {advice}"
         pairs = list(zip(rows, others, depths, strict=True))
         if first is second:
@@ -95,13 +99,29 @@ def _overlaps(subject: Assembly) -> list[Finding]:
     return findings
 
 
+def _resting(subject: Assembly) -> frozenset[tuple[int, int]]:
+    """Panels and beams beside them of which a closed formula tells that they do not overlap."""
+    if subject.panels is None or subject.beams is None:
+        return frozenset()
+    bars, plates, clearances = rest_clearances(subject.beams, subject.panels)
+    clear = clearances >= -subject.limits.overlap_mm
+    return frozenset(zip(plates[clear].tolist(), bars[clear].tolist(), strict=True))
+
+
 def overlapping_parts(
-    first: Bodies, second: Bodies, least: float
+    first: Bodies, second: Bodies, least: float, clear: frozenset[tuple[int, int]]
 ) -> tuple[list[int], list[int], list[float]]:
-    """Parts of two kinds that overlap by more than a depth, each pair once, and by how much."""
+    """Parts of two kinds that overlap by more than a depth, each pair once, and by how much.
+
+    Pairs of parts that are known to be clear of each other are not looked at.
+    """
     rows, others = near_pairs(first.boxes, second.boxes, 0.0)
     if first is second:
         keep = first.parts[rows] < first.parts[others]
+        rows, others = rows[keep], others[keep]
+    if clear:
+        pairs = zip(first.parts[rows].tolist(), second.parts[others].tolist(), strict=True)
+        keep = np.array([pair not in clear for pair in pairs], bool)
         rows, others = rows[keep], others[keep]
     apart = separated_by_planes(first, second, rows, others, least)
     rows, others = rows[~apart], others[~apart]

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
+from typing import TypeVar
 
 import numpy as np
 
@@ -60,12 +61,17 @@ def audit_model(
         findings += found
         if model.beams.ids and not any(finding.code == "B002" for finding in found):
             findings += check_beams(beam_subject(model.beams, model.units, limits))
-    usable = [
-        None if parts is None or not finite_parts(parts).all() else parts
-        for parts in (model.panels, model.beams)
-    ]
-    findings += check_assembly(assembly(*usable, model.units, limits))
+    subject = assembly(_finite(model.panels), _finite(model.beams), model.units, limits)
+    findings += check_assembly(subject)
     return tuple(findings)
+
+
+_PartsT = TypeVar("_PartsT", bound=Panels | Beams)
+
+
+def _finite(parts: _PartsT | None) -> _PartsT | None:
+    """The parts, if they have finite numbers only."""
+    return parts if parts is not None and bool(finite_parts(parts).all()) else None
 
 
 def _unusable(parts: Panels | Beams, letter: str, kind: str) -> list[Finding]:

@@ -5,7 +5,8 @@ from typing import Any, Final
 
 from ...kernel.support.beam_supports import own_spheres
 from ...nodes.graphs.graph import Graph
-from ...nodes.graphs.wires import Param, Step, Wire
+from ...nodes.graphs.specification.wires import Param, Step, Wire
+from ...nodes.graphs.stores.entries import Store
 from .options import PanelOptions, SupportKind, fineness, model_units
 from .support import add_annuli, add_beams
 
@@ -13,21 +14,23 @@ _LAYERS: Final = {"constant": "offset", "power": "power"}
 """Port of `panels` by option: --layer names a layer of the input."""
 
 
-def feasible_panel_graph(options: PanelOptions) -> Graph:
+def feasible_panel_graph(options: PanelOptions, store: Store | None = None) -> Graph:
     """The graph of the main job, as the mesh allows it.
 
     A support on node axes keeps spheres that the mesh has already if their nodes are exact;
     where no beams on node axes can stand, they are upright. Both are found before anything is
-    optimised.
+    optimised, with results of the store if there is one.
     """
     graph = panel_graph(options)
+    store = graph.cache = store or graph.cache
     if options.support != "axis":
         return graph
     may_keep = not (options.target_angle or options.tolerance)
     if may_keep and own_spheres(graph.run(_source(graph))) is not None:
-        return panel_graph(options, keeps_spheres=True)
-    if graph.run("feasibility")["verdict"] == "no":
-        return panel_graph(options, "bisector")
+        graph = panel_graph(options, keeps_spheres=True)
+    elif graph.run("feasibility")["verdict"] == "no":
+        graph = panel_graph(options, "bisector")
+    graph.cache = store
     return graph
 
 
@@ -73,23 +76,25 @@ def panel_graph(
     moves: dict[str, Param] = {}
     if options.tolerance:
         moves = {"tolerance": graph.param("tolerance", options.tolerance, min=0)}
+    crease = graph.param("crease", options.crease, min=0, max=180)
     if keeps_spheres:
-        start = graph.add("fit_spheres", "start", mesh=mesh, ring=0)
-        optimum = graph.add("keep_spheres", "optimum", sphere_mesh=start)
+        optimum = _kept_spheres(graph, mesh, crease)
     elif options.support == "exact":
         optimum = _exact(graph, options, mesh)
     else:
-        optimum = _optimum(graph, options, mesh, moves)
+        optimum = _optimum(graph, options, mesh, moves, crease)
     design = spheres = optimum.sphere_mesh
     labels, clusters, blanks = None, None, None
     if options.moulds is not None:
         count = graph.param("moulds", options.moulds, min=1)
-        moulds = graph.add("cluster_radii", "moulds", sphere_mesh=spheres, k=count, **moves)
+        moulds = graph.add(
+            "cluster_radii", "moulds", sphere_mesh=spheres, k=count, crease=crease, **moves
+        )
         spheres, labels, clusters = moulds.sphere_mesh, moulds.labels, moulds.report
     kind = beams or options.support
     layers: dict[str, Any] = {
         "thickness": thickness, "joint_gap": joint_gap, "side": options.side,
-        "layer": _LAYERS[options.offset],
+        "layer": _LAYERS[options.offset], "crease": crease,
     }  # fmt: skip
     annuli = add_annuli(graph, options, kind, spheres, design, layers) if kind else None
     cut = annuli.cut if annuli else {"edges": options.edges or "bisector"}
@@ -102,9 +107,7 @@ def panel_graph(
         # What there would be without moulds and beams, to say what these cost.
         plain["plain"] = graph.add("panels", "plain", sphere_mesh=design, **layers).report
     if options.moulds is not None:
-        blanks = graph.add("mould_blanks", "blanks", panels=panels.panels)
-        for name, path in (("mould_drawing", "moulds.dxf"), ("mould_picture", "moulds.svg")):
-            graph.add("write_mould_drawings", name, panels=panels.panels, path=path)
+        blanks = _add_blanks(graph, panels.panels)
     audit = graph.add(
         "audit", "audit", panels=panels.panels, cut=panels.report,
         max_step=options.allow_step, max_gap=options.allow_gap,
@@ -120,6 +123,13 @@ def panel_graph(
         made["beams"] = support.beams
     _add_writers(graph, mesh, made)
     return graph
+
+
+def _add_blanks(graph: Graph, panels: Wire) -> Step:
+    """Blanks of the moulds, and their drawings."""
+    for name, path in (("mould_drawing", "moulds.dxf"), ("mould_picture", "moulds.svg")):
+        graph.add("write_mould_drawings", name, panels=panels, path=path)
+    return graph.add("mould_blanks", "blanks", panels=panels)
 
 
 def _add_writers(graph: Graph, mesh: Step | Wire, made: Mapping[str, Wire]) -> None:
@@ -148,6 +158,12 @@ def _mesh(graph: Graph, options: PanelOptions) -> Step | Wire:
     return graph.add("read_mesh", "mesh", path=path, layer=options.layer, **rows)
 
 
+def _kept_spheres(graph: Graph, mesh: Step | Wire, crease: Param) -> Step:
+    """The spheres that the mesh has already, in place of an optimum."""
+    start = graph.add("fit_spheres", "start", mesh=mesh, ring=0)
+    return graph.add("keep_spheres", "optimum", sphere_mesh=start, crease=crease)
+
+
 def _exact(graph: Graph, options: PanelOptions, mesh: Step | Wire) -> Step:
     """The spheres of an exact support; for one mould with the same radius from the start."""
     bounds = {
@@ -160,11 +176,14 @@ def _exact(graph: Graph, options: PanelOptions, mesh: Step | Wire) -> Step:
 
 
 def _optimum(
-    graph: Graph, options: PanelOptions, mesh: Step | Wire, moves: Mapping[str, Param]
-) -> Step:
+    graph: Graph, options: PanelOptions, mesh: Step | Wire, moves: Mapping[str, Param],
+    crease: Param,
+) -> Step:  # fmt: skip
     """The spheres: of smallest angles alone, or of more than that."""
     start = graph.add("fit_spheres", "start", mesh=mesh)
-    target = {"target_angle": options.target_angle} if options.target_angle else {}
+    target: dict[str, Any] = {"crease": crease}
+    if options.target_angle:
+        target["target_angle"] = options.target_angle
     if not moves:
         allowed = {} if options.tolerance is None else {"max_miss": options.tolerance}
         return graph.add("minimize_angles", "optimum", sphere_mesh=start, **target, **allowed)

@@ -9,8 +9,8 @@ from typing import Any, Final
 from ... import __version__
 from ...fabrication.output_folder import REPORT, OutputFolder, output_folder
 from ...kernel.errors import ConvergenceError, InputError
-from ...nodes.graphs.files import FileUses, Folders, note_known_files
 from ...nodes.graphs.graph import Graph
+from ...nodes.graphs.running.files import FileUses, Folders, note_known_files
 
 GRAPH: Final = "graph.json"
 """Name of the graph of a job beside its files."""

@@ -43,6 +43,8 @@ class PanelOptions:
         default they need not.
     target_angle : float
         Angle at which neighbours shall meet, in degrees.
+    crease : float
+        Edges at which flat faces turn by more, in degrees, stay sharp; 180 for none.
     support : {"axis", "exact", "bisector"} or None
         Which beams to write: on node axes, on exact nodes, or upright; None for none.
     depth, beam_thickness : float or None
@@ -75,6 +77,7 @@ class PanelOptions:
     edges: Literal["bisector", "intersection"] | None = None
     tolerance: float | None = None
     target_angle: float = 0.0
+    crease: float = 40.0
     support: SupportKind | None = None
     depth: float | None = None
     beam_thickness: float | None = None

@@ -40,11 +40,7 @@ def print_report(
         click.echo(line)
     for name in files:
         click.echo(f"  {out / name}")
-    planar, spherical = report["angles_deg"]["planar"], report["angles_deg"]["spherical"]
-    click.echo(
-        f"angle between neighbours, mean (largest): {planar['mean']:.2f} ({planar['max']:.1f}) "
-        f"degrees with planes, {spherical['mean']:.2f} ({spherical['max']:.1f}) with spheres"
-    )
+    _print_angles(report["angles_deg"], report["creases"])
     click.echo(f"moulds {report['moulds']['count'] or 'not asked for: a radius per panel'}")
     panels = report["panels"]
     click.echo(f"panels {panels['written']} written, {len(panels['rejected'])} rejected")
@@ -73,7 +69,8 @@ def _print_verdict(report: Mapping[str, Any], *, is_error: bool = False) -> None
     if report["buildable"]:
         return
     causes: dict[str, list[tuple[float, str]]] = {}
-    for found in (report["audit"] or {"errors": []})["errors"]:
+    errors: list[dict[str, Any]] = report["audit"]["errors"] if report["audit"] else []
+    for found in errors:
         text = f"{found['id']} {found['message']}"
         causes.setdefault(found["code"], []).append((found["size"] or 0.0, text))
     for part in (*report["panels"]["rejected"], *report["beams"]["rejected"]):
@@ -83,6 +80,21 @@ def _print_verdict(report: Mapping[str, Any], *, is_error: bool = False) -> None
     texts = [f"{code} ({len(parts)}): {max(parts)[1]}" for code, parts in ranked[:3]]
     more = f"; {len(ranked) - 3} more causes" if len(ranked) > 3 else ""
     click.secho(f"NOT BUILDABLE: {'; '.join(texts)}{more}", fg="red", err=is_error)
+
+
+def _print_angles(angles: Mapping[str, Any], creases: Mapping[str, Any]) -> None:
+    """How smoothly panels meet, and where they do not."""
+    planar, spherical = angles["planar"], angles["spherical"]
+    click.echo(
+        f"angle between neighbours, mean (largest): {planar['mean']:.2f} ({planar['max']:.1f}) "
+        f"degrees with planes, {spherical['mean']:.2f} ({spherical['max']:.1f}) with spheres"
+    )
+    if creases["count"]:
+        click.echo(
+            f"creases of more than {creases['angle_deg']:g} degrees, not counted: "
+            f"{creases['count']}, at {creases['mean_deg']:.2f} ({creases['max_deg']:.1f}) "
+            "degrees as built; --crease to change"
+        )
 
 
 def _print_size(model: Mapping[str, Any], *, is_assumed: bool) -> None:

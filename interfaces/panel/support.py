@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from ...nodes.graphs.graph import Graph
-from ...nodes.graphs.wires import Step, Wire
+from ...nodes.graphs.specification.wires import Step, Wire
 from .options import PanelOptions, SupportKind
 
 

@@ -16,7 +16,7 @@ from ..support.annulus_checks import NO_CUT
 from ..tolerances import MITRE_LIMIT, PARALLEL_PLANES
 from .beams import Beams, cut_corners, insets_at, inward_directions
 
-_ROUNDS = 6
+_ROUNDS = 5
 
 
 def cut_beams(
@@ -68,14 +68,13 @@ def cut_beams(
         push = node_radius + node_gap
     else:
         half_angles, push = mitre_angles(annuli), node_gap / 2
-    ends = annuli.corners
+    cuts = _end_cuts(*_slanted(annuli, half_angles, push, annuli.corners), thickness / 2)
     # How far ends reach along their lines depends on where they are cut, by a hair.
     for _ in range(_ROUNDS):
-        levels, insets, is_flat = _end_cuts(
-            *_slanted(annuli, half_angles, push, ends), thickness / 2
-        )
-        corners, exists = cut_corners(annuli, insets)
-        ends = corners.reshape(annuli.n_annuli, 2, 6, 3)
+        ends = cut_corners(annuli, cuts[1])[0].reshape(annuli.n_annuli, 2, 6, 3)
+        cuts = _end_cuts(*_slanted(annuli, half_angles, push, ends), thickness / 2)
+    levels, insets, is_flat = cuts
+    corners, exists = cut_corners(annuli, insets)
     middle = insets_at(levels, insets, np.zeros(annuli.n_annuli))
     sections, section_exists = cut_corners(annuli, middle[..., None])
     heights = levels[:, :, None, :, None] * annuli.frames[:, None, None, None, 2]

@@ -15,13 +15,13 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..errors import InputError
 from ..panels.panels import Panels, panel_arcs
 from ..parts.records import RejectedPart, reject_parts
-from ..spheres.arcs import Arcs, arc_reaches, sphere_arcs
+from ..spheres.arcs import Arcs, arc_distances, arc_reaches, sphere_arcs
 from ..spheres.incidence import evaluate, meet_lines, normals
 from ..spheres.minkowski import minkowski
 from ..spheres.rows import offset, recenter
 from ..support.annuli import Annuli, end_depths
 from ..support.annulus_checks import NO_ANNULUS, inner_reasons
-from .beams import Beams
+from .beams import Beams, cut_corners, level_arcs
 from .cutting import (
     cut_beams,
     mitre_normals,
@@ -139,6 +139,23 @@ def _rests(annuli: Annuli, panels: Panels, thickness: float, bearing: float) -> 
     square = minkowski(flat, flat)
     flat /= np.sqrt(np.where(square > 0, square, 1.0))[:, None]
     return _Rests(beams, found, flat, square > 0)
+
+
+def rest_clearances(beams: Beams, panels: Panels) -> tuple[IntArray, IntArray, FloatArray]:
+    """How far tops of beams are below the panels that rest on them.
+
+    Rows (n,) of beams and of the panels beside them, and distances that are no larger than the
+    true ones: those of the whole top as it is before its ends are cut, over the side of the
+    panel. Negative where a top reaches into the panel.
+    """
+    annuli = beams.annuli
+    rests = _rests(annuli, panels, beams.thickness, 0.0)
+    widest = beams.insets.min(axis=2, keepdims=True)
+    corners = cut_corners(annuli, widest)[0][:, :, :, 0]
+    outer, _ = level_arcs(beams, corners, np.zeros(beams.n_beams))
+    arcs = Arcs(*(values[rests.beams] for values in vars(outer).values()))
+    _, highest = arc_distances(rests.rows, arcs)
+    return rests.beams, rests.panels, np.where(rests.exists, -highest, -np.inf)
 
 
 def _panel_rows(panels: Panels, faces: IntArray) -> IntArray:

@@ -8,6 +8,7 @@ unions of such bodies.
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
@@ -36,6 +37,8 @@ class Bodies:
         Axes of the faces that are cylinders; zero for planes and spheres.
     points : (n, k, 3) float array
         Corners and points of the edges, local.
+    edges : (n, e, 3) int array
+        Points of each edge that is an arc: where it begins, its middle, where it ends.
     boxes : (n, 2, 3) float array
         Least and largest coordinates of boxes about them, in model coordinates.
     """
@@ -45,6 +48,7 @@ class Bodies:
     rows: FloatArray
     axes: FloatArray
     points: FloatArray
+    edges: IntArray
     boxes: FloatArray
 
     @property
@@ -75,7 +79,8 @@ def panel_bodies(panels: Panels) -> Bodies:
     points = _panel_points(panels, width)
     whole = Bodies(
         np.arange(panels.n_panels), panels.origins, rows, np.zeros((*rows.shape[:2], 3)),
-        points, _boxes(points, panels.origins, _panel_bulges(panels)),
+        points, _panel_edges(panels, width),
+        _boxes(points, panels.origins, _panel_bulges(panels)),
     )  # fmt: skip
     return _split_panels(panels, whole, place)
 
@@ -92,6 +97,14 @@ def _panel_points(panels: Panels, width: int) -> FloatArray:
     outer, _, inner, _ = found
     centers = [points.mean(axis=1, keepdims=True) for points in (outer, inner)]
     return np.concatenate([*found, *centers], 1)
+
+
+def _panel_edges(panels: Panels, width: int) -> IntArray:
+    """Points of the edges of both faces, as `_panel_points` has them."""
+    place = np.minimum(np.arange(width), panels.degrees[:, None] - 1)
+    after = np.where(place + 1 < panels.degrees[:, None], place + 1, 0)
+    ring = np.stack([place, width + place, after], 2)
+    return np.concatenate([ring, ring + 2 * width], 1)
 
 
 def _panel_bulges(panels: Panels) -> FloatArray:
@@ -136,6 +149,13 @@ def join_bodies(groups: Iterable[Bodies]) -> Bodies:
     return Bodies(*(np.concatenate([group[name] for group in listed]) for name in listed[0]))
 
 
+HALF_ARC: Final = 0.35
+"""Half of an arc lies over its chord by no more than this share of what the whole does."""
+
+_BEAM_EDGES: Final = np.array([[0, 12, 6], [3, 13, 9], [2, 14, 8], [5, 15, 11]])
+"""Points of the four long edges: corners by end, face and level, then the middles."""
+
+
 def beam_bodies(beams: Beams) -> Bodies:
     """Bodies of beams; ends with a notch make two of each."""
     annuli = beams.annuli
@@ -164,11 +184,13 @@ def beam_bodies(beams: Beams) -> Bodies:
     table = np.concatenate([np.stack(rows, 1), ends.reshape(count, 4, 5)], 1)
     points = beams.corners.reshape(count, 12, 3)
     points = np.concatenate([points, _beam_middles(beams)], 1)
-    bulges = norm(points[:, -6:] - points[:, -6:].mean(axis=1, keepdims=True)).max(axis=1)
+    starts, middles, ends = np.moveaxis(points[:, _BEAM_EDGES], 2, 0)
+    sagittas = norm(middles - (starts + ends) / 2).max(axis=1)
     whole = Bodies(
         np.arange(count), annuli.origins, table,
         np.stack(axes + [0 * across] * 4, 1), points,
-        _boxes(points, annuli.origins, 1e-3 * bulges),
+        np.broadcast_to(_BEAM_EDGES, (count, *_BEAM_EDGES.shape)),
+        _boxes(points, annuli.origins, HALF_ARC * sagittas),
     )  # fmt: skip
     return _split_beams(beams, whole)
 
@@ -217,7 +239,7 @@ def cylinder_bodies(cylinders: NodeCylinders) -> Bodies:
     bulges = np.full(count, radius / 8)
     return Bodies(
         np.arange(count), cylinders.origins, rows, axes, points,
-        _boxes(points, cylinders.origins, bulges),
+        np.zeros((count, 0, 3), np.int64), _boxes(points, cylinders.origins, bulges),
     )  # fmt: skip
 
 

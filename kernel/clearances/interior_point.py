@@ -73,7 +73,9 @@ def minimize_within(
     for _ in range(rounds):
         gap = dot(slacks, forces)[:, None] / slacks.shape[1]
         target = np.maximum(_CENTERING * gap, _LEAST_GAP)
-        dual = unknowns @ quadratic + linear - np.einsum("nmk,nm->nk", slopes, forces)
+        dual: FloatArray = (
+            unknowns @ quadratic + linear - np.einsum("nmk,nm->nk", slopes, forces)
+        )
         miss = values - slacks
         weights = forces / slacks
         system = np.einsum("nmk,nm,nml->nkl", slopes, weights, slopes, optimize=True)
@@ -81,8 +83,8 @@ def minimize_within(
         system += quadratic + (_LEAST + scale)[:, None, None] * eye
         system = _positive_sum(system, *curvature(forces))
         pull = target / slacks - forces - weights * miss
-        right = np.einsum("nmk,nm->nk", slopes, pull) - dual
-        step = np.linalg.solve(system, right[..., None])[..., 0]
+        right: FloatArray = np.einsum("nmk,nm->nk", slopes, pull) - dual
+        step: FloatArray = np.linalg.solve(system, right[..., None])[..., 0]
         opening = np.einsum("nmk,nk->nm", slopes, step) + miss
         pushing = target / slacks - forces - weights * opening
         near, far = _longest(slacks, opening), _longest(forces, pushing)

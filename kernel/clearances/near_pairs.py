@@ -1,5 +1,8 @@
 """Pairs of bodies whose boxes are near: by a tree, none is missed."""
 
+from itertools import chain
+from typing import cast
+
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, norm
@@ -27,11 +30,9 @@ def near_pairs(
             continue
         tree = KDTree(other_middles[part])
         reach = radii + other_radii[part].max() + distance
-        lists = tree.query_ball_point(middles, reach)
-        counts = np.array([len(each) for each in lists])
-        rows.append(np.repeat(np.arange(len(boxes)), counts))
-        flat = np.fromiter((i for each in lists for i in each), np.int64, int(counts.sum()))
-        found.append(part[flat])
+        lists = cast("list[list[int]]", tree.query_ball_point(middles, reach).tolist())
+        rows.append(np.repeat(np.arange(len(boxes)), [len(each) for each in lists]))
+        found.append(part[np.array(list(chain.from_iterable(lists)), np.int64)])
     first, second = np.concatenate(rows), np.concatenate(found)
     gaps = np.maximum(boxes[first, 0] - others[second, 1], others[second, 0] - boxes[first, 1])
     near = (gaps <= distance).all(axis=1)

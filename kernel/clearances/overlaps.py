@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, IntArray, norm
-from .bodies import Bodies, common_frame, face_slopes, face_values, select_bodies
+from ..arrays import BoolArray, FloatArray, IntArray, dot, norm
+from .bodies import HALF_ARC, Bodies, common_frame, face_slopes, face_values, select_bodies
 from .interior_point import minimize_within
 
 _BATCH = 1 << 13
@@ -30,26 +30,57 @@ def overlap_depths(first: Bodies, second: Bodies) -> FloatArray:
 def separated_by_planes(
     first: Bodies, second: Bodies, rows: IntArray, others: IntArray, least: float
 ) -> BoolArray:
-    """Which pairs (n,) a face of each keeps apart: two planes that look away from each other.
+    """Which pairs (n,) planes keep apart.
 
-    The wall between two panels, the mitre of two beams. What both bodies can have in common is
-    then no wider than `least`; pairs for which no two planes tell are not marked.
+    Two planes that look away from each other, as the wall between two panels and the mitre of
+    two beams; or a plane of one that all of the other lies behind. What both bodies can have in
+    common is then no wider than `least`; pairs of which planes tell nothing are not marked.
     """
     result = np.zeros(len(rows), bool)
-    planes = [_planes(bodies) for bodies in (first, second)]
     for begin in range(0, len(rows), _BATCH):
         part = slice(begin, begin + _BATCH)
-        i, j = rows[part], others[part]
-        shift = first.origins[i] - second.origins[j]
-        normals, levels = planes[0][0][i], planes[0][1][i]
-        far_normals = planes[1][0][j]
-        far_levels = planes[1][1][j] - np.einsum("nmi,ni->nm", far_normals, shift)
+        one, two = select_bodies(first, rows[part]), select_bodies(second, others[part])
+        shift = one.origins - two.origins
+        (normals, levels), (far_normals, far_levels) = _planes(one), _planes(two)
+        far_levels = far_levels - np.einsum("nmi,ni->nm", far_normals, shift)
         # Where two functions are at least zero, so is their sum, which varies by little.
         cosine = np.einsum("nai,nbi->nab", normals, far_normals)
         slope = np.sqrt(np.maximum(2 + 2 * cosine, 0.0))
-        reach = norm(first.points[i]).max(axis=1)[:, None, None] * 2
+        reach = norm(one.points).max(axis=1)[:, None, None] * 2
         excess = slope * reach - levels[:, :, None] - far_levels[:, None]
-        result[part] = (excess <= least).any(axis=(1, 2))
+        found = (excess <= least).any(axis=(1, 2))
+        moved = two.points - shift[:, None]
+        found |= (_reach(normals, moved, two.edges) - levels <= least).any(axis=1)
+        found |= (_reach(far_normals, one.points, one.edges) - far_levels <= least).any(axis=1)
+        result[part] = found
+    return result
+
+
+def _reach(normals: FloatArray, points: FloatArray, edges: IntArray) -> FloatArray:
+    """How far bodies reach along normals (n, m, 3): no less than they do.
+
+    The points of the bodies, and their edges: a half of an arc lies over its chord by no more
+    than `HALF_ARC` of what the whole does, most in its middle and none at its ends.
+    """
+    values = np.einsum("nmi,nki->nmk", normals, points)
+    result = values.max(axis=2)
+    if edges.shape[1] == 0:
+        return result
+    row = np.arange(len(points))[:, None]
+    starts, middles, ends = (points[row, edges[..., k]] for k in range(3))
+    along = norm(ends - starts)[:, None]
+    rises = middles - (starts + ends) / 2
+    columns = np.arange(values.shape[1])[None, :, None]
+    before, middle, after = (
+        values[row[..., None], columns, edges[:, None, :, k]] for k in range(3)
+    )
+    lean = np.divide(after - before, along**2, out=np.zeros_like(before), where=along > 0)
+    bulge = HALF_ARC * (
+        np.abs(middle - (before + after) / 2) + 2 * dot(rises, rises)[:, None] * np.abs(lean)
+    )
+    for end in (before, after):
+        over = np.where(np.abs(end - middle) < 4 * bulge, bulge, 0.0)
+        result = np.maximum(result, (np.maximum(end, middle) + over).max(axis=2))
     return result
 
 
@@ -148,7 +179,7 @@ def _nearest_starts(points: FloatArray, others: FloatArray, count: int) -> list[
     result: list[FloatArray] = []
     for _ in range(count):
         best = flat.argmin(axis=1)
-        i, j = np.unravel_index(best, apart.shape[1:])
+        i, j = np.divmod(best, apart.shape[2])
         pair = np.stack([points[row, i], others[row, j]], 1)
         result.append(pair)
         near = norm(points - pair[:, :1]) < 0.3

@@ -142,6 +142,7 @@ def relax_moulds(
     tolerance: float,
     regularity: float = 0.0,
     support: float = 0.0,
+    edge_weights: FloatArray | None = None,
 ) -> tuple[SphereMesh, Optimization]:
     """Let vertices and spheres of given radii move to where the angles are smallest.
 
@@ -153,6 +154,8 @@ def relax_moulds(
         How far vertices may move, in mean edges.
     regularity, support : float
         Weights of upright planes and of nodes without torsion.
+    edge_weights : (E,) float array, optional
+        Weight of the angle over each interior edge; 1 by default.
 
     Returns
     -------
@@ -172,7 +175,7 @@ def relax_moulds(
     Meshes with Spherical Faces, Sec. 4.3.
     """
     radii = np.maximum(clusters.radii[clusters.labels], _circle_radii(sphere_mesh.mesh))
-    conditions = Conditions(tolerance=tolerance, fixed_radii=radii)
+    conditions = Conditions(edge_weights=edge_weights, tolerance=tolerance, fixed_radii=radii)
     weights = EnergyWeights(closeness=RELAXED_CLOSENESS, regularity=regularity, support=support)
     return move_vertices(sphere_mesh, weights, conditions)
 

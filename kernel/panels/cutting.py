@@ -318,6 +318,7 @@ def cut_panels(
         inner_corners=inner_corners,
         neighbors=np.append(faces, -1)[topology.twins],
         edge_ids=_edge_ids(topology),
+        is_crease=np.zeros(len(faces), bool),
         thicknesses=sides.thicknesses,
         thickness=float(thickness),
         joint_gap=float(joint_gap),

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, batches_by_count, dot, norm, unit
-from ..spheres.arcs import Arcs, arc_points, sphere_arcs
-from ..spheres.incidence import evaluate, meet_lines
+from ..spheres.arcs import Arcs, arc_distances, sphere_arcs
+from ..spheres.incidence import meet_lines
 from ..spheres.minkowski import minkowski
 from ..spheres.rows import recenter
 from ..tolerances import PARALLEL_PLANES
@@ -57,7 +57,8 @@ def _along_joints(
     starts = np.stack([panels.corners[first], panels.corners[following[second]] + shift], 1)
     ends = np.stack([panels.corners[following[first]], panels.corners[second] + shift], 1)
     middle = (starts + ends).mean(axis=1) / 2
-    normal = unit(panels.plane_normals[first] - panels.plane_normals[second])
+    away: FloatArray = panels.plane_normals[first] - panels.plane_normals[second]
+    normal = unit(away)
     chord = (ends - starts).mean(axis=1)
     chord = chord - dot(chord, normal)[:, None] * normal
     rise = unit(np.cross(chord, normal))
@@ -73,7 +74,7 @@ def _along_joints(
         heights = [meet_lines(circles[:, k], point, rise)[0] for point in points]
         a, b = (p + h[:, None] * rise for p, h in zip(points, heights, strict=True))
         arcs.append(sphere_arcs(circles[:, k], normal, a, b))
-    apart = [_farthest(circles[:, 1 - k], arcs[k]) for k in (0, 1)]
+    apart = [np.abs(arc_distances(circles[:, 1 - k], arcs[k])).max(axis=0) for k in (0, 1)]
     # The normal points into the first panel. Walls are plane, and farthest apart at an end.
     opening = dot(np.stack([starts, ends], 1), normal[:, None, None])
     opening = (opening[:, :, 0] - opening[:, :, 1]).max(axis=1) - panels.joint_gap
@@ -82,34 +83,6 @@ def _along_joints(
 
 def _onto(points: FloatArray, normals: FloatArray) -> FloatArray:
     return points - dot(points, normals)[:, None] * normals
-
-
-def _farthest(rows: FloatArray, arcs: Arcs) -> FloatArray:
-    """Greatest distances of points of arcs from unit rows.
-
-    Notes
-    -----
-    On an arc the left side of a sphere's equation is ``(q0 + q1 τ + q2 τ²) / (1 + b² τ²)`` in
-    the parameter τ, b the bulge: three values tell it, and a quadratic equation its extremes.
-    """
-    points = arc_points(arcs, np.array([-1.0, 0.0, 1.0]))
-    before, middle, after = np.moveaxis(evaluate(rows[:, None], points), 1, 0)
-    half = norm(arcs.ends - arcs.starts) / 2
-    square = np.divide(arcs.sagittas, half, out=np.zeros_like(half), where=half > 0) ** 2
-    q1 = (after - before) / 2 * (1 + square)
-    q2 = (after + before) / 2 * (1 + square) - middle
-    linear = 2 * (q2 - square * middle)
-    root = linear + np.copysign(np.sqrt(linear**2 + 4 * square * q1**2), linear)
-    near = np.divide(-2 * q1, root, out=np.zeros_like(q1), where=root != 0)
-    bend = 2 * square * q1
-    far = np.divide(root, bend, out=np.ones_like(q1), where=bend != 0)
-    result = np.zeros_like(q1)
-    for place in (-1.0, 1.0, near, far):
-        t = np.clip(place, -1.0, 1.0)
-        value = (middle + q1 * t + q2 * t**2) / (1 + square * t**2)
-        gradient = np.sqrt(np.maximum(1 + 4 * rows[:, 0] * value, 0.0))
-        result = np.maximum(result, np.abs(2 * value / (1 + gradient)))
-    return result
 
 
 def corner_nodes(panels: Panels) -> IntArray:

@@ -6,6 +6,6 @@ blocks               Sparse Jacobians made of small dense blocks.
 conjugate_gradients  Truncated conjugate gradients for the steps of a descent.
 products             Multiplication by ``JᵀJ`` without forming it.
 factorization        Direct solution of sparse systems.
-symmetric            Symmetric systems with one unknown per face and one entry per edge.
+definite_systems     Symmetric systems on graphs, solved if they are definite.
 weighted_graphs      Pieces of graphs; weighted graphs for the trees and paths of scipy.
 """

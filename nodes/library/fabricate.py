@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Annotated, Literal, NamedTuple
 
+import numpy as np
+
 from ...fabrication.drawings import beams as dxf
 from ...fabrication.drawings import moulds as mould_drawings
 from ...fabrication.files import check_suffix, replacing
@@ -14,14 +16,14 @@ from ...kernel.beams.beams import Beams
 from ...kernel.errors import name_ids
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.panels import cutting
-from ...kernel.panels.panels import Panels
+from ...kernel.panels.panels import Panels, mark_creases
 from ...kernel.parts.findings import rejected_report
 from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...viewer.render import render_image
 from ..graphs.node import node, running_graph, warn
 from ..graphs.ports import Length, Port, Units, WritePath
-from .arrays import FaceLabels, VertexAxes
+from .arrays import CreaseAngle, FaceLabels, VertexAxes
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +57,7 @@ class PanelSet(NamedTuple):
 
 
 @node
-def panels(
+def panels(  # noqa: PLR0913, PLR0917 - a node has an input per choice
     sphere_mesh: SphereMesh,
     edges: Literal["bisector", "intersection", "axis"] = "bisector",
     thickness: Length = 0.0,
@@ -64,6 +66,7 @@ def panels(
     side: Literal["inward", "outward", "centred"] = "inward",
     layer: Literal["offset", "power"] = "offset",
     axes: VertexAxes | None = None,
+    crease: CreaseAngle = 40.0,
 ) -> PanelSet:
     """Cut a panel out of the sphere of every face.
 
@@ -72,9 +75,9 @@ def panels(
     sphere_mesh : SphereMesh
     edges : {"bisector", "intersection", "axis"}
         Cut along each edge by the plane that bisects the two faces (walls stand upright, the
-        two arcs of an edge differ by a small gap), by the plane in which the two spheres
-        meet (watertight, as tilted as the spheres left it), or by the plane of its beam,
-        through its two vertices and node axes (these are needed then).
+        two arcs of an edge differ by a small gap), by the plane in which the two spheres meet
+        (watertight, as tilted as they left it), or by the plane of its beam, through its two
+        vertices and node axes (these are needed then).
     thickness : float
         Thickness in model units; 0 for surfaces.
     joint_gap : float
@@ -82,14 +85,15 @@ def panels(
     labels : (F,) int array, optional
         Mould of each face.
     side : {"inward", "outward", "centred"}
-        Where the thickness goes from the spheres: against the face normals, along them, or
-        half each way.
+        Where the thickness goes: against the face normals, along them, or half each way.
     layer : {"offset", "power"}
         The same thickness everywhere; or the same difference of squared radii, so that
         neighbours which bulge to one side meet in one plane on both of their faces: the
         thickness is then met on average, sharp panels are thicker and planes have none.
     axes : (V, 2, 3) float array, optional
         Two points of each node axis, as `axis_support` gives them: for edges cut by axes.
+    crease : float
+        Edges at which flat faces turn by more have their own layer and mark; 180 for none.
 
     Returns
     -------
@@ -108,6 +112,7 @@ def panels(
     made, rejected = cutting.cut_panels(
         sphere_mesh, edges, thickness, joint_gap, labels, side, layer, axes
     )
+    made = mark_creases(made, sphere_mesh.mesh, float(np.radians(crease)))
     if rejected:
         warn(
             f"{len(rejected)} panels cannot be made: faces "

@@ -1,14 +1,15 @@
 """Spheres that a mesh has already, with the nodes of a support in them."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from ....kernel.analysis import angle_summary
-from ....kernel.meshes.mesh import mean_edge_length
-from ....kernel.sphere_meshes.fit import face_planes
-from ....kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
+import numpy as np
+
+from ....kernel.meshes.creases import crease_edges
+from ....kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...graphs.node import node, warn
-from ..optimise import OptimumReport
+from ..arrays import CreaseAngle
+from ..outcomes import OptimumReport, outcome_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,15 +20,14 @@ class KeptReport(OptimumReport):
     ----------
     converged : bool
         True: there is nothing to be done.
-    angles_deg : dict
-        ``planar`` and ``spherical``: ``mean`` and ``max`` of the planes and of the spheres.
-    vertex_error : dict
-        ``max`` in model units and ``relative_to_edge``, the mean edge.
+    angles_deg, vertex_error, creases : dict
+        As in `AnglesReport`.
     """
 
     converged: bool
     angles_deg: dict[str, dict[str, float]]
     vertex_error: dict[str, float]
+    creases: dict[str, Any]
 
 
 class KeptSpheres(NamedTuple):
@@ -38,7 +38,7 @@ class KeptSpheres(NamedTuple):
 
 
 @node
-def keep_spheres(sphere_mesh: SphereMesh) -> KeptSpheres:
+def keep_spheres(sphere_mesh: SphereMesh, crease: CreaseAngle = 40.0) -> KeptSpheres:
     """Keep spheres whose nodes are exact, as those of hexagonal and remeshed nets are.
 
     In place of an optimum: smaller angles would cost the common axes of the nodes.
@@ -46,6 +46,8 @@ def keep_spheres(sphere_mesh: SphereMesh) -> KeptSpheres:
     Parameters
     ----------
     sphere_mesh : SphereMesh
+    crease : float
+        Edges at which the flat faces turn by more count in no mean; 180 for none.
 
     Returns
     -------
@@ -62,17 +64,13 @@ def keep_spheres(sphere_mesh: SphereMesh) -> KeptSpheres:
     True
     """
     mesh = sphere_mesh.mesh
-    planar, spherical = angle_summary(face_planes(mesh)), angle_summary(sphere_mesh)
+    is_crease = crease_edges(mesh, np.radians(crease))
+    found = outcome_of(sphere_mesh, mesh, is_crease, crease)
+    planar, spherical = found["angles_deg"]["planar"], found["angles_deg"]["spherical"]
     if spherical["mean"] > planar["mean"]:
         warn(
             "the mesh has spheres with exact nodes, which stay: neighbours meet at "
             f"{spherical['mean']:.1f} degrees on average, where planes would at "
             f"{planar['mean']:.1f}; upright beams (--support bisector) let them be smoother"
         )
-    miss = float(vertex_error(sphere_mesh).max())
-    report = KeptReport(
-        converged=True,
-        angles_deg={"planar": planar, "spherical": spherical},
-        vertex_error={"max": miss, "relative_to_edge": miss / mean_edge_length(mesh)},
-    )
-    return KeptSpheres(sphere_mesh, report)
+    return KeptSpheres(sphere_mesh, KeptReport(converged=True, **found))

@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+import numpy as np
+
 from ....fabrication.sizes import model_extents
 from ....kernel.analysis import angle_summary
 from ....kernel.meshes.mesh import mean_edge_length
@@ -18,7 +20,7 @@ from ...graphs.node import node, warn
 from ...graphs.ports import Units
 from ..cluster import BlanksReport, MouldsReport
 from ..fabricate import CutReport
-from ..optimise import OptimumReport
+from ..outcomes import OptimumReport
 from ..support.beams import BeamsReport
 from ..support.exact import ExactSupportReport
 from ..support.structure import LandingReport
@@ -34,7 +36,10 @@ class PanellingReport(Report):
     input : dict
         ``vertices``, ``faces``, ``units``, ``size`` along x, y and z, and ``mean_edge``.
     angles_deg : dict
-        ``planar`` and ``spherical`` (what is built), and with moulds ``unclustered``.
+        ``planar`` and ``spherical`` (what is built), and with moulds ``unclustered``; over the
+        edges that are no crease.
+    creases : dict
+        Edges that stay sharp, as in `AnglesReport`.
     vertex_error, edge_gap : dict
         ``max`` in model units and ``relative_to_edge``.
     thickness : dict
@@ -60,6 +65,7 @@ class PanellingReport(Report):
 
     input: dict[str, Any]
     angles_deg: dict[str, dict[str, float]]
+    creases: dict[str, Any]
     vertex_error: dict[str, float]
     edge_gap: dict[str, float]
     thickness: dict[str, float]
@@ -136,7 +142,7 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     {'written': 72, 'rejected': []}
     """
     mesh = sphere_mesh.mesh
-    angles = {**optimum["angles_deg"], "spherical": angle_summary(sphere_mesh)}
+    angles, creases = _built(sphere_mesh, optimum)
     found: dict[str, Any] = {"count": 0, "radii": [], "panels_per_mould": []}
     if moulds is not None:
         # What is built counts as spherical; what the moulds cost is there to compare.
@@ -160,6 +166,7 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
             "mean_edge": mean_edge_length(mesh),
         },
         angles_deg=angles,
+        creases=creases,
         vertex_error={"max": miss, "relative_to_edge": miss / mean_edge_length(mesh)},
         edge_gap=dict(cut["edge_gap"]),
         thickness=dict(cut["thickness"]),
@@ -170,6 +177,25 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         audit=dict(audit) if audit is not None else None,
         design_move=_design_move(optimum, moulds, mean_edge_length(mesh)),
         buildable=is_whole and not (audit and audit["errors"]),
+    )
+
+
+def _built(
+    sphere_mesh: SphereMesh, optimum: OptimumReport
+) -> tuple[dict[str, dict[str, float]], dict[str, Any]]:
+    """Angles and creases of an optimum, as they are built."""
+    creases: dict[str, Any] = optimum.get("creases") or {"angle_deg": 180.0, "edges": []}
+    is_crease = np.zeros(len(sphere_mesh.mesh.topology.edge_corners), bool)
+    is_crease[creases["edges"]] = True
+    sharp = angle_summary(sphere_mesh, is_crease)
+    return (
+        {**optimum["angles_deg"], "spherical": angle_summary(sphere_mesh, ~is_crease)},
+        {
+            **creases,
+            "count": len(creases["edges"]),
+            "mean_deg": sharp["mean"],
+            "max_deg": sharp["max"],
+        },
     )
 
 

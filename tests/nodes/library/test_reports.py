@@ -102,9 +102,12 @@ def test_no_output_is_just_a_mapping() -> None:
 
 def test_a_report_reads_like_a_dictionary_and_cannot_be_changed() -> None:
     report = minimize_angles(fit_spheres(roof_mesh(6, 8))).report
-    names = ["converged", "iterations", "energies", "angles_deg", "vertex_error", "circle_miss"]
+    names = [
+        "converged", "iterations", "energies", "angles_deg", "vertex_error", "creases",
+        "circle_miss", "taken_back",
+    ]  # fmt: skip
     assert list(report) == list(report.keys()) == list(dict(report)) == names
-    assert len(report) == 6
+    assert len(report) == 8
     assert "angles_deg" in report
     assert "__len__" not in report
     assert report.get("stages") is None

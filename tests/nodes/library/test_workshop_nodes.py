@@ -124,7 +124,7 @@ def test_shapes_are_told_apart_by_tolerance() -> None:
 
 
 def test_beams_and_what_was_rejected_are_audited(tmp_path: Path) -> None:
-    optimum = minimize_angles(fit_spheres(torus_mesh(8, 6)))
+    optimum = minimize_angles(fit_spheres(torus_mesh(8, 6)), crease=180)
     cut = panels(optimum.sphere_mesh, thickness=0.02)
     with pytest.warns(UserWarning, match="annuli cannot be made"):
         annuli = annulus_support(optimum.sphere_mesh, depth=0.3, max_tilt=2)

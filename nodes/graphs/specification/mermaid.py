@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from .annotations import Value
+from ..annotations import Value
 from .wires import Each, Param, Step
 
 

@@ -8,11 +8,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias, TypeGuard, cast
 
-from ...fabrication.output_folder import OutputFolder
-from .annotations import Value
-from .errors import GraphError
-from .ports import Port
-from .wires import Each, Param, Step, Wire, sources
+from ....fabrication.output_folder import OutputFolder
+from ..annotations import Value
+from ..errors import GraphError
+from ..ports import Port
+from ..specification.wires import Each, Param, Step, Wire, sources
 
 _Key: TypeAlias = str | tuple[int, int]
 
@@ -30,6 +30,12 @@ class Folders:
 
     read_from: Path | None = None
     write_to: Path | OutputFolder | None = None
+
+    @property
+    def is_staged(self) -> bool:  # numpydoc ignore=RT01
+        """Whether files are written elsewhere and moved when the job is done."""
+        folder = self.write_to
+        return isinstance(folder, OutputFolder) and folder.staging != folder.folder.absolute()
 
     @property
     def is_overwriting(self) -> bool:  # numpydoc ignore=RT01
@@ -138,8 +144,7 @@ def note_known_files(uses: FileUses, steps: Iterable[Step], values: Mapping[str,
     files = [
         (step, port, step.inputs.get(port.name, port.default))
         for step in steps
-        for port in step.node.inputs.values()
-        if is_file(port)
+        for port in step.node.file_inputs
     ]
     # Those that are read first, so that the message says which step reads a file.
     for step, port, given in sorted(files, key=lambda each: each[1].writes):
@@ -152,11 +157,6 @@ def is_file(port: Port) -> bool:
     return port.reads or port.writes
 
 
-def is_writer(step: Step) -> bool:
-    """Whether a step writes files."""
-    return any(port.writes for port in step.node.inputs.values())
-
-
 def is_wired(given: Value) -> bool:
     """Whether a value comes from another step."""
     return any(isinstance(source, Wire) for source in sources(given))
@@ -164,7 +164,7 @@ def is_wired(given: Value) -> bool:
 
 def is_written(given: Value) -> bool:
     """Whether a path comes from a step that writes."""
-    return any(isinstance(w, Wire) and is_writer(w.step) for w in sources(given))
+    return any(isinstance(w, Wire) and w.step.node.is_writer for w in sources(given))
 
 
 def paths_of(value: Value) -> list[str]:

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from .annotations import Value
+from ..annotations import Value
 
 Share: TypeAlias = Callable[[NDArray[Any]], NDArray[Any]]
 

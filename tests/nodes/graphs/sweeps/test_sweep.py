@@ -1,4 +1,4 @@
-"""Lists mapped over, and sliders moved over ranges."""
+"""Sliders moved over ranges."""
 
 import importlib
 import multiprocessing
@@ -12,7 +12,7 @@ from typing import NamedTuple
 import pytest
 
 import spheremesh as sm
-from spheremesh.nodes import GraphError, NodeError, node
+from spheremesh.nodes import GraphError, NodeWarning, node
 
 
 class Both(NamedTuple):
@@ -52,51 +52,6 @@ def toys() -> None:
         node(function)
 
 
-def test_the_longest_list_counts() -> None:
-    g = sm.Graph()
-    step = g.add("both", a=sm.each([1, 2, 3]), b=sm.each([10, 20]))
-    assert g.run(step) == Both([11, 22, 23], [10, 40, 60])
-    assert g.run(g.add("total", values=step.times)) == 110
-
-
-def test_each_of_a_wire_and_of_a_slider() -> None:
-    g = sm.Graph()
-    n = g.add("numbers", n=3)
-    sizes = g.param("sizes", [1.0, 2.0])
-    step = g.add("both", a=sm.each(n), b=sm.each(sizes))
-    assert g.run(step.plus) == [1, 3, 4]
-    g.set(sizes=[5.0])
-    assert g.run(step.plus) == [5, 6, 7]
-    with pytest.raises(GraphError, match=r"both\.b\[1\] = 'x': must be float"):
-        g.set(sizes=[5.0, "x"])
-    doubled = g.add("double", a=sm.each(step.plus))
-    assert g.run(doubled) == [10, 12, 14]
-    mixed = g.add("double", "mixed", a=sm.each([g.add("total", values=n), 4]))
-    assert g.run(mixed) == [6, 8]
-    assert sm.Graph.from_json(g.to_json()).run("mixed", "double") == ([6, 8], [10, 12, 14])
-
-
-def test_empty_lists() -> None:
-    g = sm.Graph()
-    assert g.run(g.add("both", a=sm.each([]))) == Both([], [])
-    with pytest.raises(NodeError, match=r"both_2\.b is an empty list, another has 2 items"):
-        g.run(g.add("both", a=sm.each([1, 2]), b=sm.each([])))
-
-
-def test_a_list_is_not_mapped_by_itself() -> None:
-    g = sm.Graph()
-    step = g.add("double", a=sm.each([1]))
-    with pytest.raises(
-        GraphError,
-        match=r"double\.result \(list of float\) into double_2\.a \(float\); map .* each",
-    ):
-        g.add("double", a=step)
-    with pytest.raises(GraphError, match=r"double_2\.a\[1\] = 'x': must be float"):
-        g.add("double", a=sm.each([1, "x"]))
-    with pytest.raises(GraphError, match="each needs a list"):
-        sm.each(3)
-
-
 def test_sweep_combines_and_leaves_the_sliders() -> None:
     g = sm.Graph()
     a, b = g.param("a", 1), g.param("b", 1)
@@ -124,14 +79,17 @@ def test_sweep_checks_all_points_first() -> None:
     assert runs == []
 
 
-def test_a_failing_point_is_named_and_the_sliders_are_put_back() -> None:
+def test_a_failing_point_is_a_row_and_the_sliders_stay() -> None:
     g = sm.Graph()
     a = g.param("a", 1)
     step = g.add("double", a=a)
-    with pytest.raises(NodeError, match="negative") as error:
-        sm.sweep(g, step, a=[2, -1])
-    assert error.value.__notes__ == ["at a = -1"]
+    with pytest.warns(NodeWarning, match="1 of 3 points failed; at a = -1: .*negative"):
+        found = sm.sweep(g, step, a=[2, -1, 3])
+    assert found == [({"a": 2}, 4), ({"a": -1}, None), ({"a": 3}, 6)]
+    assert [row.error for row in found] == ["", "step 'double' failed: negative", ""]
+    assert found.failures == [found[1]]
     assert g.run(a) == 1
+    assert g.messages == {}
 
 
 def test_sweep_in_threads() -> None:
@@ -172,7 +130,7 @@ def test_sweep_in_processes(toy_module: ModuleType) -> None:
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(1, mp_context=context) as executor:
         assert sm.sweep(g, step, executor=executor, a=[2, 3]) == [({"a": 2}, 8), ({"a": 3}, 27)]
-        with pytest.raises(NodeError, match="'cube_of_toy' failed: -1 is negative") as error:
-            sm.sweep(g, step, executor=executor, a=[2, -1])
-    assert error.value.step == "cube_of_toy"
-    assert isinstance(error.value.cause, toy_module.Refused)
+        with pytest.warns(NodeWarning, match="1 of 2 points failed; at a = -1"):
+            found = sm.sweep(g, step, executor=executor, a=[2, -1])
+    assert found == [({"a": 2}, 8), ({"a": -1}, None)]
+    assert found[1].error == "step 'cube_of_toy' failed: -1 is negative"

@@ -1,147 +1,16 @@
-"""What a graph is made of: sliders, steps, the wires between them, and the checks of these."""
+"""The checks of what is wired: both ends are named, and what would fit."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any, TypeAlias, cast
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, cast
 
-from .annotations import Hint, Value, element_type, type_name
-from .cache import digest
-from .errors import GraphError, UnknownPortError, nearest
-from .kinds import accepts, fits
-from .node import Node
-from .ports import REQUIRED, Port, check_value
-
-
-@dataclass(frozen=True, eq=False)
-class Param:
-    """A slider.
-
-    Attributes
-    ----------
-    graph : object
-        The graph that it belongs to.
-    value : object
-        Its value when the graph was put together; `Graph.values` holds the present one.
-    """
-
-    graph: object = field(repr=False)
-    name: str
-    value: Value
-    port: Port = field(repr=False)
-
-
-@dataclass(frozen=True, eq=False)
-class Wire:
-    """An output of a step."""
-
-    step: "Step"
-    port: Port
-
-    def __str__(self) -> str:
-        return f"{self.step.name}.{self.port.name}"
-
-    @property
-    def type(self) -> Hint:  # numpydoc ignore=RT01
-        """Type of the values that come by the wire."""
-        return list[self.port.type] if self.step.is_mapped else self.port.type
-
-
-@dataclass(frozen=True, eq=False)
-class Each:
-    """A list that a step is mapped over.
-
-    Attributes
-    ----------
-    items : list, Wire or Param
-        The list, or the output or slider that gives it.
-    """
-
-    items: Value
-
-
-@dataclass(frozen=True, eq=False)
-class Step:
-    """A node within a graph; its outputs are its attributes.
-
-    Attributes
-    ----------
-    graph : object
-        The graph that it belongs to.
-    inputs : mapping of str to object
-        What was given for the inputs: `Wire`, `Param`, `Each` or a value.
-    """
-
-    graph: object = field(repr=False)
-    name: str
-    node: Node
-    inputs: Mapping[str, Any] = field(repr=False)
-
-    def __getattr__(self, port: str) -> Wire:
-        if port.startswith("_"):
-            raise AttributeError(port)
-        return output_wire(self, port)
-
-    @property
-    def wires(self) -> tuple[Wire, ...]:  # numpydoc ignore=RT01
-        """All outputs."""
-        return tuple(Wire(self, port) for port in self.node.outputs.values())
-
-    @property
-    def sources(self) -> list[tuple[str, Wire | Param]]:  # numpydoc ignore=RT01
-        """The inputs that are wired, and to what."""
-        return [(name, wire) for name, value in self.inputs.items() for wire in sources(value)]
-
-    @property
-    def is_mapped(self) -> bool:  # numpydoc ignore=RT01
-        """Whether an input is a list to map over, so that the outputs are lists."""
-        return any(isinstance(value, Each) for value in self.inputs.values())
-
-
-def output_wire(step: Step, port: str) -> Wire:
-    """An output of a step by name.
-
-    Raises
-    ------
-    UnknownPortError
-        If there is none; the message gives the nearest.
-    """
-    outputs = step.node.outputs
-    if port not in outputs:
-        raise UnknownPortError(
-            f"step {step.name!r} (node {step.node.name}) has no output {port!r}; "
-            f"{nearest(port, outputs)}"
-        )
-    return Wire(step, outputs[port])
-
-
-Target: TypeAlias = Step | Wire | Param | str
-
-
-def sources(value: Value) -> Iterator[Wire | Param]:
-    """What a value given for an input is wired to.
-
-    Parameters
-    ----------
-    value : object
-        One of the values of `Step.inputs`.
-
-    Yields
-    ------
-    Wire or Param
-        The value itself, or those in a list.
-    """
-    if isinstance(value, Wire | Param):
-        yield value
-    elif isinstance(value, Each):
-        yield from sources(value.items)
-    elif isinstance(value, list | tuple):
-        for item in cast("Sequence[Value]", value):
-            yield from sources(item)
-
-
-def parents(step: Step) -> list[str]:
-    """Names of the steps that a step takes its inputs from."""
-    return [wire.step.name for _, wire in step.sources if isinstance(wire, Wire)]
+from ..annotations import Hint, Value, element_type, type_name
+from ..errors import GraphError, nearest
+from ..kinds import accepts, fits
+from ..node import Node
+from ..ports import REQUIRED, Port, check_value
+from ..stores.digests import digest
+from .wires import Each, Param, Step, Wire, axes_of, output_wire, sources
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,11 +19,18 @@ class Place:
 
     Attributes
     ----------
+    graph : object
+        What its steps and sliders have in common.
+    steps : mapping of str to Step
+        Those of the graph at present.
     values : mapping of str to object
         Of its sliders.
+    step : str
+        Name of the step.
     """
 
     graph: object
+    steps: Mapping[str, Step]
     values: Mapping[str, Any]
     step: str
 
@@ -181,15 +57,15 @@ def connect(place: Place, port: Port, given: Value, at: str = "") -> Value:
     """
     where = f"{place.step}.{port.name}{at}"
     if isinstance(given, Each):
-        return Each(_connect_each(place, port, given.items))
+        return replace(given, items=_connect_each(place, port, given.items))
+    if isinstance(given, Step | Wire):
+        given = present(place.graph, place.steps, given)
     if isinstance(given, Step):
-        given = _only_output(given, port.type, where)
+        given = only_output(given, port.type, where)
     if isinstance(given, Wire):
-        check_owner(place.graph, given)
         _check_wire(given, given.type, port, where)
     elif isinstance(given, Param):
-        check_owner(place.graph, given)
-        value = place.values[given.name]
+        value = _present_value(place, given)
         _check_literal(port, value, f"param {given.name} for {where}")
     elif isinstance(given, list | tuple) and _has_sources(given):
         if not accepts(port.type, []):
@@ -221,6 +97,31 @@ def check_owner(graph: object, target: Step | Wire | Param) -> None:
     if owner.graph is not graph:
         name = str(target) if isinstance(target, Wire) else target.name
         raise GraphError(f"{name} is part of another graph")
+
+
+def present(graph: object, steps: Mapping[str, Step], target: Step | Wire) -> Step | Wire:
+    """A step or output as it is now: who holds one knows how it was when it was added.
+
+    Raises
+    ------
+    GraphError
+        If it is of another graph, or there is none of that name any more.
+    """
+    check_owner(graph, target)
+    step = target.step if isinstance(target, Wire) else target
+    now = steps.get(step.name)
+    if now is None:
+        raise GraphError(f"there is no step {step.name!r} any more; {nearest('', steps)}")
+    if now is step:
+        return target
+    return output_wire(now, target.port.name) if isinstance(target, Wire) else now
+
+
+def _present_value(place: Place, param: Param) -> Value:
+    check_owner(place.graph, param)
+    if param.name not in place.values:
+        raise GraphError(f"there is no param {param.name!r} any more")
+    return place.values[param.name]
 
 
 def check_name(name: str, what: str) -> None:
@@ -266,7 +167,24 @@ def connect_all(place: Place, node: Node, inputs: Mapping[str, Value]) -> dict[s
     for name, port in node.inputs.items():
         if port.default is REQUIRED and name not in inputs:
             raise GraphError(f"{at} misses its input {name!r} ({type_name(port.type)})")
-    return {name: connect(place, node.inputs[name], given) for name, given in inputs.items()}
+    ports = node.inputs
+    connected = {name: connect(place, ports[name], given) for name, given in inputs.items()}
+    _check_axes(place.step, {name: connected[name] for name in ports if name in connected})
+    return connected
+
+
+def _check_axes(step: str, inputs: Mapping[str, Value]) -> None:
+    """Refuse lists of one axis whose rules contradict each other."""
+    eaches = {name: given for name, given in inputs.items() if isinstance(given, Each)}
+    for axis, names in axes_of(eaches).items():
+        rules = {eaches[name].match: name for name in names if eaches[name].match}
+        if len(rules) > 1:
+            (one, first), (other, second) = list(rules.items())[:2]
+            where = f" of axis {axis!r}" if axis else ""
+            raise GraphError(
+                f"{step}.{first} and {step}.{second}{where}: match={one!r} contradicts "
+                f"match={other!r}; say it once, or give one an axis of its own"
+            )
 
 
 def _check_literal(port: Port, value: Value, where: str) -> None:
@@ -284,15 +202,16 @@ def _has_sources(values: Value) -> bool:
 
 def _connect_each(place: Place, port: Port, items: Value) -> Value:
     where = f"{place.step}.{port.name}"
+    if isinstance(items, Step | Wire):
+        items = present(place.graph, place.steps, items)
     if isinstance(items, Step):
-        items = _only_output(items, list[port.type], where)
+        items = only_output(items, list[port.type], where)
     if isinstance(items, Wire):
-        check_owner(place.graph, items)
         if not fits(items.type, Iterable[Any]):
             raise GraphError(f"{where}: each needs a list, {items} is {type_name(items.type)}")
         _check_wire(items, element_type(items.type), port, f"each of {where}")
         return items
-    values = place.values[items.name] if isinstance(items, Param) else items
+    values = _present_value(place, items) if isinstance(items, Param) else items
     is_list = hasattr(values, "__len__") and getattr(values, "ndim", 1) > 0
     if isinstance(values, str | bytes) or not is_list:
         raise GraphError(f"{where}: each needs a list, not {type(values).__name__}")
@@ -302,7 +221,10 @@ def _connect_each(place: Place, port: Port, items: Value) -> Value:
     return items if isinstance(items, Param) else connected
 
 
-def _only_output(step: Step, kind: Hint, where: str) -> Wire:
+def only_output(step: Step, kind: Hint = Any, where: str = "its place") -> Wire:
+    """The output of a step that has one; the error of another says which would fit."""
+    if not step.node.is_known:
+        return output_wire(step, "")
     if len(step.wires) == 1:
         return step.wires[0]
     fitting = [str(wire) for wire in step.wires if fits(wire.type, kind)]

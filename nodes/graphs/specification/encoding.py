@@ -3,26 +3,37 @@
 import json
 import math
 import os
+from base64 import b64decode, b64encode
 from collections.abc import Callable, Mapping, Sequence
 from functools import singledispatch
-from typing import Any, Final, NamedTuple, cast
+from typing import Any, Final, NamedTuple, TypeAlias, cast
 
 import numpy as np
+import xxhash
 from numpy.typing import NDArray
 
-from .annotations import Value
-from .errors import GraphError
-from .wires import Each, Param, Wire
+from ..annotations import Value
+from ..errors import GraphError
+from ..stores.packing import PackingError, pack, unpack
+from .wires import Each, Param, Wire, each
+
+Contents: TypeAlias = dict[str, Any]
+"""Packed values by digest, which stand apart from what is read by people."""
+
+_LONG: Final = 1000
+"""Numbers of an array that are too many to be read."""
 
 
 @singledispatch
-def encode(value: Value) -> Value:
+def encode(value: Value, contents: Contents | None = None) -> Value:
     """A value, a wire or a slider as JSON.
 
     Parameters
     ----------
     value : object
         What a step was given.
+    contents : dict, optional
+        Where meshes and other records, and long arrays, are put.
 
     Returns
     -------
@@ -39,75 +50,109 @@ def encode(value: Value) -> Value:
     >>> encode([1, float("inf"), {"a": None}])
     [1, {'float': 'inf'}, {'mapping': {'a': None}}]
     """
-    raise GraphError(
-        f"a {type(value).__name__} cannot be written into a graph file; "
-        "let a node make it, or read it from a file"
-    )
+    try:
+        return _apart(value, contents)
+    except (PackingError, RecursionError) as error:
+        raise GraphError(
+            f"a {type(value).__name__} cannot be written into a graph file; "
+            "let a node make it, or read it from a file"
+        ) from error
+
+
+def _apart(value: Value, contents: Contents | None) -> Value:
+    blocks: dict[str, bytes] = {}
+    tree = pack(value, blocks)
+    if contents is None:
+        raise PackingError("there is no place for it")
+    packed = {
+        "value": tree,
+        "blocks": {name: b64encode(block).decode() for name, block in sorted(blocks.items())},
+    }
+    name = content_name(packed)
+    contents[name] = packed
+    return {"content": name}
+
+
+def content_name(packed: Value) -> str:
+    """The name of a content: its digest."""
+    text = json.dumps(packed, sort_keys=True, ensure_ascii=True, separators=(",", ":"))
+    return xxhash.xxh3_128_hexdigest(text.encode())
 
 
 @encode.register(type(None))
 @encode.register(bool)
 @encode.register(int)
 @encode.register(str)
-def _(value: Value) -> Value:
+def _(value: Value, contents: Contents | None = None) -> Value:
+    del contents
     return value
 
 
 @encode.register
-def _(value: float) -> Value:
+def _(value: float, contents: Contents | None = None) -> Value:
+    del contents
     return value if math.isfinite(value) else {"float": str(value)}
 
 
 @encode.register(np.generic)
-def _(value: np.generic) -> Value:
-    return encode(value.item())
+def _(value: np.generic, contents: Contents | None = None) -> Value:
+    return encode(value.item(), contents)
 
 
 @encode.register(os.PathLike)
-def _(value: os.PathLike[str]) -> Value:
+def _(value: os.PathLike[str], contents: Contents | None = None) -> Value:
+    del contents
     return os.fspath(value)
 
 
 @encode.register(list)
 @encode.register(tuple)
-def _(value: Sequence[Value]) -> Value:
-    return [encode(item) for item in value]
+def _(value: Sequence[Value], contents: Contents | None = None) -> Value:
+    return [encode(item, contents) for item in value]
 
 
 @encode.register(Mapping)
-def _(value: Mapping[Value, Value]) -> Value:
+def _(value: Mapping[Value, Value], contents: Contents | None = None) -> Value:
+    if not isinstance(value, dict) and contents is not None:
+        return _apart(value, contents)  # a report
     if not all(isinstance(key, str) for key in value):
         raise GraphError("a mapping in a graph file needs texts as keys")
-    return {"mapping": {key: encode(item) for key, item in value.items()}}
+    return {"mapping": {key: encode(item, contents) for key, item in value.items()}}
 
 
 @encode.register(np.ndarray)
-def _(value: NDArray[Any]) -> Value:
+def _(value: NDArray[Any], contents: Contents | None = None) -> Value:
     if value.dtype.kind not in "biuf":
         raise GraphError(f"an array of {value.dtype} cannot be written into a graph file")
+    if value.size > _LONG and contents is not None:
+        return _apart(value, contents)
     return {"array": encode(value.tolist()), "dtype": value.dtype.name}
 
 
 @encode.register
-def _(value: Each) -> Value:
-    return {"each": encode(value.items)}
+def _(value: Each, contents: Contents | None = None) -> Value:
+    rules = {name: rule for name in ("match", "axis") if (rule := getattr(value, name))}
+    return {"each": encode(value.items, contents), **rules}
 
 
 @encode.register
-def _(value: Wire) -> Value:
+def _(value: Wire, contents: Contents | None = None) -> Value:
+    del contents
     return {"wire": value.step.name if len(value.step.wires) == 1 else str(value)}
 
 
 @encode.register
-def _(value: Param) -> Value:
+def _(value: Param, contents: Contents | None = None) -> Value:
+    del contents
     return {"param": value.name}
 
 
 class Names(NamedTuple):
-    """What gives the wires and sliders of a graph by name."""
+    """What gives the wires, sliders and contents of a graph by name."""
 
     wire: Callable[[str], Value]
     slider: Callable[[str], Value]
+    content: Callable[[str], Value]
 
 
 def decode(value: Value, names: Names) -> Value:
@@ -129,13 +174,13 @@ def decode(value: Value, names: Names) -> Value:
         return value
     tagged = cast("dict[str, Value]", value)
     tag = next((tag for tag in tagged if tag in _DECODERS), "")
-    if not tag or not tagged.keys() <= {tag, "dtype" if tag == "array" else tag}:
+    if not tag or not tagged.keys() <= {tag, *_BESIDE.get(tag, ())}:
         raise GraphError(
             f"cannot read {_shown(tagged)}: expected a value or one of {', '.join(_DECODERS)}"
         )
     try:
         return _DECODERS[tag](tagged, names)
-    except (AttributeError, TypeError, ValueError, ArithmeticError) as error:
+    except (AttributeError, TypeError, ValueError, ArithmeticError, LookupError) as error:
         if isinstance(error, GraphError):
             raise
         raise GraphError(f"cannot read {_shown(tagged)}: {error}") from error
@@ -158,6 +203,18 @@ def _array(tagged: dict[str, Value], names: Names) -> NDArray[Any]:
     return array
 
 
+def _content(tagged: dict[str, Value], names: Names) -> Value:
+    """A content, if it is what its digest says; nothing in it is run."""
+    packed = names.content(tagged["content"])
+    if content_name(packed) != tagged["content"]:
+        raise ValueError("its content is damaged")
+    blocks = {name: b64decode(text) for name, text in packed["blocks"].items()}
+    try:
+        return unpack(packed["value"], blocks.__getitem__)
+    except ImportError as error:
+        raise GraphError(f"import the module {error} first, whose records it holds") from error
+
+
 def _float(tagged: dict[str, Value], _: Names) -> float:
     if tagged["float"] not in ("inf", "-inf", "nan"):
         raise ValueError("expected inf, -inf or nan")
@@ -176,14 +233,20 @@ _DTYPES: Final = (
 _DECODERS: dict[str, Callable[[dict[str, Value], Names], Value]] = {
     "wire": lambda tagged, names: names.wire(tagged["wire"]),
     "param": lambda tagged, names: names.slider(tagged["param"]),
-    "each": lambda tagged, names: Each(decode(tagged["each"], names)),
+    "each": lambda tagged, names: each(
+        decode(tagged["each"], names), **{n: x for n, x in tagged.items() if n != "each"}
+    ),
     "array": _array,
+    "content": _content,
     "mapping": lambda tagged, names: {
         key: decode(item, names) for key, item in tagged["mapping"].items()
     },
     "float": _float,
 }
 
+
+_BESIDE: Final = {"array": ("dtype",), "each": ("match", "axis")}
+"""What may stand beside a tag."""
 
 MOST_BYTES: Final = 2**26
 _MOST_VALUES: Final = 1_000_000

@@ -1,21 +1,19 @@
-"""Structural keys, and the results found by them."""
+"""Fingerprints of values and files by content."""
 
 import os
-from collections import OrderedDict
 from collections.abc import Mapping, Set
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from functools import singledispatch
 from pathlib import Path
-from threading import Lock
-from typing import Any, cast
+from typing import Any, Final, TypeAlias, cast
 
 import numpy as np
 import xxhash
 from numpy.typing import NDArray
 
-from .annotations import Value
+from ..annotations import Value
 
-FileState = tuple[int, int] | None
+FileState: TypeAlias = tuple[int | str, ...] | None
 
 
 def digest(value: object) -> bytes:
@@ -140,89 +138,26 @@ def file_state(path: str | os.PathLike[str]) -> FileState:
     return status.st_size, status.st_mtime_ns
 
 
-@dataclass(frozen=True, eq=False)
-class Entry:
-    """The outcome of a step.
+def content_state(path: str | os.PathLike[str]) -> FileState:
+    """What tells that a file has changed, whoever wrote it and whenever.
 
-    Attributes
-    ----------
-    value : object
-        What the function returned, `own`.
-    messages : tuple of str
-        What it warned about.
-    files : tuple of (str, FileState)
-        The files that it wrote, as it left them.
+    Returns
+    -------
+    tuple of (int, str) or None
+        Size and digest of its content; None if there is no such file.
     """
+    state = xxhash.xxh3_128()
+    size = 0
+    try:
+        if not Path(path).is_file():
+            return None
+        with Path(path).open("rb") as file:
+            while block := file.read(_BLOCK):
+                state.update(block)
+                size += len(block)
+    except (OSError, ValueError):
+        return None
+    return size, state.hexdigest()
 
-    value: Any
-    messages: tuple[str, ...] = ()
-    files: tuple[tuple[str, FileState], ...] = ()
 
-
-class Cache:
-    """Results by key, the longest unused forgotten first.
-
-    Parameters
-    ----------
-    max_entries : int
-        How many results are kept.
-    """
-
-    def __init__(self, max_entries: int = 256) -> None:
-        self.max_entries = max_entries
-        self._entries: OrderedDict[bytes, Entry] = OrderedDict()
-        self._messages: dict[bytes, tuple[str, ...]] = {}
-        self._writers: dict[str, bytes] = {}
-        self._lock = Lock()
-
-    def get(self, key: bytes) -> Entry | None:
-        """The result of a key, if it is there and the files it wrote are too.
-
-        Returns
-        -------
-        Entry or None
-            None too if a file is gone, has changed, or was written by another step since.
-        """
-        with self._lock:
-            entry = self._entries.get(key)
-            if entry is None:
-                return None
-            for path, state in entry.files:
-                # Two writes within a tick of the file system's clock have equal states.
-                if self._writers.get(path) != key or state is None:
-                    return None
-                if file_state(path) != state:
-                    return None
-            self._entries.move_to_end(key)
-            return entry
-
-    def put(self, key: bytes, entry: Entry) -> None:
-        """Keep a result."""
-        with self._lock:
-            self._entries[key] = entry
-            self._entries.move_to_end(key)
-            self._writers.update((path, key) for path, _ in entry.files)
-            if entry.messages:
-                self._messages[key] = entry.messages
-
-    def messages(self, key: bytes) -> tuple[str, ...]:
-        """What a step warned about; remembered when its result is forgotten.
-
-        Returns
-        -------
-        tuple of str
-            Empty if it did not.
-        """
-        return self._messages.get(key, ())
-
-    def trim(self, at_least: int = 0) -> None:
-        """Forget the results that were not used for longest.
-
-        Parameters
-        ----------
-        at_least : int
-            Keep as many, even if it is more than `max_entries`.
-        """
-        with self._lock:
-            while len(self._entries) > max(self.max_entries, at_least):
-                self._entries.popitem(last=False)
+_BLOCK: Final = 2**20
