@@ -13,13 +13,13 @@ from ..sphere_meshes.fit import face_planes
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..support.feasibility import judge_support
 from .curvatures import common_curvatures, one_curvature
-from .descent import descend
+from .descent import slide_to_support
 from .design_surface import design_surface
 from .judgement import Judgement, judge
 from .landing import land
 from .setting import Bounds, first_state, make_setting
 
-TRIALS = ((1.0, False), (1.0, True), (1.3, True), (0.7, True))
+SEARCHES = ((1.0, False), (1.0, True), (1.3, True), (0.7, True))
 """Common curvatures that are tried, relative to the best, and whether flatness is a condition:
 the next where none is found or beams tilt."""
 
@@ -125,12 +125,12 @@ def find_exact_support(mesh: Mesh, bounds: Bounds, *, one_radius: bool = False) 
     attempts: list[Attempt] = []
     # Where even with fixed vertices no axes please the beams, sliding hardly ever helps.
     is_hopeless = judge_support(face_planes(design)).verdict == "no"
-    for factor, is_flat in TRIALS[:1] if is_hopeless else TRIALS:
+    for factor, is_flat in SEARCHES[:1] if is_hopeless else SEARCHES:
         setting = make_setting(
             design, surface, _searched(bounds), factor * curvatures,
             has_one_radius=one_radius, is_flat=is_flat,
         )  # fmt: skip
-        found, is_landed = land(setting, descend(setting, first_state(setting)))
+        found, is_landed = land(setting, slide_to_support(setting, first_state(setting)))
         judgement = judge(design, surface, found)
         attempts.append(
             Attempt(found, factor, setting.curvatures, is_landed, judgement, bounds)
