@@ -211,7 +211,7 @@ def test_bounds_are_kept() -> None:
 
 
 def test_bounds_that_are_too_tight_lead_to_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(search, "TRIALS", search.TRIALS[:2])
+    monkeypatch.setattr(search, "SEARCHES", search.SEARCHES[:2])
     tight = find_exact_support(sheared_dome(3, 3), Bounds(0.0, 0.001))
     assert not tight.is_exact
     assert len(tight.tried) == 2
