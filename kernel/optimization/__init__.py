@@ -10,13 +10,14 @@ system with one entry per edge, solved by conjugate gradients. The start is the 
 given spheres and the face planes, so any start gives the same result. Another density is a
 function of g with two derivatives.
 
-Everything else, moving vertices, upright planes and nodes with axes, is `whole_energy`, by
-Levenberg-Marquardt on the terms in `energies`.
+Everything else, moving vertices, upright planes and nodes with axes, is `whole_energy`, by the
+Newton method in `descent` on the terms in `energies`.
 
 angle_minimization  Angles in the pencils of the faces' circles, vertices fixed.
 strips              Rows of faces whose spheres join smoothly along the row, and only there.
 radius_clustering   Few moulds: the radii of a sphere mesh gathered into clusters.
 line_clusters       Clusters of numbers on a line with the least sum of squares, exactly.
 whole_energy        Energy (6): smooth spheres, upright planes between them, nodes with axes.
-energies            The terms of energy (6), their table, and how their sum falls.
+energies            The terms of energy (6) and their table.
+descent             How their sum falls, and what has to hold.
 """

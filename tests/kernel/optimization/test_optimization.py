@@ -299,7 +299,7 @@ def test_a_single_face() -> None:
 def test_history_falls_within_each_stage() -> None:
     _, report = optimize_spheres(smooth(noisy(vase_mesh(9, 7), 0.01)), TABLE_1)
     names = [stage.name for stage in report.stages]
-    assert names[:3] == ["angles", "energy", "support x 10"]
+    assert names[:3] == ["angles", "energy", "round 1"]
     for stage in report.stages:
         total = sum(stage.energies.values())
         assert (np.diff(total) < 0).all()
