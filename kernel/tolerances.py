@@ -118,6 +118,9 @@ HELD_AXES: Final = 1e-11
 SAME_OBJECTIVE: Final = 1e-9
 """The optimum is found when a round changes the rest of the energy by no larger share."""
 
+SAME_ANGLES: Final = 1e-6
+"""Mean angles that differ by a smaller share are equal."""
+
 # Panels
 
 PLANE_SAGITTA: Final = 1e-6

@@ -17,6 +17,7 @@ angle_minimization  Angles in the pencils of the faces' circles, vertices fixed.
 strips              Rows of faces whose spheres join smoothly along the row, and only there.
 radius_clustering   Few moulds: the radii of a sphere mesh gathered into clusters.
 line_clusters       Clusters of numbers on a line with the least sum of squares, exactly.
+comparison          Is an optimum better than doing nothing?
 whole_energy        Energy (6): smooth spheres, upright planes between them, nodes with axes.
 energies            The terms of energy (6) and their table.
 descent             How their sum falls, and what has to hold.

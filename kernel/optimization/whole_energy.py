@@ -7,7 +7,8 @@ rougher than flat panels, the vertices stay and each sphere passes within the to
 instead.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -17,11 +18,12 @@ from ..arrays import BoolArray, FloatArray, norm
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_centroids, mean_edge_length, with_vertices
 from ..sphere_meshes.fit import face_planes
-from ..sphere_meshes.sphere_mesh import SphereMesh, intersection_angles, vertex_error
+from ..sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ..spheres.circles import circle_pencils, face_circles, pencil_spheres
 from ..spheres.rows import recenter, rescale
-from ..tolerances import COMMON_VERTEX
+from ..tolerances import COMMON_VERTEX, LOWEST_EIGENVALUE
 from .angle_minimization import check_angle_options, minimize_angles, pencil_angles
+from .comparison import Kept, Smoothness, smoother, smoothness
 from .descent.freedom import Boundary, Freedom, Interior, vertex_freedom
 from .descent.multipliers import BOUND_MARGIN, Stage, descend_energy, hold, stage_of
 from .descent.problem import EnergyProblem, energy_problem
@@ -30,8 +32,8 @@ from .energies.table import TERMS, EnergyWeights
 
 Corners = Literal["soft", "common", "own"]
 
-HARD = 10.0
-"""Factor on the weight of what has to hold exactly; its multipliers do the rest."""
+HARD = {"sphericity": 10.0, "support": 100.0}
+"""Factors on the weights of what has to hold exactly; its multipliers do the rest."""
 BOUND_WEIGHTS = (1e-2, 3e-3, 1e-3)
 """Weights of the displacements, from round to round. What costs nothing else moves least."""
 LIMIT_WEIGHTS = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3)
@@ -64,7 +66,7 @@ class Conditions:
     boundary : {"free", "glide", "fixed"}
         How boundary vertices move; gliding ones along the boundary.
     max_iterations : int
-        Largest number of linear systems of each stage.
+        Largest number of steps of each stage.
     """
 
     target_angle: float = 0.0
@@ -92,17 +94,33 @@ class Optimization:
         Largest displacement of a vertex, in mean edges.
     vertex_miss : float
         Largest distance of a vertex from one of its spheres, in mean edges.
+    is_held : bool
+        Whether all that had to hold exactly does: nodes have axes if asked for, vertices lie
+        on their spheres, or spheres pass within the tolerance of them.
+    lowest_eigenvalue : float
+        Lowest eigenvalue of the Hessian at rest, or a bound from below: no minimum where it is
+        clearly negative. Minus infinity where it is not known.
+    figures : mapping of str to Smoothness
+        Of the ``optimum``, of ``planes`` on the mesh as it was, of the spheres at ``start``.
+    kept : {"optimum", "planes", "start"}
+        Which of these is the result: where nothing was asked for but small angles, an optimum
+        that is rougher on average is not handed over.
     """
 
     stages: tuple[Stage, ...]
     corners: Corners
     vertex_move: float
     vertex_miss: float
+    is_held: bool = True
+    lowest_eigenvalue: float = -np.inf
+    figures: Mapping[str, Smoothness] = field(default_factory=dict[str, Smoothness])
+    kept: Kept = "optimum"
 
     @property
     def converged(self) -> bool:
-        """Whether the last stage came to rest: False if it used up its iterations."""
-        return self.stages[-1].status != "exhausted"
+        """Whether the last stage came to rest in a minimum, and all that had to hold does."""
+        is_minimum = self.lowest_eigenvalue >= -LOWEST_EIGENVALUE
+        return self.stages[-1].status == "converged" and is_minimum and self.is_held
 
 
 def optimize_spheres(
@@ -129,6 +147,38 @@ def optimize_spheres(
     """
     weights = EnergyWeights() if weights is None else weights
     conditions = Conditions() if conditions is None else conditions
+    result, report = _optimum(sphere_mesh, weights, conditions)
+    edge_weights = check_angle_options(
+        sphere_mesh.mesh, conditions.target_angle, conditions.edge_weights
+    )
+    others = {"planes": face_planes(sphere_mesh.mesh), "start": sphere_mesh}
+    figures = {
+        name: smoothness(each, edge_weights, conditions.target_angle)
+        for name, each in {"optimum": result, **others}.items()
+    }
+    report = replace(report, figures=figures)
+    if weights.angle == 0 or not _asks_for_angles_alone(weights, conditions):
+        return result, report
+    kept = smoother(
+        figures["optimum"], figures["planes"], figures["start"], conditions.tolerance
+    )
+    if kept == "optimum":
+        return result, report
+    miss = figures[kept].miss
+    corners: Corners = "soft" if conditions.tolerance == 0 else "own"
+    report = replace(report, corners=corners, vertex_move=0.0, vertex_miss=miss, kept=kept)
+    return others[kept], report
+
+
+def _asks_for_angles_alone(weights: EnergyWeights, conditions: Conditions) -> bool:
+    """Whether nothing that was asked for explains rougher spheres."""
+    others = weights.regularity, weights.support, weights.fairness, weights.closeness
+    return not any(others) and conditions.fixed_radii is None
+
+
+def _optimum(
+    sphere_mesh: SphereMesh, weights: EnergyWeights, conditions: Conditions
+) -> tuple[SphereMesh, Optimization]:
     run = _angles_first(_prepared(sphere_mesh, conditions), weights)
     if conditions.tolerance == 0:
         return _finished(_held(run, weights, ()), "soft")
@@ -281,7 +331,7 @@ def _rounds(
 ) -> _Run:
     if weights.support > 0:
         hard = (*hard, "support")
-    raised = {name: HARD * (getattr(weights, name) or 1.0) for name in hard}
+    raised = {name: HARD[name] * (getattr(weights, name) or 1.0) for name in hard}
     problem = energy_problem(run.setting, run.freedom, replace(weights, **raised))
     problem = replace(problem, hard=frozenset(hard), limits=limits)
     held = hold(problem, run.unknowns, run.max_iterations, bound_weights)
@@ -306,16 +356,15 @@ def _finished(run: _Run, corners: Corners) -> tuple[SphereMesh, Optimization]:
         corners,
         float(norm(unknowns.displacements).max()),
         float(vertex_error(result).max()) / edge,
+        run.is_held,
+        run.lowest,
     )
     return result, report
 
 
 def _is_rougher_than_planes(sphere_mesh: SphereMesh, conditions: Conditions) -> bool:
     """Whether the angles lie farther from their target than those of flat panels."""
-    angles = intersection_angles(sphere_mesh)
-    planar = intersection_angles(face_planes(sphere_mesh.mesh))
-    weights = check_angle_options(
-        sphere_mesh.mesh, conditions.target_angle, conditions.edge_weights
-    )
     target = conditions.target_angle
-    return float(weights @ np.abs(angles - target)) > float(weights @ np.abs(planar - target))
+    weights = check_angle_options(sphere_mesh.mesh, target, conditions.edge_weights)
+    planes = smoothness(face_planes(sphere_mesh.mesh), weights, target)
+    return smoothness(sphere_mesh, weights, target).mean > planes.mean

@@ -29,9 +29,9 @@ from .levenberg_marquardt import State, Status
 Factorize = Callable[[float], Solver | None]
 
 LARGEST_SHIFT = 1e3
-CONVEX_SHIFT = 1e-3
+CONVEX_SHIFT = 1e-5
 """Where the Hessian needs a larger shift, its convex part leads on faster."""
-GROWTH = 16.0
+GROWTH = 1e3
 RENEWED_SHIFT = 1e-7
 """Shift with which a step that lowered nothing is tried again."""
 SHORTEST_STEP, LONGEST_STEP = 2.0**-7, 2.0**10

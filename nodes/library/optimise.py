@@ -10,6 +10,7 @@ from ...kernel.errors import ConvergenceError, InputError, name_ids
 from ...kernel.meshes.mesh import Mesh, mean_edge_length
 from ...kernel.optimization import angle_minimization, strips
 from ...kernel.optimization import whole_energy as optimization
+from ...kernel.optimization.comparison import Smoothness
 from ...kernel.optimization.energies.table import EnergyWeights
 from ...kernel.reports import Report
 from ...kernel.sphere_meshes.fit import face_planes
@@ -68,6 +69,15 @@ class EnergyReport(OptimumReport):
         pass through it) or ``own`` (each within the tolerance of it).
     vertex_move : float
         In mean edges.
+    held : bool
+        Whether what had to hold exactly does: nodes with axes, vertices on their spheres.
+    lowest_eigenvalue : float or None
+        Of the second derivatives at rest; not below -1e-8 at a minimum.
+    kept : str
+        ``optimum``, or what was smoother on average: ``planes`` or the spheres at the
+        ``start``.
+    optimum_angles_deg, start_angles_deg : dict
+        ``mean`` and ``max`` of the optimum, kept or not, and of the spheres at the start.
     angles_deg, vertex_error : dict
         As in `AnglesReport`.
     """
@@ -76,6 +86,11 @@ class EnergyReport(OptimumReport):
     stages: list[dict[str, Any]]
     corners: str
     vertex_move: float
+    held: bool
+    lowest_eigenvalue: float | None
+    kept: str
+    optimum_angles_deg: dict[str, float]
+    start_angles_deg: dict[str, float]
     angles_deg: dict[str, dict[str, float]]
     vertex_error: dict[str, float]
 
@@ -164,7 +179,7 @@ def minimize_angles(
     return AnglesOptimum(result, report)
 
 
-@node
+@node(version="2")
 def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     sphere_mesh: SphereMesh,
     sphericity: Weight = 1.0,
@@ -194,8 +209,8 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     regularity : float
         Weight of the planes between neighbours standing upright; 3.5 goes with a support.
     support : float
-        Weight of nodes without torsion; 1 asks for them. It is raised until they have none.
-        Spheres then miss vertices, by what the report says: `land_nodes` moves the vertices.
+        Weight of nodes without torsion; with any, they have none in the end. Spheres then miss
+        vertices, by what the report says: allow a tolerance, or let `land_nodes` move them.
     fairness : float
         Weight of moving vertices lying near the mean of their neighbours.
     closeness : float
@@ -207,7 +222,8 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     tolerance : float
         How far vertices may move, in mean edges. They move until all spheres of a vertex pass
         through it; where that would be rougher than flat panels, they stay, and each sphere
-        passes within the tolerance of them.
+        passes within the tolerance of them. Of optima that are equal, the one that moves
+        vertices least is found.
     fixed_radii : (F,) float array, optional
         Radius of each face, infinite for a plane, 0 where it is free.
     interior : {"free", "glide"}
@@ -215,12 +231,13 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     boundary : {"free", "glide", "fixed"}
         How boundary vertices move; gliding ones along the boundary.
     max_iterations : int
-        Largest number of linear systems of each stage.
+        Largest number of steps of each stage.
 
     Returns
     -------
     sphere_mesh : SphereMesh
-        The optimum, on moved vertices if they may move.
+        The optimum, on moved vertices if they may move. Where nothing but angles was asked for
+        and flat panels or the spheres at the start meet more smoothly, these.
     report : EnergyReport
         The angles before and after, the stages, and how far vertices moved.
 
@@ -241,27 +258,70 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     )  # fmt: skip
     result, run = optimization.optimize_spheres(sphere_mesh, weights, conditions)
     outcome = _outcome(result, sphere_mesh.mesh)
-    if not run.converged:
+    _warn_of_energy(run, outcome, conditions, support)
+    lowest = run.lowest_eigenvalue
+    report = EnergyReport(
+        run.converged,
+        [_stage(stage) for stage in run.stages],
+        run.corners,
+        run.vertex_move,
+        run.is_held,
+        lowest if np.isfinite(lowest) else None,
+        run.kept,
+        _degrees(run.figures["optimum"]),
+        _degrees(run.figures["start"]),
+        **outcome,
+    )
+    return EnergyOptimum(result, report)
+
+
+def _degrees(found: Smoothness) -> dict[str, float]:
+    return {"mean": float(np.degrees(found.mean)), "max": float(np.degrees(found.largest))}
+
+
+def _warn_of_energy(
+    run: optimization.Optimization,
+    outcome: dict[str, dict[str, Any]],
+    conditions: optimization.Conditions,
+    support: float,
+) -> None:
+    """Say what did not come out, and what the optimum costs."""
+    if any(stage.status == "exhausted" for stage in run.stages[-1:]):
         warn(
-            f"the optimisation used up its {max_iterations} iterations: the result is its best "
-            "so far; raise max_iterations"
+            f"the optimisation used up its {conditions.max_iterations} iterations: the result "
+            "is its best so far; raise max_iterations"
         )
-    if run.corners == "own":
+    elif not run.is_held:
         warn(
-            f"no common spheres within a tolerance of {tolerance:g} mean edges are smoother "
-            "than flat panels: vertices stay, and each panel has corners of its own within the "
-            "tolerance of them"
+            "what has to hold does not within what is allowed: vertices miss their spheres by "
+            f"up to {run.vertex_miss:.3g} mean edges; allow a larger tolerance, or ask for less"
+        )
+    found = {name: float(np.degrees(each.mean)) for name, each in run.figures.items()}
+    if run.kept != "optimum":
+        kept = "flat panels" if run.kept == "planes" else "the spheres at the start"
+        warn(
+            f"{kept} are kept: they meet at {found[run.kept]:.3g} degrees on average, the "
+            f"optimum at {found['optimum']:.3g}; allow a tolerance for smoother panels"
+        )
+    elif run.corners == "own":
+        warn(
+            f"no common spheres within a tolerance of {conditions.tolerance:g} mean edges are "
+            "smoother than flat panels: vertices stay, and each panel has corners of its own "
+            "within the tolerance of them"
         )
     elif support == 0 and outcome["vertex_error"]["relative_to_edge"] > VERTEX_MISS:
         warn(
             f"vertices miss their spheres by up to {run.vertex_miss:.3g} mean edges: allow a "
             "tolerance to let them move"
         )
-    if target_angle == 0 and support == 0:
+    if support > 0 and found["optimum"] > min(found["planes"], found["start"]):
+        warn(
+            f"the support costs smoothness: neighbours meet at {found['optimum']:.3g} degrees "
+            f"on average, {found['start']:.3g} without it and {found['planes']:.3g} with flat "
+            "panels; beams along the bisectors or the node axes leave the spheres as they are"
+        )
+    elif conditions.target_angle == 0 and support == 0 and run.kept == "optimum":
         _warn_of_little_gain(outcome)
-    stages = [_stage(stage) for stage in run.stages]
-    report = EnergyReport(run.converged, stages, run.corners, run.vertex_move, **outcome)
-    return EnergyOptimum(result, report)
 
 
 @node

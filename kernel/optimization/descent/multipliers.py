@@ -9,7 +9,14 @@ import numpy as np
 from ...arrays import FloatArray, dot
 from ...solvers.levenberg_marquardt import Status
 from ...solvers.newton import NewtonDescent, Problem, newton
-from ...tolerances import AT_REST, HELD, HELD_AXES, LEAST_DECREMENT, SAME_OBJECTIVE
+from ...tolerances import (
+    AT_REST,
+    COMMON_VERTEX,
+    HELD,
+    HELD_AXES,
+    LEAST_DECREMENT,
+    SAME_OBJECTIVE,
+)
 from ..energies.setting import Group, Unknowns
 from .derivatives import energy_model
 from .freedom import largest_part, moved, tangents
@@ -17,13 +24,15 @@ from .problem import EnergyProblem, energies_of_terms, misses, names
 
 MOST_ROUNDS = 40
 """Largest number of rounds; each makes what is missing several times smaller."""
-FIRST_ROUND = 1e-4
-"""Decrement at which the first round, whose multipliers are rough, may end."""
+FIRST_ROUND, STRICTER = 1e-4, 1e-2
+"""Decrement at which the first round, whose multipliers are rough, may end; and from round to
+round."""
 BOUND_MARGIN = 0.95
 """Share of the way to the bound that a step may go."""
 SLOW = 4.0
 """From round to round, what has to hold shall miss by so much less; else it weighs more."""
-HARDER = 10.0
+HARDER = {"sphericity": 3.0, "support": 10.0}
+"""How much more. Vertices that move slide along curved walls: too steep ones stop them."""
 PATIENCE = 2
 """What stays slow for more rounds than this, each with more weight, cannot hold."""
 
@@ -155,7 +164,7 @@ def hold(
         is_last = number >= len(bound_weights) - 1
         weight = bound_weights[min(number, len(bound_weights) - 1)]
         problem = replace(problem, bound_weight=weight)
-        tolerance = AT_REST if number else FIRST_ROUND
+        tolerance = max(AT_REST, FIRST_ROUND * STRICTER**number)
         descent = descend_energy(
             problem, unknowns, max_iterations, tolerance, leaves_saddles=is_last
         )
@@ -163,7 +172,10 @@ def hold(
         stages.append(stage_of(problem, f"round {number + 1}", descent))
         found = misses(problem, unknowns)
         problem = _taken_up(problem, found)
-        left = {name: left[name].after(name, values, is_last) for name, values in found.items()}
+        left = {
+            name: left[name].after(name, values, counts=is_last)
+            for name, values in found.items()
+        }
         previous, objective = objective, _objective(problem, descent.history[-1])
         change = abs(previous - objective)
         is_settled = change <= SAME_OBJECTIVE * objective + LEAST_DECREMENT
@@ -173,7 +185,10 @@ def hold(
         elif any(each.slow > PATIENCE for each in left.values()):
             break
         problem = _harder(problem, {name for name, each in left.items() if each.slow})
-    return Held(unknowns, tuple(stages), lowest, is_held=False)
+    # Where conditions depend on each other, multipliers grow on and on, and what is missing
+    # falls slowly: less than what vertices may miss is as good as nothing.
+    is_held = all(each.miss <= COMMON_VERTEX for each in left.values())
+    return Held(unknowns, tuple(stages), lowest, is_held=is_held)
 
 
 class _Left(NamedTuple):
@@ -183,7 +198,7 @@ class _Left(NamedTuple):
     slow: int = 0
     is_held: bool = False
 
-    def after(self, name: str, values: FloatArray, counts: bool) -> "_Left":  # noqa: FBT001
+    def after(self, name: str, values: FloatArray, *, counts: bool) -> "_Left":
         miss = float(np.abs(values).max(initial=0.0))
         is_held = miss <= (HELD_AXES if name == "support" else HELD)
         is_slow = counts and not is_held and miss > self.miss / SLOW
@@ -194,12 +209,13 @@ def _harder(problem: EnergyProblem, slow: set[str]) -> EnergyProblem:
     """The same multipliers in effect, and more weight on what misses too much too long."""
     if not slow:
         return problem
+    factors = {name: HARDER[name] for name in slow}
     weights = tuple(
-        weight * (HARDER if term.name in slow else 1.0)
+        weight * factors.get(term.name, 1.0)
         for term, weight in zip(problem.terms, problem.weights, strict=True)
     )
     multipliers = {
-        name: y / HARDER**2 if name in slow else y for name, y in problem.multipliers.items()
+        name: y / factors.get(name, 1.0) ** 2 for name, y in problem.multipliers.items()
     }
     return replace(problem, weights=weights, multipliers=multipliers)
 
