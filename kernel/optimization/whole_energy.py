@@ -157,7 +157,11 @@ def optimize_spheres(
         for name, each in {"optimum": result, **others}.items()
     }
     report = replace(report, figures=figures)
-    if weights.angle == 0 or not _asks_for_angles_alone(weights, conditions):
+    explains = not _asks_for_angles_alone(weights, conditions)
+    if weights.support > 0 and (report.corners == "own" or not report.is_held):
+        # Without common vertices nodes have no axes: the support explains nothing.
+        explains = False
+    if weights.angle == 0 or explains:
         return result, report
     kept = smoother(
         figures["optimum"], figures["planes"], figures["start"], conditions.tolerance

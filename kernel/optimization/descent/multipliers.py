@@ -172,8 +172,9 @@ def hold(
         stages.append(stage_of(problem, f"round {number + 1}", descent))
         found = misses(problem, unknowns)
         problem = _taken_up(problem, found)
+        is_used_up = descent.status == "exhausted"
         left = {
-            name: left[name].after(name, values, counts=is_last)
+            name: left[name].after(name, values, counts=is_last or is_used_up)
             for name, values in found.items()
         }
         previous, objective = objective, _objective(problem, descent.history[-1])
@@ -182,7 +183,7 @@ def hold(
         if is_last and all(each.is_held for each in left.values()):
             if is_settled or not problem.hard:
                 return Held(unknowns, tuple(stages), lowest, is_held=True)
-        elif any(each.slow > PATIENCE for each in left.values()):
+        elif any(each.slow > (0 if is_used_up else PATIENCE) for each in left.values()):
             break
         problem = _harder(problem, {name for name, each in left.items() if each.slow})
     # Where conditions depend on each other, multipliers grow on and on, and what is missing
