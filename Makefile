@@ -11,8 +11,9 @@ PACKAGES := kernel nodes fabrication viewer interfaces
 STATE := $(shell { find $(PACKAGES) -name '*.py' | LC_ALL=C sort; cat pyproject.toml; } | cksum | cut -d' ' -f1)
 INSTALLED := .venv/installed-$(STATE)
 # What users import names every parameter and result; inside, docstrings say what signatures do not.
-FOR_USERS := nodes/library/*.py nodes/graphs/graph.py nodes/graphs/node.py nodes/graphs/ports.py \
-  nodes/graphs/sweep.py kernel/meshes/mesh.py kernel/sphere_meshes/sphere_mesh.py
+FOR_USERS := nodes/library/*.py nodes/graphs/graph.py nodes/graphs/editor.py nodes/graphs/history.py \
+  nodes/graphs/node.py nodes/graphs/ports.py nodes/graphs/sweeps/sweep.py \
+  kernel/meshes/mesh.py kernel/sphere_meshes/sphere_mesh.py
 # The root folder is a package; pytest must not import it by the name of the clone.
 PYTEST = $(BIN)/python -m pytest -q -c pyproject.toml --rootdir tests
 # Two processes of tests keep two cores busy: a thread of OpenBLAS in each is enough.
@@ -46,6 +47,7 @@ lint: system
 
 bench: system
 	$(BIN)/python benchmarks/run.py
+	$(BIN)/python benchmarks/angles.py targets large
 	$(BIN)/python benchmarks/energy.py large scipy
 
 install: $(INSTALLED)

@@ -3,35 +3,39 @@
     python benchmarks/fuzz_3dm.py [CPU_SECONDS] [SEED]
 
 Eight seeds: meshes with ngons, unwelded and double meshes, surfaces, polysurfaces, extrusions,
-blocks in blocks, layers with hidden objects, panels with render meshes. First each is cut at
-every byte (every so many where it is large): all of these must be refused, or read with the
-same faces where only a part that nobody needs is gone. Then random bytes, numbers and blocks
-are changed until the time is up. Faults are: an error that is not our own, more than 5 s of
-processor time, more than 500 MB.
+blocks, several layers, a panel with its render mesh. First each is cut at
+every byte: all of these must be refused, or read with the same faces where only a part that
+nobody needs is gone. Each cut file is read by a fork of this program in place of a process of
+its own, which would take hours; one that dies would have been refused. Then random bytes,
+numbers and blocks are changed until the time is up. Faults are: an error that is not our own,
+more than 5 s of processor time, more than 500 MB.
 """
 
 import os
 import random
 import resource
+import signal
 import sys
 import tempfile
 import time
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any, NoReturn
 
 import numpy as np
 import rhino3dm
 
 from spheremesh import Mesh, nodes
+from spheremesh.fabrication.rhino import reader
 from spheremesh.fabrication.rhino.mesh_writer import to_rhino_mesh
 from spheremesh.fabrication.rhino.reader import read_3dm
 from spheremesh.fabrication.rhino.surface_reader import GridSize
 from spheremesh.kernel.errors import InputError
+from spheremesh.kernel.parts.records import select_parts
 
 SIZE = GridSize(4, 4)
 MOST_SECONDS, MOST_MEGABYTES = 5.0, 500.0
-CUTS = 40
-"""Places where each seed is cut: every byte of a batch of neighbours, and steps between."""
 
 
 def seeds(folder: Path) -> dict[str, bytes]:
@@ -68,8 +72,9 @@ def seeds(folder: Path) -> dict[str, bytes]:
         moved = rhino3dm.Transform.Translation(9.0 * x, 0, 0)
         model.Objects.Add(rhino3dm.InstanceReference(block, moved), plain[0])
     files["blocks"] = _bytes(model, folder)
-    panels = nodes.panels(nodes.fit_spheres(nodes.vase_mesh(4, 2)), thickness=0.02).panels
-    nodes.write_3dm(panels, folder / "panels.3dm")
+    panels = nodes.panels(nodes.fit_spheres(nodes.vase_mesh(3, 1)), thickness=0.02).panels
+    one = select_parts(panels, np.arange(len(panels.ids)) == 0)
+    nodes.write_3dm(one, folder / "panels.3dm")
     files["panels"] = (folder / "panels.3dm").read_bytes()
     return files
 
@@ -121,6 +126,53 @@ def outcome(data: bytes) -> tuple[str, str]:
     return what, f"{megabytes:.0f} MB" if megabytes > MOST_MEGABYTES else ""
 
 
+def cut_outcomes(data: bytes) -> list[tuple[str, str]]:
+    """What comes of a file cut at every byte, and the faults: read by forks of this program.
+
+    A fork goes on to the next cut until it dies, and the next one takes over after that.
+    """
+    found: list[tuple[str, str]] = []
+    while len(found) < len(data):
+        receiver, sender = os.pipe()
+        child = os.fork()
+        if not child:
+            _read_cuts(data, range(len(found), len(data)), sender)
+        os.close(sender)
+        with os.fdopen(receiver) as lines:
+            found += [
+                (what, fault)
+                for what, fault in (line.rstrip("\n").split("|") for line in lines)
+            ]
+        status = os.waitpid(child, 0)[1]
+        if len(found) < len(data):
+            is_slow = os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGXCPU
+            found.append(("died", f"more than {MOST_SECONDS} s" if is_slow else ""))
+    return found
+
+
+def _read_cuts(data: bytes, ends: range, sender: int) -> NoReturn:
+    """Read the cuts one after the other, and say a line of each."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+    reader.isolated = _called
+    for end in ends:
+        used = resource.getrusage(resource.RUSAGE_SELF)
+        limit = int(used.ru_utime + used.ru_stime + MOST_SECONDS) + 1
+        resource.setrlimit(resource.RLIMIT_CPU, (limit, resource.RLIM_INFINITY))
+        try:
+            said = f"read {len(read_3dm(data[:end], '', SIZE).polygons.degrees)}"
+        except Exception as error:  # noqa: BLE001 - refused by its own process, too
+            said = f"refused {type(error).__name__}"
+        after = resource.getrusage(resource.RUSAGE_SELF)
+        more = (after.ru_maxrss - used.ru_maxrss) / 1024
+        fault = f"{more:.0f} MB" if more > MOST_MEGABYTES else ""
+        os.write(sender, f"{said}|{fault}\n".encode())
+    os._exit(0)
+
+
+def _called(function: Callable[..., Any], *arguments: object) -> object:
+    return function(*arguments)
+
+
 def _child_seconds() -> float:
     used = [resource.getrusage(who) for who in (resource.RUSAGE_CHILDREN, resource.RUSAGE_SELF)]
     return sum(each.ru_utime + each.ru_stime for each in used)
@@ -138,16 +190,12 @@ def main() -> None:
     began, wall = _child_seconds(), time.perf_counter()
     for name, data in files.items():
         whole = len(read_3dm(data, "", SIZE).polygons.degrees)
-        step = max(len(data) // CUTS, 1)
         read = 0
-        for end in range(choice.randrange(step), len(data), step):
-            what, fault = outcome(data[:end])
+        for end, (what, fault) in enumerate(cut_outcomes(data)):
             read += what.startswith("read")
             if fault or (what.startswith("read") and what != f"read {whole}"):
                 faults.append(f"{name} cut at {end} of {len(data)}: {what} {fault}")
-        print(
-            f"{name}: {len(data)} bytes, {whole} faces, every {step}th cut, {read} read whole"
-        )
+        print(f"{name}: {len(data)} bytes, {whole} faces, cut at each, {read} read whole")
     print(f"cuts: {_child_seconds() - began:.0f} s of processor time")
     began = _child_seconds()
     names = list(files)

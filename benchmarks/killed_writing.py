@@ -35,9 +35,7 @@ from spheremesh import nodes
 from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.rhino import writer as rhino
 from spheremesh.fabrication.step import writer as step
-from spheremesh.interfaces.panel_graph import panel_graph
-from spheremesh.interfaces.panel_job import run_job
-from spheremesh.interfaces.panel_options import PanelOptions
+from spheremesh.interfaces.panel import PanelOptions, panel_graph, run_job
 from spheremesh.kernel.panels.panels import Panels
 
 OLD = b"the older file"

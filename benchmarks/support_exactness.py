@@ -33,8 +33,7 @@ from spheremesh.fabrication.solids.opencascade_beams import beam_shapes
 from spheremesh.fabrication.solids.opencascade_panels import panel_shapes
 from spheremesh.fabrication.step.check import check_part21
 from spheremesh.fabrication.step.writer import write_step
-from spheremesh.interfaces.panel_graph import panel_graph
-from spheremesh.interfaces.panel_options import PanelOptions
+from spheremesh.interfaces.panel import PanelOptions, panel_graph
 from spheremesh.kernel.arrays import FloatArray, dot, norm, unit
 from spheremesh.kernel.beams.beams import Beams, beam_volumes, cut_corners, insets_at
 from spheremesh.kernel.beams.cutting import cut_beams

@@ -19,8 +19,7 @@ import numpy as np
 
 from spheremesh import Mesh
 from spheremesh.fabrication.units import millimeters_per
-from spheremesh.interfaces.panel_graph import panel_graph
-from spheremesh.interfaces.panel_options import PanelOptions
+from spheremesh.interfaces.panel import PanelOptions, panel_graph
 from spheremesh.kernel.arrays import FloatArray
 from spheremesh.nodes import roof_mesh, write_mesh
 

@@ -15,6 +15,9 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.nodes import (
     apply_mobius,
+    axis_support,
+    beams,
+    bisector_support,
     catenoid_mesh,
     cluster_radii,
     evolve_spheres,
@@ -31,8 +34,10 @@ from spheremesh.nodes import (
     tangent_sphere_shex,
     tangent_spheres,
     torus_mesh,
+    triangulate,
     vase_mesh,
 )
+from spheremesh.viewer.assembly import assembly_image
 from spheremesh.viewer.render import compare_image, render_image
 
 
@@ -180,6 +185,27 @@ def remeshed_roof() -> Image.Image:
     return _made_by("11_freeform_remeshed", "roof_remeshed.png")
 
 
+def supports() -> Image.Image:
+    """Beams on node axes from below, one of their nodes, and upright beams at a cylinder."""
+    mesh = roof_mesh(12, 18)
+    smooth = minimize_angles(fit_spheres(mesh)).sphere_mesh
+    on_axes = axis_support(smooth, depth=0.3)
+    cut = panels(smooth, edges="axis", axes=on_axes.axes, thickness=0.02).panels
+    frame = beams(on_axes.annuli, thickness=0.05).beams
+    triangles = minimize_angles(fit_spheres(triangulate(mesh))).sphere_mesh
+    upright = bisector_support(triangles, depth=0.3, thickness=0.05)
+    skin = panels(triangles, thickness=0.02).panels
+    radius = upright.report.node_radius
+    joined = beams(upright.annuli, thickness=0.05, node_radius=radius).beams
+    middle = int(np.argmax(mesh.vertices[:, 2]))
+    below = (0.5, -0.7, -0.8)
+    return _beside(
+        assembly_image(cut, frame, (0.5, -0.85, -0.35), width=480, height=420),
+        assembly_image(cut, frame, below, middle, width=480, height=420),
+        assembly_image(skin, joined, below, middle, width=480, height=420),
+    )
+
+
 PICTURES = {
     "roof": roof,
     "roof-zebra": roof_zebra,
@@ -193,6 +219,7 @@ PICTURES = {
     "few-moulds": few_moulds,
     "remeshed-torus": remeshed_torus,
     "remeshed-roof": remeshed_roof,
+    "supports": supports,
 }
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -37,6 +38,10 @@ class Polygons:
     degrees: IntArray
     vertex_lines: ArrayLike = ()
     face_lines: ArrayLike = ()
+
+
+NO_SURFACES: Final = "the edge length is for surfaces, and changes nothing: there are none"
+"""Remark on a file of meshes that is asked for an edge length."""
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,10 @@
 """Ways in: the command line.
 
+cache_option   Where commands keep results between runs.
 cli            The commands; their docstrings are their help.
+console        How commands end and what they say meanwhile: errors, exit codes, progress.
 option_values  Values of options that are more than a number or a word.
+panel          The main job.
 node_help      The help of a node on the command line.
-panel_graph    The main job as a graph that the user can open again.
-panel_job      The main job run, all of its files or none.
-panel_options  What the main job is asked to do.
-panel_output   What the command line says of a panelling.
+sweep_command  The command sweep: a graph for many values of its sliders.
 """

@@ -2,32 +2,36 @@
 
 The docstrings of the commands are their help: click adds the options.
 
-Exit codes: 0 done, 1 a library of the system is missing, 2 usage, 3 bad input, 4 not converged,
-5 finished but a quality gate failed. An error is one line on standard error.
+Exit codes: 0 done, 1 a library of the system is missing or a node is at fault, 2 usage, 3 bad
+input, 4 not converged, 5 finished but a quality gate failed. An error is one line on standard
+error.
 """
 
 import json
 import sys
 import warnings
-from collections.abc import Generator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from .option_values import joined_option, plain_value, rows_option
-from .panel_output import has_errors, print_report
+from .cache_option import cache_options, chosen_store
+from .console import GATE_FAILED, shown_progress, told_errors
+from .option_values import (
+    SUPPORTS,
+    joined_option,
+    plain_value,
+    rows_option,
+    setting,
+    spell_support,
+)
+from .sweep_command import sweep
 
 if TYPE_CHECKING:
     from ..fabrication.output_folder import OutputFolder
     from ..nodes.graphs.graph import Graph
-    from .panel_job import Progress
-
-MISSING_LIBRARY: Final = 1
-BAD_INPUT: Final = 3
-NOT_CONVERGED: Final = 4
-GATE_FAILED: Final = 5
+    from .panel.job import Progress
 
 UNITS: Final = ("mm", "cm", "m", "in", "ft")
 
@@ -38,7 +42,15 @@ def main() -> None:
     """Turn design surfaces into spherical panels that can be built."""
 
 
-@main.command()
+class _PanelCommand(click.Command):
+    """A command whose option --support may stand without a word."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Give --support its word before the arguments are told apart."""
+        return super().parse_args(ctx, spell_support(args))
+
+
+@main.command(cls=_PanelCommand)
 @click.argument("mesh", required=False, type=click.Path(path_type=Path))
 @click.option("-o", "--out", required=True, type=click.Path(path_type=Path), help="Folder.")
 @click.option("--moulds", type=int, help="Number of mould radii; by default one per panel.")
@@ -88,8 +100,8 @@ def main() -> None:
 @click.option(
     "--edges",
     type=click.Choice(["bisector", "intersection"]),
-    help="Cut panels by planes that bisect the faces, or where the spheres meet (the default "
-    "with --support).",
+    help="Cut panels by planes that bisect the faces, or where the spheres meet; with "
+    "--support the beams say where.",
 )
 @click.option(
     "--tolerance",
@@ -102,7 +114,21 @@ def main() -> None:
     default=0.0,
     help="Angle at which neighbours shall meet, in degrees.",
 )
-@click.option("--support", is_flag=True, help="Nodes without torsion; beams under the edges.")
+@click.option(
+    "--crease",
+    type=click.FloatRange(0, 180),
+    default=40.0,
+    show_default=True,
+    help="Edges at which flat faces turn by more degrees stay sharp; 180 for none.",
+)
+@click.option(
+    "--support",
+    type=click.Choice(SUPPORTS),
+    metavar="[axis|exact|bisector]",
+    help="Beams under the edges: on node axes, vertices and spheres stay (axis, the default); "
+    "on exact nodes, vertices move (exact); upright with node cylinders, for any mesh "
+    "(bisector).",
+)
 @click.option("--depth", type=float, help="Depth of the beams; a quarter of the mean edge.")
 @click.option(
     "--beam-thickness", type=float, help="Thickness of the beams; a tenth of the depth."
@@ -113,15 +139,55 @@ def main() -> None:
     default=0.0,
     help="Radius of cylinders at the nodes, before which beams end square; 0 for mitres.",
 )
+@click.option(
+    "--max-height",
+    type=click.FloatRange(min=0),
+    help="How far vertices may leave the surface for --support exact, in mean edges; 0.06.",
+)
+@click.option(
+    "--max-slide",
+    type=click.FloatRange(min=0),
+    help="How far vertices may slide in the surface for --support exact, in mean edges; 0.7.",
+)
+@click.option(
+    "--bearing",
+    type=click.FloatRange(min=0),
+    default=0.0,
+    help="Clear distance from panel to beam, in model units; panels rest on beams at 0.",
+)
+@click.option(
+    "--allow-step",
+    metavar="MM",
+    type=click.FloatRange(min=0),
+    default=5.0,
+    help="Highest step between neighbours, in millimetres; 5 by default.",
+)
+@click.option(
+    "--allow-gap",
+    metavar="MM",
+    type=click.FloatRange(min=0),
+    default=5.0,
+    help="Widest gap in a joint and hole at a node, in millimetres; 5 by default.",
+)
+@click.option(
+    "--allow-torsion",
+    metavar="DEG",
+    type=click.FloatRange(0, 180),
+    default=0.1,
+    help="Largest angle between a beam and a node axis, in degrees; 0.1 by default.",
+)
 @click.option("--overwrite", is_flag=True, help="Replace files that spheremesh did not write.")
 @click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report alone.")
+@cache_options
 def panel(  # numpydoc ignore=PR01
     out: Path,
     *,
     overwrite: bool,
     strict: bool,
     as_json: bool,
+    cache: Path | None,
+    no_cache: bool,
     **options: Any,  # noqa: ANN401
 ) -> None:
     """Panel a MESH with spheres and write CAD files, schedule and report.
@@ -130,25 +196,54 @@ def panel(  # numpydoc ignore=PR01
     demonstration roof is panelled. Files in the folder are replaced only if spheremesh wrote
     them and nobody changed them since.
     """
-    from .panel_graph import panel_graph
-    from .panel_job import run_job
-    from .panel_options import PanelOptions, model_units
+    from .panel import PanelOptions, feasible_panel_graph, model_units, run_job
+    from .panel.output import has_errors, print_report
 
     if options["rows"] and options["edge_length"]:
         raise click.UsageError("--rows and --edge-length exclude each other; drop one")
+    if options["edges"] and options["support"]:
+        raise click.UsageError(
+            "--edges and --support exclude each other: panels are cut where their beams stand; "
+            "drop one"
+        )
+    _check_exact(options)
     _warn_of_no_beams(options)
-    with _errors(), _progress() as progress:
+    with told_errors(), shown_progress() as progress:
         options["units"], is_assumed = model_units(PanelOptions(**options))
-        graph = panel_graph(PanelOptions(**options))
+        store = chosen_store(cache, no_cache=no_cache)
+        graph = feasible_panel_graph(PanelOptions(**options), store)
         report, files = run_job(graph, out, progress, overwrite=overwrite)
     print_report(report, out, files, as_json=as_json, is_assumed=is_assumed)
     if strict and has_errors(report):
         sys.exit(GATE_FAILED)
 
 
+def _check_exact(options: dict[str, Any]) -> None:
+    """Options of exact supports go with no other support, and others not with them."""
+    given = {name: options.pop(name) for name in ("max_height", "max_slide")}
+    asked = {name: value for name, value in given.items() if value is not None}
+    if options["support"] != "exact":
+        if asked:
+            names = ", ".join(f"--{name.replace('_', '-')}" for name in asked)
+            raise click.UsageError(f"{names} bounds --support exact; add it, or drop the bound")
+        return
+    options.update(asked)
+    if options["tolerance"] is not None:
+        raise click.UsageError(
+            "--tolerance does not go with --support exact: bound the moves of vertices by "
+            "--max-height and --max-slide"
+        )
+    if options["target_angle"]:
+        raise click.UsageError(
+            "--target-angle does not go with --support exact, where neighbours meet as "
+            "smoothly as they can; drop one"
+        )
+
+
 def _warn_of_no_beams(options: Mapping[str, Any]) -> None:
     """Options of beams say nothing where no beams are asked for."""
-    names = [name for name in ("depth", "beam_thickness", "node_radius") if options[name]]
+    of_beams = ("depth", "beam_thickness", "node_radius", "bearing")
+    names = [name for name in of_beams if options[name]]
     if names and not options["support"]:
         given = ", ".join(f"--{name.replace('_', '-')}" for name in names)
         click.echo(f"warning: without --support there are no beams: {given} unused", err=True)
@@ -165,9 +260,11 @@ def _warn_of_no_beams(options: Mapping[str, Any]) -> None:
 @click.option("--allow-outside", is_flag=True, help="Let steps write outside of the folder.")
 @click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
 @click.option("--json", "as_json", is_flag=True, help="Print the targets' values as JSON.")
+@cache_options
 def run(  # numpydoc ignore=PR01
     graph_file: Path, settings: tuple[str, ...], targets: tuple[str, ...], out: Path, *,
     overwrite: bool, allow_outside: bool, strict: bool, as_json: bool,
+    **keeping: Any,  # noqa: ANN401
 ) -> None:  # fmt: skip
     """Run a graph: all of it, or what a target needs.
 
@@ -176,9 +273,10 @@ def run(  # numpydoc ignore=PR01
     other files are replaced only if spheremesh wrote them and nobody changed them since.
     """
     from ..fabrication.output_folder import output_folder
-    from .panel_job import is_panel_job, run_job
+    from .panel import is_panel_job, run_job
+    from .panel.output import has_errors, print_report
 
-    with _errors(), _progress() as progress:
+    with told_errors(), shown_progress() as progress:
         from ..nodes.graphs.graph import Graph
 
         with warnings.catch_warnings(record=True) as caught:
@@ -186,7 +284,8 @@ def run(  # numpydoc ignore=PR01
             graph = Graph.load(graph_file)
         for warning in caught:
             click.echo(f"warning: {warning.message}", err=True)
-        graph.set(**dict(_setting(text) for text in settings))
+        graph.cache = chosen_store(**keeping)
+        graph.set(**dict(setting(text) for text in settings))
         if targets or not is_panel_job(graph):
             with output_folder(
                 out, inputs=(graph_file,), overwrite=overwrite, allow_outside=allow_outside
@@ -227,7 +326,7 @@ def _print_values(graph: "Graph", values: Mapping[str, Any], *, as_json: bool) -
 @click.argument("name", required=False)
 def nodes(name: str | None) -> None:  # numpydoc ignore=PR01
     """List the nodes, or explain one."""
-    with _errors():
+    with told_errors():
         from ..nodes.graphs.node import REGISTRY, find_node, load_library
         from .node_help import print_node
 
@@ -246,61 +345,10 @@ def nodes(name: str | None) -> None:  # numpydoc ignore=PR01
 @click.argument("graph_file", metavar="GRAPH.json", type=click.Path(path_type=Path))
 def graph(graph_file: Path) -> None:  # numpydoc ignore=PR01
     """Print a graph as a Mermaid flowchart."""
-    with _errors():
+    with told_errors():
         from ..nodes.graphs.graph import Graph
 
         click.echo(Graph.load(graph_file).mermaid())
 
 
-@contextmanager
-def _errors() -> Generator[None]:
-    """Turn the library's errors into one line and an exit code."""
-    from ..kernel.errors import ConvergenceError, MissingLibraryError, SpheremeshError
-    from ..nodes.graphs.errors import GraphError, NodeError
-
-    try:
-        # Warnings of nodes are part of the report; they are printed with it.
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            yield
-    except (SpheremeshError, GraphError, NodeError, OSError) as error:
-        cause = error.cause if isinstance(error, NodeError) else error
-        # An OSError is the disk's or the system's: full, too many files, a broken pipe.
-        if not isinstance(cause, SpheremeshError | GraphError | OSError):
-            raise
-        text = error.reason if isinstance(error, NodeError) else str(error)
-        message = " ".join(text.split())
-        click.echo(f"spheremesh: {message}", err=True)
-        if isinstance(cause, MissingLibraryError):
-            sys.exit(MISSING_LIBRARY)
-        sys.exit(NOT_CONVERGED if isinstance(cause, ConvergenceError) else BAD_INPUT)
-
-
-@contextmanager
-def _progress() -> "Generator[Progress]":
-    """Show the running step on a terminal; stay silent elsewhere."""
-    if not sys.stderr.isatty():
-        yield lambda _step, _state: None
-        return
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    with console.status("reading") as status:
-
-        def _show(step: str, state: str) -> None:
-            if state == "running":
-                status.update(step)
-            else:
-                console.print(f"{step}: {state}", style="dim")
-
-        yield _show
-
-
-def _setting(text: str) -> tuple[str, Any]:
-    name, equals, value = text.partition("=")
-    if not equals:
-        raise click.UsageError(f"--set takes NAME=VALUE, not {text!r}")
-    try:
-        return name, json.loads(value)
-    except (ValueError, RecursionError):  # a ValueError: too many digits, too
-        return name, value
+main.add_command(sweep)

@@ -17,9 +17,13 @@ from .spheres.circles import face_circles
 from .spheres.incidence import project
 
 
-def angle_summary(sphere_mesh: SphereMesh) -> dict[str, float]:
-    """``mean`` and ``max`` angle over the interior edges, in degrees; 0 if there are none."""
+def angle_summary(sphere_mesh: SphereMesh, counts: BoolArray | None = None) -> dict[str, float]:
+    """``mean`` and ``max`` angle over the interior edges, in degrees; 0 if there are none.
+
+    Over those marked by (E,), if they are given.
+    """
     angles = np.degrees(intersection_angles(sphere_mesh))
+    angles = angles if counts is None else angles[counts]
     if len(angles) == 0:
         return {"mean": 0.0, "max": 0.0}
     return {"mean": float(angles.mean()), "max": float(angles.max())}

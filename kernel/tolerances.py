@@ -42,7 +42,9 @@ AXIS_SLACK: Final = 0.004363323129985824
 SAME_LENGTH: Final = 1e-6
 """Lengths that differ by a smaller share are equal, and an index decides."""
 CREASE: Final = 0.6981317007977318
-"""Triangles that meet at a larger angle (40 degrees) make a crease, not a curved surface."""
+"""Faces that meet at a larger angle (40 degrees) make a crease, not a curved surface."""
+SAME_TURN: Final = 1e-6
+"""An angle between faces that passes another by less (radians) is equal to it."""
 
 # Repair
 
@@ -102,13 +104,15 @@ LEAST_DECREMENT: Final = 1e-26
 """A step that promises less energy than this is at rest: 1e-10 of a mean edge, weighted."""
 LOWEST_EIGENVALUE: Final = 1e-8
 """Where the lowest eigenvalue of the Hessian is not below minus this, a minimum is reached."""
-SAME_ENERGY: Final = 1e-6
+SAME_FALL: Final = 1e-6
 """Two falls of an energy that differ by a smaller share are equal."""
 
 # Optimization
 
 ANGLE_STEP: Final = 1e-9
 """An angle minimisation has converged when no unknown moves by more (radians)."""
+ENERGY_CHANGE: Final = 1e-6
+"""A descent has converged when a step lowers the energy by less than this share."""
 AT_REST: Final = 1e-12
 """A descent is at rest when a step promises no more than this share of the energy."""
 HELD: Final = 1e-8
@@ -117,9 +121,18 @@ HELD_AXES: Final = 1e-11
 """Nodes have axes when products of two curvatures miss by no more, in mean edges."""
 SAME_OBJECTIVE: Final = 1e-9
 """The optimum is found when a round changes the rest of the energy by no larger share."""
-
 SAME_ANGLES: Final = 1e-6
 """Mean angles that differ by a smaller share are equal."""
+NEGATIVE_MODE: Final = 1e-8
+"""An eigenvalue above minus this share of the largest entry of its matrix is not negative."""
+SAME_ENERGY: Final = 1e-9
+"""Energies that differ by a smaller share are equal, and the bulge decides."""
+SAME_BULGE: Final = 1e-6
+"""Optima whose spheres bulge alike up to this share bulge alike."""
+OPENING: Final = 1.0471975511965976
+"""Half opening (60 degrees) up to which a spherical cap is taken for a panel."""
+LEAST_ENERGY: Final = 1e-16
+"""An energy as good as zero: no residual above 1e-8 of a mean edge is left."""
 
 # Panels
 
@@ -136,6 +149,8 @@ ENCLOSING: Final = 1e-12
 
 NODE_TORSION: Final = 1.7453292519943296e-3
 """Torsion (0.1 degrees) beyond which a node is not called free of torsion."""
+NODE_LINE: Final = 1e-2
+"""A node whose arc planes miss a common line by more, in mean edges, is not valid."""
 AXIS_LEAN: Final = 1.0471975511965976
 """A node axis that leans more (60 degrees) from the normal carries no beams."""
 MIRROR_REACH: Final = 1e5
@@ -144,6 +159,10 @@ MIRROR_LEAST: Final = 1e-6
 """Mirror points nearer than this, in mean edges, do not tell the direction of an axis."""
 BEAM_TILT: Final = 1.0471975511965976
 """A beam whose plane tilts more (60 degrees) from the bisecting plane does not stand."""
+UPRIGHT_BEAMS: Final = 0.2617993877991494
+"""Beams where spheres meet are upright if most tilt less (15 degrees)."""
+AXIS_STEP: Final = 1e-12
+"""Axes are at rest when none turns by more (radians)."""
 RIM_LEAN: Final = 0.3490658503988659
 """Axes of the boundary may lean by this (20 degrees) to make the beams there flat."""
 RIM_CLOSED: Final = 1e-7
@@ -204,6 +223,15 @@ UMBILIC: Final = 1e-3
 PLANAR_DAMPING: Final = 1e-11
 """Least damping of a step towards planar nodes: with less, rounding is larger than the step."""
 
+# Exact supports
+
+RIDGE: Final = 1e-9
+"""How much it counts that a quadric is flat, relative to its fit, where neighbours tell not."""
+EXACT_ENERGY: Final = 1e-26
+"""Sum of squared misses of all conditions, in mean edges and radians, that is rounding."""
+STEP_RIDGE: Final = 1e-12
+"""Least damping of a step, relative to the diagonal of its system: rounding."""
+
 # Fabrication
 
 COINCIDENT: Final = 1e-6
@@ -222,8 +250,6 @@ CLOSED: Final = 1e-6
 """A surface whose ends lie this close, relative to its size, is closed there."""
 ON_EDGE: Final = 1e-12
 """Points of a surface this close to an edge, relative to the surface's size, lie on it."""
-OVERLAP: Final = 1e-6
-"""Beams that run into each other by less, in thicknesses, touch (rounding of mitres)."""
 SINGLE_IS_ENOUGH: Final = 0.01
 """Share of the error of a triangulation that rounding its points to float32 may add."""
 
@@ -231,9 +257,15 @@ SINGLE_IS_ENOUGH: Final = 0.01
 
 VERTEX_MISS: Final = 0.01
 """Vertices farther from their sphere than this share of the mean edge are worth a warning."""
+FLATTENED: Final = 0.25
+"""Spheres of which less than this share of the curvature is left have become nearly planes."""
 LITTLE_GAIN: Final = 0.05
 """A relative gain of spheres over planes that is worth saying to be small."""
 MOSTLY_EVEN: Final = 0.95
 """Share of edges of nearly the length asked for below which remeshing warns."""
 TORSION_FREE: Final = 1e-8
 """Fourth singular value of the spheres around a node, relative to the first, that is none."""
+ROUGHER: Final = 1e-3
+"""Spheres whose mean angle is larger than that of planes by more, relatively, are rougher."""
+WIDER_GAP: Final = 1e-3
+"""Gaps that are wider by more than this share of the mean edge are worth a warning."""

@@ -8,23 +8,41 @@ from typing import Any
 
 from .graphs.errors import GraphError, NodeError
 from .graphs.graph import Graph
-from .graphs.node import REGISTRY, Node, NodeWarning, find_node, load_library, node, warn
+from .graphs.node import (
+    REGISTRY,
+    Node,
+    NodeWarning,
+    find_node,
+    load_library,
+    node,
+    progress,
+    warn,
+)
 from .graphs.ports import Port, ReadPath, Units, WritePath
-from .graphs.sweep import each, sweep
+from .graphs.running.events import Event, RunCancelledError
+from .graphs.specification.wires import each
+from .graphs.stores.disk import DiskStore
+from .graphs.stores.memory import MemoryStore
+from .graphs.sweeps.sweep import sweep
 
 __all__ = [
+    "DiskStore",
+    "Event",
     "Graph",
     "GraphError",
+    "MemoryStore",
     "Node",
     "NodeError",
     "NodeWarning",
     "Port",
     "ReadPath",
+    "RunCancelledError",
     "Units",
     "WritePath",
     "each",
     "find_node",
     "node",
+    "progress",
     "sweep",
     "warn",
 ]

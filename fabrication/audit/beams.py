@@ -8,7 +8,6 @@ from ...kernel.beams.beams import Beams, scale_beams
 from ...kernel.beams.drilling import NO_MARKS
 from ...kernel.beams.facts import BeamFacts, beam_facts
 from ...kernel.parts.findings import Finding
-from ...kernel.tolerances import OVERLAP
 from ..units import millimeters_per
 from .subjects import USUAL_LIMITS, AuditLimits, Subject
 
@@ -24,18 +23,11 @@ def beam_subject(
 
 
 def check_beams(subject: BeamSubject) -> list[Finding]:
-    """Run every beam check: the findings B102 to B208, see `audit_model`.
+    """Run every beam check: the findings B201 to B209, see `audit_model`.
 
     The subject has at least one beam, with finite numbers.
     """
     return [finding for check in BEAM_CHECKS for finding in check(subject)]
-
-
-def _overlaps(subject: BeamSubject) -> list[Finding]:
-    depths = -subject.facts.clearances.min(axis=1)
-    is_found = depths > OVERLAP * subject.parts.thickness
-    message = "runs into a neighbour by {0:.3g} mm: larger nodes or thinner beams"
-    return subject.found("B102", depths, is_found, message, "error")
 
 
 def _tilts(subject: BeamSubject) -> list[Finding]:
@@ -45,15 +37,25 @@ def _tilts(subject: BeamSubject) -> list[Finding]:
 
 
 def _twists(subject: BeamSubject) -> list[Finding]:
+    """Node cylinders take twisted beams as they are: they end square before them."""
     twists, limit = np.degrees(subject.facts.twists).max(axis=1), subject.limits.twist_deg
     message = f"misses a node axis by {{0:.3g}} degrees, more than {limit:g}"
-    return subject.found("B202", twists, twists > limit, message)
+    found = (twists > limit) & (subject.parts.node_radius == 0)
+    return subject.found("B202", twists, found, message, "error")
 
 
 def _mismatches(subject: BeamSubject) -> list[Finding]:
     apart, limit = subject.facts.mismatches.max(axis=1), subject.limits.step_mm
     message = f"an end lies {{0:.3g}} mm off the others at its node, more than {limit:g}"
-    return subject.found("B203", apart, apart > limit, message)
+    severity = "note" if subject.parts.node_radius > 0 else "error"
+    return subject.found("B203", apart, apart > limit, message, severity)
+
+
+def _line_misses(subject: BeamSubject) -> list[Finding]:
+    misses, limit = subject.facts.line_misses.max(axis=1), subject.limits.gap_mm
+    message = f"its plane passes the line of its node by {{0:.3g}} mm, more than {limit:g}"
+    severity = "note" if subject.parts.node_radius > 0 else "error"
+    return subject.found("B209", misses, misses > limit, message, severity)
 
 
 def _depths(subject: BeamSubject) -> list[Finding]:
@@ -93,5 +95,6 @@ def _marks(subject: BeamSubject) -> list[Finding]:
 
 
 BEAM_CHECKS: Final = (
-    _overlaps, _tilts, _twists, _mismatches, _depths, _lengths, _bevels, _large_pieces, _marks,
+    _tilts, _twists, _mismatches, _depths, _lengths, _bevels, _large_pieces, _marks,
+    _line_misses,
 )  # fmt: skip

@@ -24,7 +24,7 @@ def panel_subject(
 
 
 def check_panels(subject: PanelSubject) -> list[Finding]:
-    """Run every panel check: the findings P101 to P202, see `audit_model`.
+    """Run every panel check: the findings P101 to P204, see `audit_model`.
 
     The subject has at least one panel, with finite numbers.
     """
@@ -84,7 +84,21 @@ def _steps(subject: PanelSubject) -> list[Finding]:
     steps, limit = np.nan_to_num(subject.facts.steps), subject.limits.step_mm
     highest = -_least(subject, -steps)
     message = f"a step of {{0:.3g}} mm to a neighbour, more than {limit:g}"
-    return subject.found("P201", highest, highest > limit, message)
+    return subject.found("P201", highest, highest > limit, message, "error")
+
+
+def _gaps(subject: PanelSubject) -> list[Finding]:
+    gaps, limit = np.nan_to_num(subject.facts.gaps), subject.limits.gap_mm
+    widest = -_least(subject, -gaps)
+    message = f"a joint opens by {{0:.3g}} mm more than asked for, more than {limit:g}"
+    return subject.found("P203", widest, widest > limit, message, "error")
+
+
+def _holes(subject: PanelSubject) -> list[Finding]:
+    holes, limit = subject.facts.holes, subject.limits.gap_mm
+    widest = -_least(subject, -holes)
+    message = f"a hole of {{0:.3g}} mm at a node, more than {limit:g}"
+    return subject.found("P204", widest, widest > limit, message, "error")
 
 
 def _missing_neighbors(subject: PanelSubject) -> list[Finding]:
@@ -98,7 +112,7 @@ def _missing_neighbors(subject: PanelSubject) -> list[Finding]:
 
 PANEL_CHECKS: Final = (
     _caps, _corners, _edges, _thickness, _walls, _other_thickness, _blanks, _steps,
-    _missing_neighbors,
+    _missing_neighbors, _gaps, _holes,
 )  # fmt: skip
 
 

@@ -19,11 +19,13 @@ class AuditLimits:
     corner_deg: float = 15.0  # corners of panels and bevels of beams sharper than this break
     edge_mm: float = 20.0  # edges and beams shorter than this are hard to cut
     wall_tilt_deg: float = 30.0  # walls and beams that lean more need another tool
-    step_mm: float = 5.0  # larger steps of neighbours, or of the ends of beams at a node, show
+    step_mm: float = 5.0  # larger steps of neighbours, or of the ends of beams, do not fit
+    gap_mm: float = 5.0  # wider gaps along joints and holes at nodes cannot be closed
+    overlap_mm: float = 0.01  # parts that overlap by less touch
     thickness_share: float = 0.2  # thicker against the smallest radius is hard to form
     thickness_change: float = 0.2  # share by which it may differ from the one asked for
     blank_mm: float = float("inf")  # largest blank to be had; infinite for any
-    twist_deg: float = 1.0  # beams that miss a node axis by more do not fit there
+    twist_deg: float = 0.1  # beams that miss a node axis by more do not fit there
     depth_share: float = 2.0  # beams shallower than this many thicknesses are none any more
     beam_mm: float = float("inf")  # longest piece that can be cut; infinite for any
 

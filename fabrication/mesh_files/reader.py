@@ -9,12 +9,13 @@ read a file. Both serve for formats that few use.
 import math
 import os
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
 from ...kernel.errors import InputError
 from ...kernel.meshes.mesh import Mesh
-from ..polygons import FileContent, to_mesh
+from ..polygons import NO_SURFACES, FileContent, to_mesh
 from ..rhino.reader import read_3dm
 from ..rhino.surface_reader import GridSize
 from .file_bytes import check_kind, read_bytes
@@ -127,12 +128,16 @@ def read_content(
             names = layer if isinstance(layer, str) else ",".join(layer)
             return read_3dm(data, names, GridSize(n_u, n_v, edge_length))
         if suffix == ".obj":
-            return read_obj(data, layer)
-        if suffix in _READERS:
-            return _READERS[suffix](data)
-        return read_other(source, suffix)
+            content = read_obj(data, layer)
+        elif suffix in _READERS:
+            content = _READERS[suffix](data)
+        else:
+            content = read_other(source, suffix)
     except InputError as error:
         raise InputError(f"cannot read {source}: {error}") from error
+    if edge_length is not None:
+        content = replace(content, remarks=(*content.remarks, NO_SURFACES))
+    return content
 
 
 def mesh_suffix(path: Path, verb: str) -> str:

@@ -39,6 +39,7 @@ Layer: TypeAlias = Literal["Edges", "Centres", "Moulds"]
 Shape: TypeAlias = Literal["panels", "blocks", "shell"]
 
 _BLACK = (0, 0, 0)
+_RED = (200, 30, 30)
 
 
 def add_panels(
@@ -88,6 +89,8 @@ def add_panels(
         notes += _add_shell(model, sound, moulds[-1].place, model_tolerance(units))
     if "Edges" in layers:
         _add_edges(model, exact)
+    if exact.is_crease.any():
+        _add_creases(model, exact)
     if "Centres" in layers:
         _add_centers(model, exact)
     if "Moulds" in layers:
@@ -212,6 +215,18 @@ def _add_edges(model: RhinoModel, panels: Panels) -> None:
     for stream, owner, side in zip(edge_streams(panels), owners, sides, strict=True):
         attributes = object_attributes(model, panels.ids[owner], f"edge {side}", place)
         model.file.Objects.AddCurve(model.decode(stream), attributes)
+
+
+def _add_creases(model: RhinoModel, panels: Panels) -> None:
+    """The edges that are meant to be sharp; both panels have theirs."""
+    place = add_layer(model, "Creases", _RED)
+    owners: list[int] = panels.corner_panels.tolist()
+    streams = edge_streams(panels)
+    for corner in np.flatnonzero(panels.is_crease).tolist():
+        owner = owners[corner]
+        name = f"crease {corner - int(panels.offsets[owner])}"
+        attributes = object_attributes(model, panels.ids[owner], name, place)
+        model.file.Objects.AddCurve(model.decode(streams[corner]), attributes)
 
 
 def _add_centers(model: RhinoModel, panels: Panels) -> None:

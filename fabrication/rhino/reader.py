@@ -8,6 +8,7 @@ from ...kernel.arrays import FloatArray
 from ...kernel.errors import InputError
 from ...kernel.tolerances import COINCIDENT, SAME_BOX
 from ..polygons import (
+    NO_SURFACES,
     FileContent,
     Polygons,
     drop_repeats,
@@ -60,8 +61,10 @@ def read_3dm(data: bytes, layer: str = "", size: GridSize = _GRID) -> FileConten
         raise InputError(
             f"{size.n_u} by {size.n_v} quads on surfaces have no area: ask for more"
         )
-    remarks = (*found.remarks, *_narrowed(found.objects, sources), *_doubled(found.objects))
-    return FileContent(polygons, found.units, remarks, sources)
+    remarks = [*found.remarks, *_narrowed(found.objects, sources), *_doubled(found.objects)]
+    if size.edge_length is not None and all(each.is_mesh for each in found.objects):
+        remarks.append(NO_SURFACES)
+    return FileContent(polygons, found.units, tuple(remarks), sources)
 
 
 @lru_cache(maxsize=1)

@@ -113,10 +113,10 @@ def write_3dm(
     Layers: ``Panels`` with a sub-layer ``Mould 01``, ... for every label (panels without a
     mould lie on ``Panels`` itself), ``Edges`` with one arc or line for every edge of every
     panel: neighbours' arcs differ by the joint and the edge gap, so both are there;
-    ``Centres``, ``Moulds`` and ``Reference`` are switched off. Each mould has its colour on
-    its layer and as a material, and is a group. Named views: Top and Perspective. User text:
-    `panel_text`. Object ids depend on the panel's id and the object's role only. Two runs
-    differ in the time of day alone.
+    ``Creases`` with those on creases, if there are any; ``Centres``, ``Moulds`` and
+    ``Reference`` are switched off. Each mould has its colour on its layer and as a material,
+    and is a group. Named views: Top and Perspective. User text: `panel_text`. Object ids depend
+    on the panel's id and the object's role only. Two runs differ in the time of day alone.
     """
     check_suffix(path, ".3dm")
     if options.version not in VERSIONS:

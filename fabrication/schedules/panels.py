@@ -30,6 +30,7 @@ def panel_tables(panels: Panels, units: str) -> dict[str, list[dict[str, Any]]]:
     ``blank_sagitta_mm`` of the smallest cap of the mould that holds the panel,
     ``edge_lengths_mm``, ``arc_radii_mm`` (None for straight edges), ``sagittas_mm``,
     ``wall_tilts_deg``, ``corner_angles_deg``, ``neighbors`` (ids; None where there is none),
+    ``edge_kinds`` (smooth, crease or rim),
     ``corners_mm`` and ``warnings`` (findings of the audit). Edge i runs from corner i to the
     next; tilts are those of the cutting planes.
 
@@ -45,6 +46,8 @@ def panel_tables(panels: Panels, units: str) -> dict[str, list[dict[str, Any]]]:
 
 def _panel_rows(subject: PanelSubject, same: CongruentPanels) -> list[dict[str, Any]]:
     made, facts = subject.parts, subject.facts
+    kinds = np.where(made.is_crease, "crease", np.where(made.edge_ids < 0, "rim", "smooth"))
+    kinds = kinds.tolist()
     names, bulges = neighbor_ids(made), panel_bulges(made)
     first: list[int] = same.representatives[same.labels].tolist()
     warnings = warning_texts(check_panels(subject))
@@ -78,6 +81,7 @@ def _panel_rows(subject: PanelSubject, same: CongruentPanels) -> list[dict[str, 
                 "wall_tilts_deg": tilts[edges].tolist(),
                 "corner_angles_deg": angles[edges].tolist(),
                 "neighbors": names[edges],
+                "edge_kinds": kinds[edges],
                 "corners_mm": facts.corners[edges].tolist(),
                 "warnings": warnings.get(name, ""),
             }

@@ -10,6 +10,8 @@ drilling        Drilling marks: where beams are bolted at their nodes, along the
 end_edges       Edges across the thickness of beams: where the planes of their ends cut
                 cylinders.
 facts           What is to be known of every beam: for schedules, drawings, files and audits.
+layers          Beams under panels: how far below them their upper edges must lie.
+node_radius     Least radius of node cylinders, before which beams end clear of each other.
 node_cylinders  Node cylinders: the solids at which square cut beams end, about the node axes.
 triangles       Triangles of beams and cylinders for viewers: exact points and normals, flat
                 between.

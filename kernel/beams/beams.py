@@ -69,6 +69,9 @@ class Beams:
         As they were asked for, in model units.
     marks : DrillMarks, optional
         Where holes are to be drilled.
+    cylinder_tops : (B, 2) float array, optional
+        How far below the outer corners of the ends, along the node axes to the inner side,
+        node cylinders may begin: panels lie above.
     """
 
     annuli: Annuli
@@ -81,6 +84,7 @@ class Beams:
     node_gap: float
     node_radius: float
     marks: DrillMarks | None = field(default=None, metadata=MAY_BE_NAN)
+    cylinder_tops: FloatArray | None = field(default=None, metadata=MAY_BE_NAN)
 
     @property
     def ids(self) -> tuple[str, ...]:
@@ -139,7 +143,7 @@ def cut_corners(annuli: Annuli, insets: FloatArray) -> tuple[FloatArray, BoolArr
 
 def scale_beams(beams: Beams, factor: float) -> Beams:
     """Beams in another unit of length: every length is multiplied by the factor."""
-    annuli, marks = beams.annuli, beams.marks
+    annuli, marks, tops = beams.annuli, beams.marks, beams.cylinder_tops
     scaled = replace(
         annuli,
         origins=annuli.origins * factor,
@@ -160,6 +164,7 @@ def scale_beams(beams: Beams, factor: float) -> Beams:
         node_gap=beams.node_gap * factor,
         node_radius=beams.node_radius * factor,
         marks=marks and DrillMarks(marks.centers * factor, marks.fits, marks.diameter * factor),
+        cylinder_tops=None if tops is None else tops * factor,
     )
 
 

@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import FloatArray, norm
+from ..arrays import FloatArray, dot, norm
 from ..spheres.arcs import Arcs, arc_circles, arc_lengths, arc_reaches
-from ..support.annuli import corner_mismatch, end_depths, twist_angles
+from ..support.annuli import corner_mismatch, end_depths, line_misses, twist_angles
 from ..tolerances import MITRE_LIMIT
 from .beams import Beams, beam_lengths, beam_volumes, level_arcs, section_arcs
 from .contours import beam_contours
-from .cutting import neighbor_angles
+from .cutting import mitre_normals, neighbor_angles, node_points
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,8 @@ class BeamFacts:
         Angles between the planes and the normals of the surface, in radians.
     twists : (B, 2) float array
         Angles between the planes and the node axes at both ends, in radians.
+    line_misses : (B, 2) float array
+        How far the planes pass the best line in common at both ends.
     mismatches : (B, 2) float array
         How far the corners of each end are from the mean of those at the node.
     clearances : (B, 2) float array
@@ -69,6 +71,7 @@ class BeamFacts:
     bevels: FloatArray
     tilts: FloatArray
     twists: FloatArray
+    line_misses: FloatArray
     mismatches: FloatArray
     clearances: FloatArray
     ends: FloatArray
@@ -93,6 +96,7 @@ def beam_facts(beams: Beams) -> BeamFacts:
         bevels=contours.bevels,
         tilts=annuli.tilt,
         twists=twist_angles(annuli),
+        line_misses=line_misses(annuli),
         mismatches=corner_mismatch(annuli),
         clearances=_clearances(beams),
         ends=annuli.corners[:, :, 0] + annuli.origins[:, None],
@@ -102,12 +106,20 @@ def beam_facts(beams: Beams) -> BeamFacts:
 def _clearances(beams: Beams) -> FloatArray:
     """Twice the distances (B, 2) from the bisecting half planes, the smaller of both sides."""
     half_angles = neighbor_angles(beams.annuli)
-    reach = beams.insets[..., ::2] * np.sin(half_angles)
-    side = beams.thickness / 2 * np.cos(half_angles)
+    mitres = mitre_normals(beams.annuli, half_angles)
+    apart = beams.corners - node_points(beams.annuli)[:, :, None, None]
+    # Between its side and its ridge a cut is plane: the nearest point is at one of them.
+    distances = np.stack(
+        [
+            dot(mitres[:, :, side, None, None], apart[:, :, :, levels]).min(axis=(2, 3))
+            for side, levels in enumerate((slice(0, 2), slice(1, 3)))
+        ],
+        2,
+    )
     # Beyond the limit of mitres there is nobody to run into, also where a beam that was there
     # when the end was cut could not be made.
     is_near = half_angles <= MITRE_LIMIT
-    return 2 * np.where(is_near, reach - side, np.inf).min(axis=2)
+    return 2 * np.where(is_near, distances, np.inf).min(axis=2)
 
 
 def _rectangle_sizes(beams: Beams) -> FloatArray:

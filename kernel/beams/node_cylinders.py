@@ -54,7 +54,7 @@ def node_cylinders(beams: Beams) -> NodeCylinders:
     -----
     The axis goes through the mean of the outer corners that the annuli have on it: where the
     node has no torsion that is its line, and the end planes of the beams are at the distance of
-    radius and gap from it.
+    radius and gap from it. Under panels a cylinder begins where it is clear of them.
 
     References
     ----------
@@ -76,6 +76,9 @@ def node_cylinders(beams: Beams) -> NodeCylinders:
     low, high = np.full(count, np.inf), np.full(count, -np.inf)
     np.minimum.at(low, groups, levels.min(axis=1))
     np.maximum.at(high, groups, levels.max(axis=1))
+    if beams.cylinder_tops is not None:
+        starts = dot(tops - middles[groups], directions[groups])
+        np.maximum.at(low, groups, starts + beams.cylinder_tops.ravel()[:n_ends])
     members: list[list[str]] = [[] for _ in range(count)]
     nodes_of_ends: list[int] = groups.tolist()
     for end, node in enumerate(nodes_of_ends):

@@ -9,6 +9,7 @@ mesh                 The mesh: vertices, and faces of mixed degree in compressed
 topology             Half-edges, edges and boundary of a mesh.
 defects              Why faces are no mesh, and what repairs it.
 orientation          Which faces are to be turned over, so that neighbours agree.
+creases              Edges at which a surface turns too sharply to be taken for smooth.
 vertex_fans          The corners around vertices in counter-clockwise order.
 curvature            Normals and principal curvatures at the vertices of a mesh.
 triangulation        Cutting polygons into triangles along short diagonals.

@@ -12,7 +12,8 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from ..errors import InputError
 from ..tolerances import CREASE, LINE_CORNER
-from .mesh import Mesh, face_normals, face_vector_areas
+from .creases import edge_turns
+from .mesh import Mesh, face_vector_areas
 from .triangle_edges import (
     SLIVER,
     Triangles,
@@ -121,9 +122,7 @@ def _rim(surface: Mesh) -> IntArray:
 
 def _creases(surface: Mesh, crease_angle: float) -> IntArray:
     """Ends (n, 2) of the edges at which triangles, but no slivers, meet sharply."""
-    sides = face_normals(surface)[surface.topology.edge_faces]
-    left, right = sides[:, 0], sides[:, 1]
-    turns = np.arctan2(norm(np.cross(left, right)), dot(left, right))
+    turns = edge_turns(surface)
     is_thin = thickness(surface.vertices[surface.corners].reshape(-1, 3, 3)) < SLIVER
     has_sliver = is_thin[surface.topology.edge_faces].any(axis=1)
     return surface.topology.edge_vertices[exceeds(turns, crease_angle) & ~has_sliver]

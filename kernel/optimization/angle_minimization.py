@@ -1,31 +1,40 @@
 """Angle minimisation in the pencils of the faces' circles.
 
 Every sphere through the circle of a face is ``S(t) = cos t P + sin t Q``: one unknown per face,
-and the conditions of lying on the vertices and of being a unit row hold exactly. Across an
-edge only the four products of P, Q with P', Q' occur, so an iteration costs a few operations
-per edge and an F×F system with one entry per edge.
+and the conditions of lying on the vertices and of being a unit row hold exactly. Creases weigh
+nothing: across them a surface is not meant to be smooth.
 
-Stage 1 minimises the signed energy ``sum (1 - g)`` with ``g = <<S, S'>>``, which tells smooth
-contact from a spike; stage 2 minimises the paper's ``sum (g² - cos² α)²`` from there, with
-``g |g|`` for ``g²``, so that 120 degrees are no more taken for 60.
+For smooth contact, stage 1 minimises the signed energy ``sum (1 - g)`` with ``g = <<S, S'>>``,
+stage 2 the paper's ``sum (g² - 1)²`` from there. Another target angle has many optima: of those
+found from starts of structure, the lowest is taken.
 """
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import FloatArray, IntArray, dot, sum_by
+from ..arrays import BoolArray, FloatArray, IntArray, norm, sum_by
 from ..errors import InputError
+from ..meshes.creases import crease_edges, joined_parts
 from ..meshes.mesh import Mesh, face_centroids, mean_edge_length
-from ..solvers.symmetric import solve_symmetric, symmetric_pattern
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.circles import Circles, circle_pencils, face_circles, pencil_spheres
 from ..spheres.minkowski import minkowski
-from ..tolerances import ANGLE_STEP, DAMPING, ENERGY_ROUNDING
-
-MAX_NEWTON_STEPS = 1000
+from ..tolerances import LEAST_ENERGY, SAME_BULGE, SAME_ENERGY, SAME_TURN
+from .pencil_energy import (
+    PRODUCT_ROUNDING,
+    EdgeEnergy,
+    PencilCoupling,
+    angle_density,
+    angle_energy,
+    couple_pencils,
+    edge_products,
+    signed_density,
+)
+from .pencil_newton import PencilDescent, PencilProblem, minimize_in_pencils
+from .target_starts import target_descents
 
 
 @dataclass(frozen=True)
@@ -35,17 +44,25 @@ class AngleReport:
     Attributes
     ----------
     converged : bool
-        Whether both stages came to rest.
+        Whether both stages came to rest at optima of second order: the lowest eigenvalue of the
+        second derivatives is nowhere negative.
     iterations : tuple of int
-        Newton steps of the signed stage and of the paper's stage.
+        Newton steps of the smooth stages, signed and the paper's; with a target angle of
+        the smooth stages and of the descent taken.
     energies : tuple of float
         The paper's energy (9) at the start, after stage 1, and after each accepted step of
-        stage 2.
+        stage 2; one more where spheres were taken back. With a target angle at the start, at
+        smooth contact and at the end.
     step : float
         Largest change of an unknown in the last step, in radians.
     circle_miss : float
         Largest distance of a vertex from the best-fit circle of a face, in mean edges; zero
         (up to rounding) for circular faces.
+    is_crease : (E,) bool array
+        Edges that were left sharp.
+    is_taken_back : (F,) bool array
+        Faces whose mean angle would have been larger than that of flat panels: those of
+        stage 1 there if they are smoother, else flat.
     """
 
     converged: bool
@@ -53,112 +70,16 @@ class AngleReport:
     energies: tuple[float, ...]
     step: float
     circle_miss: float
-
-
-@dataclass(frozen=True)
-class PencilCoupling:
-    """Products of the pencil rows of the two faces of each edge.
-
-    Attributes
-    ----------
-    faces : (E, 2) int array
-        Faces of each edge.
-    products : (4, E) float array
-        ``<<P,P'>>, <<P,Q'>>, <<Q,P'>>, <<Q,Q'>>``.
-    weights : (E,) float array
-        Weight of each edge.
-    """
-
-    faces: IntArray
-    products: FloatArray
-    weights: FloatArray
-
-
-@dataclass(frozen=True)
-class EdgeProducts:
-    """The product ``g = <<S, S'>>`` of each edge and its derivatives.
-
-    Attributes
-    ----------
-    value, by_first, by_second, mixed : (E,) float array
-        g, its derivatives by the unknowns of the two faces, and the mixed one. The second
-        derivative by either unknown alone is -g.
-    """
-
-    value: FloatArray
-    by_first: FloatArray
-    by_second: FloatArray
-    mixed: FloatArray
-
-
-def couple_pencils(mesh: Mesh, circles: Circles, weights: FloatArray) -> PencilCoupling:
-    """Products of neighbouring pencils, from differences of centres only.
-
-    The circles are in the coordinates local to their faces; (E,) weights. Independent of scale
-    and of where the model sits.
-    """
-    faces = mesh.topology.edge_faces
-    a, b = faces.T
-    centroids = face_centroids(mesh)
-    across = centroids[b] - centroids[a] + circles.centers[b] - circles.centers[a]
-    radii = np.sqrt(circles.radii_squared)
-    n, m = circles.normals[a], circles.normals[b]
-    products = np.stack(
-        [
-            dot(n, m),
-            dot(n, across) / radii[b],
-            -dot(m, across) / radii[a],
-            (radii[a] ** 2 + radii[b] ** 2 - dot(across, across)) / (2 * radii[a] * radii[b]),
-        ]
-    )
-    return PencilCoupling(faces, products, weights)
-
-
-def edge_products(coupling: PencilCoupling, angles: FloatArray) -> EdgeProducts:
-    """Products ``<<S, S'>>`` at given unknowns t, (F,)."""
-    pp, pq, qp, qq = coupling.products
-    cosine, sine = np.cos(angles), np.sin(angles)
-    ca, cb = cosine[coupling.faces].T
-    sa, sb = sine[coupling.faces].T
-    p, q = pp * cb + pq * sb, qp * cb + qq * sb
-    p_turned, q_turned = pq * cb - pp * sb, qq * cb - qp * sb
-    return EdgeProducts(
-        ca * p + sa * q, ca * q - sa * p, ca * p_turned + sa * q_turned,
-        ca * q_turned - sa * p_turned,
-    )  # fmt: skip
-
-
-EdgeEnergy = Callable[[FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
-"""Energy density of an edge as a function of g, with its first and second derivative."""
-
-
-def signed_density(products: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Density ``1 - g`` of stage 1, with first and second derivative by g, each (E,)."""
-    return 1 - products, np.full_like(products, -1.0), np.zeros_like(products)
-
-
-def angle_density(target: float) -> EdgeEnergy:
-    """Density ``(g |g| - cos² α)²`` of stage 2: the paper's, told from a spike by its sign.
-
-    Takes (E,) values of g; returns density, first and second derivative by g. The target α is
-    in radians.
-
-    References
-    ----------
-    Meshes with Spherical Faces, eq. (9).
-    """
-    aim = np.cos(target) ** 2
-
-    def _density(products: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        size, side = np.abs(products), np.sign(products)
-        excess = products * size - aim
-        return excess**2, 4 * size * excess, 4 * side * excess + 8 * products**2
-
-    return _density
+    is_crease: BoolArray
+    is_taken_back: BoolArray
 
 
 def minimize_angles(
-    sphere_mesh: SphereMesh, target_angle: float = 0.0, edge_weights: ArrayLike | None = None
+    sphere_mesh: SphereMesh,
+    target_angle: float = 0.0,
+    edge_weights: ArrayLike | None = None,
+    crease: float = np.pi,
+    max_opening: float = np.pi,
 ) -> tuple[SphereMesh, AngleReport]:
     """Spheres through the faces' circles that meet their neighbours most smoothly.
 
@@ -166,24 +87,35 @@ def minimize_angles(
     ----------
     sphere_mesh : SphereMesh
         Mesh and spheres to start from. The smoother of these, put into the pencils, and the
-        face planes is the start; the result does not depend on it, but for faces without
-        a weighted edge, which keep it.
+        face planes is the start; the result does not depend on it.
     target_angle : float
         Angle at which neighbours shall meet, in radians from 0 to π/2.
     edge_weights : (E,) array_like of float, optional
-        Weight of each interior edge, at least 0; 1 by default.
+        Weight of each interior edge, at least 0; 1 by default. Faces without a weighted edge
+        get their planes.
+    crease : float
+        Edges at which the planes of the faces turn by more, in radians, stay sharp: their
+        weight is 0. At π there are none.
+    max_opening : float
+        Largest half opening of the caps, in radians; π for no bound.
 
     Returns
     -------
     sphere_mesh : SphereMesh
-        The optimum; faces whose vertices lie on no circle keep their best-fit circle.
+        The optimum; faces whose vertices lie on no circle keep their best-fit circle. No part
+        that hangs together by weighted edges is rougher in the mean than its planes.
     report : AngleReport
         Convergence and miss.
 
     Raises
     ------
     InputError
-        If a face has no area, or a weight or the target is out of range.
+        If a face has no area, or a weight, the target or another angle is out of range.
+
+    Notes
+    -----
+    The result does not depend on the numbering, place, size or position of the mesh. Where two
+    optima are equally low, the one that bulges more is taken.
 
     References
     ----------
@@ -191,29 +123,188 @@ def minimize_angles(
     """
     mesh = sphere_mesh.mesh
     weights = check_angle_options(mesh, target_angle, edge_weights)
+    bound = _bound(max_opening)
+    is_crease = crease_edges(mesh, crease)
+    weights = np.where(is_crease, 0.0, weights)
     circles, miss = face_circles(mesh)
-    planes, great_spheres = circle_pencils(circles)
     coupling = couple_pencils(mesh, circles, weights)
-    density = angle_density(target_angle)
+    parts = joined_parts(mesh, weights > 0)
+    curvatures = mean_edge_length(mesh) / np.sqrt(circles.radii_squared)
 
-    start = pencil_angles(sphere_mesh, circles)
-    if _energy(coupling, signed_density, start) > _energy(
-        coupling, signed_density, np.zeros_like(start)
-    ):
-        start = np.zeros_like(start)
-    first = _minimize(coupling, signed_density, start)
-    # At smooth contact the energy of another target is stationary: leave it by bulging
-    # every panel by half the angle.
-    second = _minimize(coupling, density, first.angles - target_angle / 2)
+    def _problem(density: EdgeEnergy) -> PencilProblem:
+        return PencilProblem(coupling, density, bound, curvatures)
+
+    given = np.clip(pencil_angles(sphere_mesh, circles), -bound, bound)
+    planes = np.zeros_like(given)
+    start = _lower(coupling, parts, given, planes)
+    first = minimize_in_pencils(_problem(signed_density), start)
+    second = _second_stage(_problem(angle_density(0.0)), first)
+    iterations = (len(first.energies) - 1, len(second.energies) - 1)
+    density = angle_density(target_angle)
+    energies = [angle_energy(coupling, density, start)]
+    if target_angle == 0:
+        angles, taken_back = _never_rougher(coupling, parts, (second, first))
+        last, converged = second, first.converged and second.converged
+        energies += second.energies
+    else:
+        angles, descents = _lowest_of_parts(
+            _problem(density), parts, second.angles, given, target_angle, face_centroids(mesh)
+        )
+        converged = all(descent.converged for descent in descents)
+        last = max(descents, key=lambda each: len(each.energies), default=second)
+        iterations = (sum(iterations), len(last.energies) - 1)
+        taken_back = np.zeros(mesh.n_faces, bool)
+        energies.append(angle_energy(coupling, density, second.angles))
+    is_alone = np.bincount(coupling.faces[weights > 0].ravel(), minlength=mesh.n_faces) == 0
+    angles = np.where(is_alone, 0.0, angles)
+    if taken_back.any() or target_angle > 0:
+        energies.append(angle_energy(coupling, density, angles))
     report = AngleReport(
-        first.converged and second.converged,
-        (first.iterations, second.iterations),
-        (_energy(coupling, density, start), *second.energies),
-        second.step,
+        converged,
+        iterations,
+        tuple(energies),
+        last.step,
         float(miss.max()) / mean_edge_length(mesh),
+        is_crease,
+        taken_back,
     )
-    result = SphereMesh.from_local(mesh, pencil_spheres(planes, great_spheres, second.angles))
-    return result, report
+    spheres = pencil_spheres(*circle_pencils(circles), angles)
+    return SphereMesh.from_local(mesh, spheres), report
+
+
+def _second_stage(problem: PencilProblem, first: PencilDescent) -> PencilDescent:
+    """Descent of the paper's energy from the end of stage 1.
+
+    Where that is smooth up to rounding, the second derivatives of the paper's energy are
+    nothing but rounding, and stage 1 has the last word.
+    """
+    rounding = PRODUCT_ROUNDING * float(problem.coupling.weights.sum())
+    if first.energies[-1] > rounding:
+        return minimize_in_pencils(problem, first.angles)
+    energy = angle_energy(problem.coupling, problem.density, first.angles)
+    return PencilDescent(first.angles, (energy,), first.step, first.converged)
+
+
+def _bound(max_opening: float) -> float:
+    """Largest unknown, in radians: infinite from 180 degrees on."""
+    if not 0 <= max_opening <= np.pi:
+        raise InputError(
+            "the half opening of caps lies between 0 and 180 degrees, not "
+            f"{np.degrees(max_opening):g}"
+        )
+    return np.inf if max_opening >= np.pi - SAME_TURN else max_opening
+
+
+def _lower(
+    coupling: PencilCoupling, parts: IntArray, one: FloatArray, other: FloatArray
+) -> FloatArray:
+    """Of each part the unknowns of lower signed energy; the others if they are equal."""
+    energies = [
+        _part_sums(coupling, parts, signed_density(edge_products(coupling, angles).value)[0])
+        for angles in (one, other)
+    ]
+    return np.where((energies[0] < energies[1])[parts], one, other)
+
+
+def _part_sums(coupling: PencilCoupling, parts: IntArray, values: FloatArray) -> FloatArray:
+    """Weighted sums over the edges (E,) of each part."""
+    count = int(parts.max()) + 1
+    return sum_by(parts[coupling.faces[:, 0]], coupling.weights * values, count)
+
+
+def _never_rougher(
+    coupling: PencilCoupling, parts: IntArray, descents: Sequence[PencilDescent]
+) -> tuple[FloatArray, BoolArray]:
+    """Of each part the first descent that is no rougher than its planes, else the planes.
+
+    Unknowns (F,), and whether they are not those of the first descent.
+    """
+
+    def _roughness(angles: FloatArray) -> FloatArray:
+        cosines = np.clip(edge_products(coupling, angles).value, -1, 1)
+        return _part_sums(coupling, parts, np.arccos(cosines))
+
+    planes = np.zeros_like(descents[0].angles)
+    flat = _roughness(planes)
+    result, is_open = planes, np.ones(len(flat), bool)
+    for number, descent in enumerate(descents):
+        is_good = is_open & (_roughness(descent.angles) <= flat * (1 + SAME_ENERGY))
+        result = np.where(is_good[parts], descent.angles, result)
+        is_open &= ~is_good
+        if number == 0:
+            taken_back = is_open[parts] & (np.abs(descent.angles) > SAME_TURN)
+    return result, taken_back
+
+
+def _lowest_of_parts(
+    problem: PencilProblem, parts: IntArray, smooth: FloatArray, given: FloatArray,
+    target: float, places: FloatArray,
+) -> tuple[FloatArray, tuple[PencilDescent, ...]]:  # fmt: skip
+    """Lowest optimum of each part by itself: unknowns (F,), and the descents of the parts."""
+    coupling = problem.coupling
+    used = coupling.weights > 0
+    part_of_edge = np.where(used, parts[coupling.faces[:, 0]], -1)
+    angles, descents = np.zeros_like(smooth), list[PencilDescent]()
+    index = np.empty(len(parts), np.int64)
+    for part in np.unique(part_of_edge[used]).tolist():
+        faces, edges = np.flatnonzero(parts == part), np.flatnonzero(part_of_edge == part)
+        index[faces] = np.arange(len(faces))
+        own = PencilProblem(
+            PencilCoupling(
+                index[coupling.faces[edges]],
+                coupling.products[:, edges],
+                coupling.weights[edges],
+            ),
+            problem.density,
+            problem.bound,
+            problem.curvatures[faces],
+        )
+        found = _lowest(own, smooth[faces], given[faces], target, places[faces])
+        angles[faces] = found.angles
+        descents.append(found)
+    return angles, tuple(descents)
+
+
+def _lowest(
+    problem: PencilProblem, smooth: FloatArray, given: FloatArray, target: float,
+    places: FloatArray,
+) -> PencilDescent:  # fmt: skip
+    """The lowest of several descents; of equal ones that which bulges more."""
+    descents = target_descents(problem, smooth, target)
+    lowest = min(descent.energies[-1] for descent in descents)
+    zero = LEAST_ENERGY * float(problem.coupling.weights.sum())
+    start = angle_energy(problem.coupling, problem.density, given)
+    if start < lowest * (1 - SAME_ENERGY) - zero:
+        descents.append(minimize_in_pencils(problem, given))
+        lowest = min(lowest, descents[-1].energies[-1])
+    equal = [
+        each for each in descents if each.energies[-1] <= lowest * (1 + SAME_ENERGY) + zero
+    ]
+    best = equal[0]
+    for other in equal[1:]:
+        if _bulges_more(problem.curvatures, other.angles, best.angles, places):
+            best = other
+    return best
+
+
+def _bulges_more(
+    curvatures: FloatArray, one: FloatArray, other: FloatArray, places: FloatArray
+) -> bool:
+    """Whether spheres bulge more at some unknowns (F,) than at others.
+
+    By the sum of their curvatures, of the cubes of these, and last by where they bulge.
+    """
+    first, second = curvatures * np.sin(one), curvatures * np.sin(other)
+    size = float((np.abs(first) + np.abs(second)).sum())
+    centered = places - places[0]
+    centered -= centered.mean(axis=0)
+    reach = float(norm(centered).max()) or 1.0
+    along = centered @ np.array([1.0, 0.7, 0.4]) / reach
+    for measure in (first - second, first**3 - second**3, along * (first - second)):
+        total = float(measure.sum())
+        if abs(total) > SAME_BULGE * size:
+            return total > 0
+    return False
 
 
 def pencil_angles(sphere_mesh: SphereMesh, circles: Circles) -> FloatArray:
@@ -250,54 +341,3 @@ def check_angle_options(
     if not (np.isfinite(weights) & (weights >= 0)).all():
         raise InputError("edge weights must be finite and at least 0")
     return weights
-
-
-def _energy(coupling: PencilCoupling, density: EdgeEnergy, angles: FloatArray) -> float:
-    value = edge_products(coupling, angles).value
-    return float(coupling.weights @ density(value)[0])
-
-
-@dataclass(frozen=True)
-class _Descent:
-    angles: FloatArray
-    energies: tuple[float, ...]
-    step: float
-    iterations: int
-    converged: bool
-
-
-def _minimize(coupling: PencilCoupling, density: EdgeEnergy, start: FloatArray) -> _Descent:
-    """Damped Newton steps, each solved by conjugate gradients; only descents are accepted."""
-    pattern = symmetric_pattern(coupling.faces, len(start))
-    energies = [_energy(coupling, density, start)]
-    angles, damping, largest, converged = start, DAMPING, np.inf, False
-    while not converged and len(energies) <= MAX_NEWTON_STEPS and damping < 1 / DAMPING:
-        gradient, diagonal, mixed = _derivatives(coupling, density, angles)
-        accepted = False
-        while not accepted and damping < 1 / DAMPING:
-            step = solve_symmetric(pattern, diagonal + damping, mixed, -gradient)
-            largest = float(np.abs(step).max(initial=0.0))
-            converged = largest <= ANGLE_STEP
-            energy = _energy(coupling, density, angles + step)
-            accepted = converged or energy <= energies[-1] * (1 + ENERGY_ROUNDING)
-            if accepted:
-                angles = angles + step
-                energies.append(energy)
-            damping = max(damping / 16, DAMPING) if accepted else damping * 16
-    return _Descent(angles, tuple(energies), largest, len(energies) - 1, converged)
-
-
-def _derivatives(
-    coupling: PencilCoupling, density: EdgeEnergy, angles: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Gradient (F,), diagonal (F,) and edge entries (E,) of the Hessian of the energy."""
-    g = edge_products(coupling, angles)
-    a, b = coupling.faces.T
-    _, slope, bend = density(g.value)
-    slope, bend = coupling.weights * slope, coupling.weights * bend
-    count = len(angles)
-    gradient = sum_by(a, slope * g.by_first, count) + sum_by(b, slope * g.by_second, count)
-    diagonal = sum_by(a, bend * g.by_first**2 - slope * g.value, count) + sum_by(
-        b, bend * g.by_second**2 - slope * g.value, count
-    )
-    return gradient, diagonal, bend * g.by_first * g.by_second + slope * g.mixed

@@ -51,9 +51,9 @@ def smoother(
 
     Planes are if they meet more smoothly on average, the start if besides its largest angle is
     no larger: an energy of fourth powers may trade one for the other. What misses vertices by
-    more than what was found and than what is allowed is no better.
+    more than twice what was found misses, and by more than is allowed, is no better.
     """
-    limit = max(found.miss, allowed_miss) + COMMON_VERTEX
+    limit = max(2 * found.miss, allowed_miss) + COMMON_VERTEX
     same = 1 - SAME_ANGLES
     kept: Kept = "optimum"
     least = found.mean * same

@@ -78,6 +78,9 @@ def cluster_radii(
     than its circle (R < ρ): such a face goes to the sharpest mould on which it lies, and the
     flattest mould grows, where necessary, to carry all of its faces.
 
+    Spheres that have one radius already stay: they may pass through vertices that lie on no
+    circle.
+
     References
     ----------
     Meshes with Spherical Faces, Sec. 4.3.
@@ -88,6 +91,9 @@ def cluster_radii(
         raise InputError(
             f"sagittas of one mould differ by a length of 0 or more, not by {same_sagitta}"
         )
+    own = 2 * np.abs(sphere_mesh.local_spheres[:, 0])
+    if np.ptp(own) <= SAME_CURVATURE * own.min():
+        return sphere_mesh, _one_mould(own)
     circles, _ = face_circles(sphere_mesh.mesh)
     radii = np.sqrt(circles.radii_squared)
     angles = pencil_angles(sphere_mesh, circles)
@@ -119,12 +125,24 @@ def cluster_radii(
     return SphereMesh.from_local(sphere_mesh.mesh, rows), clusters
 
 
+def _one_mould(curvatures: FloatArray) -> RadiusClusters:
+    """The mould of panels that have one radius already."""
+    count = len(curvatures)
+    return RadiusClusters(
+        np.zeros(count, np.int64),
+        np.array([1 / curvatures.mean()]),
+        np.array([count]),
+        np.zeros(count, bool),
+    )
+
+
 def relax_moulds(
     sphere_mesh: SphereMesh,
     clusters: RadiusClusters,
     tolerance: float,
     regularity: float = 0.0,
     support: float = 0.0,
+    edge_weights: FloatArray | None = None,
 ) -> tuple[SphereMesh, Optimization]:
     """Let vertices and spheres of given radii move to where the angles are smallest.
 
@@ -136,6 +154,8 @@ def relax_moulds(
         How far vertices may move, in mean edges.
     regularity, support : float
         Weights of upright planes and of nodes without torsion.
+    edge_weights : (E,) float array, optional
+        Weight of the angle over each interior edge; 1 by default.
 
     Returns
     -------
@@ -155,7 +175,7 @@ def relax_moulds(
     Meshes with Spherical Faces, Sec. 4.3.
     """
     radii = np.maximum(clusters.radii[clusters.labels], _circle_radii(sphere_mesh.mesh))
-    conditions = Conditions(tolerance=tolerance, fixed_radii=radii)
+    conditions = Conditions(edge_weights=edge_weights, tolerance=tolerance, fixed_radii=radii)
     weights = EnergyWeights(closeness=RELAXED_CLOSENESS, regularity=regularity, support=support)
     return move_vertices(sphere_mesh, weights, conditions)
 

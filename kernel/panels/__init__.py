@@ -4,7 +4,9 @@ checks        What keeps a panel from being made: crossing boundaries, lost corn
               deep.
 congruent     Identical panels: those that a rigid motion carries onto each other.
 cutting       Cutting panels out of the spheres of a mesh, by one plane per edge.
+edge_axes     Node axes as panels and beams use them: given as two points each, in any order.
 facts         What is to be known of every panel: for schedules, drawings, files and audits.
+joints        Joints between panels: steps, gaps and holes.
 mould_blanks  Mould blanks: the smallest cap that holds each panel, and how many of which
               size.
 mould_caps    Moulds as surfaces: the cap of each, and where the panels lie on it.

@@ -5,7 +5,7 @@ measured here. What cannot be made is listed with its reason.
 """
 
 from dataclasses import replace
-from typing import Literal, NamedTuple, get_args
+from typing import NamedTuple, get_args
 
 import numpy as np
 
@@ -21,10 +21,9 @@ from ..spheres.minkowski import angle
 from ..spheres.rows import recenter
 from ..tolerances import PLANE_SAGITTA, SAME_PLANE
 from .checks import NO_PANEL, Found, rejection_reasons
+from .edge_axes import EdgeMode, check_axes, outward_axes
 from .panels import Panels, corner_points
 from .thickness import ThicknessRule, ThicknessSide, panel_faces
-
-EdgeMode = Literal["bisector", "intersection"]
 
 
 def flatten_nearly_plane(sphere_mesh: SphereMesh) -> SphereMesh:
@@ -51,18 +50,23 @@ def flatten_nearly_plane(sphere_mesh: SphereMesh) -> SphereMesh:
     return SphereMesh.from_local(mesh, rows)
 
 
-def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray, FloatArray]:
+def cutting_planes(
+    sphere_mesh: SphereMesh, edges: EdgeMode, axes: FloatArray | None = None
+) -> tuple[FloatArray, FloatArray]:
     """Plane that cuts each panel along each of its edges.
 
     Parameters
     ----------
     sphere_mesh : SphereMesh
         The sphere mesh, its nearly plane faces flattened (`flatten_nearly_plane`).
-    edges : {"bisector", "intersection"}
+    edges : {"bisector", "intersection", "axis"}
         ``bisector``: the plane through the two vertices that bisects the two faces of the mesh.
         ``intersection``: the plane of the circle in which the two spheres meet; where they
         are the same sphere or one is a plane, the bisecting one. Boundary edges are cut by the
-        plane through their vertices and the normal of their sphere.
+        plane through their vertices and the normal of their sphere. ``axis``: the plane
+        through the two vertices and along the sum of their node axes, on the boundary as well.
+    axes : (V, 2, 3) float array, optional
+        Two points of each node axis, in any order: for ``axis`` alone.
 
     Returns
     -------
@@ -87,6 +91,9 @@ def cutting_planes(sphere_mesh: SphereMesh, edges: EdgeMode) -> tuple[FloatArray
     across = face_normals(mesh)[faces]
     bisecting = across + across[twins]
     upright = np.where(is_interior[:, None], bisecting, unit(rows[:, 1:4]))
+    if edges == "axis" and axes is not None:
+        outward = outward_axes(mesh, axes)
+        upright = outward[mesh.corners] + outward[mesh.corners[topology.next_corners]]
     # No plane bisects two faces that fold back onto each other.
     upright[norm(upright) < SAME_PLANE] = 0
     plane_normals = unit(np.cross(upright, ends - starts))
@@ -119,11 +126,13 @@ class _EdgeCuts(NamedTuple):
     exists: BoolArray
 
 
-def _cut_edges(sphere_mesh: SphereMesh, edges: EdgeMode, joint_gap: float = 0.0) -> _EdgeCuts:
+def _cut_edges(
+    sphere_mesh: SphereMesh, edges: EdgeMode, axes: FloatArray | None, joint_gap: float = 0.0
+) -> _EdgeCuts:
     """Cut the spheres along the edges; planes move into their faces by half of the gap."""
     sphere_mesh = flatten_nearly_plane(sphere_mesh)
     mesh = sphere_mesh.mesh
-    plane_normals, plane_offsets = cutting_planes(sphere_mesh, edges)
+    plane_normals, plane_offsets = cutting_planes(sphere_mesh, edges, axes)
     plane_offsets = plane_offsets + joint_gap / 2
     rows = sphere_mesh.local_spheres[mesh.topology.corner_faces]
     corners, exists = corner_points(
@@ -132,7 +141,7 @@ def _cut_edges(sphere_mesh: SphereMesh, edges: EdgeMode, joint_gap: float = 0.0)
     return _EdgeCuts(sphere_mesh, plane_normals, plane_offsets, corners, exists)
 
 
-def edge_arcs(sphere_mesh: SphereMesh, edges: EdgeMode) -> Arcs:
+def edge_arcs(sphere_mesh: SphereMesh, edges: EdgeMode, axes: FloatArray | None = None) -> Arcs:
     """Arc of each half-edge on the sphere of its face, cut as in `cutting_planes`.
 
     H arcs in model coordinates, from corner to corner. The two arcs of an interior edge differ
@@ -142,7 +151,7 @@ def edge_arcs(sphere_mesh: SphereMesh, edges: EdgeMode) -> Arcs:
     ----------
     Meshes with Spherical Faces, Fig. 26 (a), (c) and (d).
     """
-    cuts = _cut_edges(sphere_mesh, edges)
+    cuts = _cut_edges(sphere_mesh, edges, axes)
     mesh = cuts.sphere_mesh.mesh
     faces, following = mesh.topology.corner_faces, mesh.topology.next_corners
     rows = cuts.sphere_mesh.local_spheres[faces]
@@ -151,17 +160,38 @@ def edge_arcs(sphere_mesh: SphereMesh, edges: EdgeMode) -> Arcs:
     return replace(arcs, starts=arcs.starts + origins, ends=arcs.ends + origins)
 
 
-def edge_gaps(sphere_mesh: SphereMesh, edges: EdgeMode) -> FloatArray:
+class EdgeGaps(NamedTuple):
+    """Distances (E,) between the two arcs of interior edges, NaN where an arc does not exist.
+
+    In the middle of the edge, and the larger of the two ends, in model units.
+    """
+
+    middle: FloatArray
+    ends: FloatArray
+
+
+def edge_gaps(
+    sphere_mesh: SphereMesh, edges: EdgeMode, axes: FloatArray | None = None
+) -> FloatArray:
     """Largest distance (E,) between the two arcs of each interior edge, see `cutting_planes`.
 
     The largest of the gaps at the two ends and in the middle of each edge, in model units; NaN
     where an arc does not exist.
+    """
+    gaps = gaps_along_edges(sphere_mesh, edges, axes)
+    return np.maximum(gaps.middle, gaps.ends)
+
+
+def gaps_along_edges(
+    sphere_mesh: SphereMesh, edges: EdgeMode, axes: FloatArray | None = None
+) -> EdgeGaps:
+    """Distances between the two arcs of each interior edge, see `cutting_planes`.
 
     References
     ----------
     Meshes with Spherical Faces, Fig. 26 (d).
     """
-    cuts = _cut_edges(sphere_mesh, edges)
+    cuts = _cut_edges(sphere_mesh, edges, axes)
     mesh = cuts.sphere_mesh.mesh
     topology, starts = mesh.topology, local_corners(mesh)
     ends = starts[topology.next_corners]
@@ -176,18 +206,21 @@ def edge_gaps(sphere_mesh: SphereMesh, edges: EdgeMode) -> FloatArray:
 
     first, second = topology.edge_corners, topology.twins[topology.edge_corners]
     following = topology.next_corners
-    middle_gap = np.abs(heights[first] - heights[second])
     start_gap = norm(shifts[first] - shifts[following[second]])
     end_gap = norm(shifts[following[first]] - shifts[second])
-    return np.maximum(middle_gap, np.maximum(start_gap, end_gap))
+    return EdgeGaps(np.abs(heights[first] - heights[second]), np.maximum(start_gap, end_gap))
 
 
 def gap_report(
-    sphere_mesh: SphereMesh, edges: EdgeMode, face_ids: IntArray
+    sphere_mesh: SphereMesh,
+    edges: EdgeMode,
+    face_ids: IntArray,
+    axes: FloatArray | None = None,
 ) -> dict[str, float]:
     """Summary of the gaps between the arcs of neighbouring panels, of the faces (P,) made.
 
-    ``max`` and ``mean`` in model units,
+    ``max`` and ``mean`` over middles and ends, ``middle_p95`` and ``middle_max`` in the middle
+    of edges, ``corner_p95`` and ``corner_max`` at their ends, in model units;
     ``relative_to_edge`` the maximum over the mean edge length, ``edges`` the number of edges
     measured; zeros if there are none. Edges of other faces, and those whose arcs exist with a
     joint only, are not measured.
@@ -195,13 +228,19 @@ def gap_report(
     is_made = np.zeros(sphere_mesh.mesh.n_faces, bool)
     is_made[face_ids] = True
     between = is_made[sphere_mesh.mesh.topology.edge_faces].all(axis=1)
-    gaps = edge_gaps(sphere_mesh, edges)[between]
-    gaps = gaps[np.isfinite(gaps)]
+    found = gaps_along_edges(sphere_mesh, edges, axes)
+    between &= np.isfinite(found.middle + found.ends)
+    middle, ends = found.middle[between], found.ends[between]
+    gaps = np.maximum(middle, ends)
     largest = float(gaps.max(initial=0.0))
     return {
         "max": largest,
         "mean": float(gaps.mean()) if len(gaps) else 0.0,
         "relative_to_edge": largest / mean_edge_length(sphere_mesh.mesh),
+        "middle_p95": float(np.percentile(middle, 95)) if len(gaps) else 0.0,
+        "middle_max": float(middle.max(initial=0.0)),
+        "corner_p95": float(np.percentile(ends, 95)) if len(gaps) else 0.0,
+        "corner_max": float(ends.max(initial=0.0)),
         "edges": len(gaps),
     }
 
@@ -214,12 +253,13 @@ def cut_panels(
     labels: IntArray | None = None,
     side: ThicknessSide = "inward",
     layer: ThicknessRule = "offset",
+    axes: FloatArray | None = None,
 ) -> tuple[Panels, tuple[RejectedPart, ...]]:
     """Cut a panel out of the sphere of every face.
 
     Parameters
     ----------
-    edges : {"bisector", "intersection"}
+    edges : {"bisector", "intersection", "axis"}
         How panels are cut, see `cutting_planes`.
     thickness : float
         Distance of the inner from the outer face, in model units.
@@ -232,6 +272,8 @@ def cut_panels(
         Where the thickness goes from the sphere, see `panel_faces`.
     layer : {"offset", "power"}
         Whether the thickness or the difference of squared radii is constant.
+    axes : (V, 2, 3) float array, optional
+        Two points of each node axis: for edges cut by axes, and only for them.
 
     Returns
     -------
@@ -243,13 +285,15 @@ def cut_panels(
     Raises
     ------
     InputError
-        If an option is unknown, or thickness or gap is negative or not finite.
+        If an option is unknown, thickness or gap is negative or not finite, or axes are not
+        what the edges need.
     """
     _check_choices(
         edges=(edges, EdgeMode), side=(side, ThicknessSide), layer=(layer, ThicknessRule)
     )
     _check_sizes(sphere_mesh.mesh.n_faces, thickness, joint_gap, labels)
-    cuts = _cut_edges(sphere_mesh, edges, joint_gap)
+    check_axes(sphere_mesh.mesh, edges, axes)
+    cuts = _cut_edges(sphere_mesh, edges, axes, joint_gap)
     mesh, topology = cuts.sphere_mesh.mesh, cuts.sphere_mesh.mesh.topology
     rows = cuts.sphere_mesh.local_spheres
     sides = panel_faces(rows, thickness, side, layer)
@@ -274,6 +318,7 @@ def cut_panels(
         inner_corners=inner_corners,
         neighbors=np.append(faces, -1)[topology.twins],
         edge_ids=_edge_ids(topology),
+        is_crease=np.zeros(len(faces), bool),
         thicknesses=sides.thicknesses,
         thickness=float(thickness),
         joint_gap=float(joint_gap),

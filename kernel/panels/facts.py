@@ -16,6 +16,7 @@ from ..spheres.arcs import (
 )
 from ..spheres.incidence import normals
 from ..spheres.rows import center_radius, offset
+from .joints import panel_joints
 from .mould_blanks import PanelCaps, panel_caps
 from .panels import Panels, corner_points, opposite_corners, panel_arcs, panel_areas
 
@@ -68,9 +69,8 @@ class PanelFacts(PanelRadii):
         Angle, in radians, between the cutting plane and the surface normal in the middle of
         the edge, averaged with the neighbour's. That of a beam is measured against the faces
         of the mesh, and on the boundary a beam has a plane of its own.
-    steps : (H,) float array
-        Height of the step from an outer edge to the neighbour's, the largest of those at its
-        ends and in the middle; NaN where there is no neighbour.
+    steps, gaps, holes : (H,) float array
+        How edges and corners fit those of the neighbours, see `PanelJoints`.
     caps : PanelCaps
         Smallest caps of the moulds that hold the panels.
     """
@@ -85,6 +85,8 @@ class PanelFacts(PanelRadii):
     sagittas: FloatArray
     wall_tilts: FloatArray
     steps: FloatArray
+    gaps: FloatArray
+    holes: FloatArray
     caps: PanelCaps
 
 
@@ -109,7 +111,6 @@ def panel_bulges(panels: Panels) -> list[str]:
 def panel_facts(panels: Panels) -> PanelFacts:
     """Measure panels."""
     arcs = panel_arcs(panels)
-    tilts, steps = _neighborhood(panels)
     return PanelFacts(
         **vars(panel_radii(panels)),
         areas=panel_areas(panels),
@@ -120,8 +121,8 @@ def panel_facts(panels: Panels) -> PanelFacts:
         edge_lengths=arc_lengths(arcs),
         arc_radii=arc_circles(arcs).radii,
         sagittas=arcs.sagittas,
-        wall_tilts=tilts,
-        steps=steps,
+        wall_tilts=_wall_tilts(panels),
+        **vars(panel_joints(panels)),
         caps=panel_caps(panels),
     )
 
@@ -162,22 +163,13 @@ def _corner_angles(panels: Panels) -> FloatArray:
     return np.arctan2(sine, cosine) % (2 * np.pi)
 
 
-def _neighborhood(panels: Panels) -> tuple[FloatArray, FloatArray]:
-    """Tilts of the walls, and steps between the outer edges of neighbours (H)."""
+def _wall_tilts(panels: Panels) -> FloatArray:
+    """Angles (H,) of walls to the normals in the middle of edges, those of both neighbours."""
     owners, twins = panels.corner_panels, opposite_corners(panels)
-    arcs = panel_arcs(panels)
-    middles = arc_points(arcs, np.zeros(1))[:, 0]
+    middles = arc_points(panel_arcs(panels), np.zeros(1))[:, 0]
     up = unit(normals(panels.spheres[owners], middles))
-    has_twin = twins >= 0
-    mean = np.where(has_twin[:, None], up + up[twins], up)
-    tilts = np.arcsin(np.clip(np.abs(dot(unit(mean), panels.plane_normals)), 0.0, 1.0))
-    # Neighbours differ by the shift of their origins, which is exact, and little else.
-    shift = panels.origins[owners][twins] - panels.origins[owners]
-    points = np.stack([arcs.starts, middles, arcs.ends], 1)
-    apart = points[twins][:, ::-1] + shift[:, None] - points
-    # Along the rise of the arc, so that the joint does not count.
-    steps = np.abs(dot(apart, arcs.rises[:, None])).max(axis=1)
-    return tilts, np.where(has_twin, steps, np.nan)
+    mean = np.where((twins >= 0)[:, None], up + up[twins], up)
+    return np.arcsin(np.clip(np.abs(dot(unit(mean), panels.plane_normals)), 0.0, 1.0))
 
 
 def _bounding_sizes(panels: Panels) -> FloatArray:

@@ -101,6 +101,7 @@ def _cap_panels(
         inner_corners=corners,
         neighbors=nobody,
         edge_ids=nobody,
+        is_crease=np.zeros(n_corners, bool),
         thicknesses=np.zeros(n_caps),
         thickness=0.0,
         joint_gap=0.0,

@@ -11,6 +11,8 @@ from typing import Literal
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, unit
+from ..meshes.creases import crease_edges
+from ..meshes.mesh import Mesh
 from ..parts.records import PER_CORNER
 from ..spheres.arcs import Arcs, patch_areas, sphere_arcs
 from ..spheres.incidence import meet_lines
@@ -54,6 +56,8 @@ class Panels:
         Face beyond each edge; -1 on the boundary.
     edge_ids : (H,) int array
         Interior edge of the mesh, the same in both panels; -1 on the boundary.
+    is_crease : (H,) bool array
+        Edges along which the surface is not meant to be smooth: walls are mitred there.
     thicknesses : (P,) float array
         Distance of the inner from the outer face of each panel, in model units.
     thickness : float
@@ -76,6 +80,7 @@ class Panels:
     inner_corners: FloatArray = field(metadata=PER_CORNER)
     neighbors: IntArray = field(metadata=PER_CORNER)
     edge_ids: IntArray = field(metadata=PER_CORNER)
+    is_crease: BoolArray = field(metadata=PER_CORNER)
     thicknesses: FloatArray
     thickness: float
     joint_gap: float
@@ -150,6 +155,13 @@ def corner_points(
     step, exists = meet_lines(near, foot, direction)
     points = references + foot + step[:, None] * direction
     return np.where(exists[:, None], points, references), exists
+
+
+def mark_creases(panels: Panels, mesh: Mesh, crease: float) -> Panels:
+    """Mark the edges at which the planes of faces turn by more than an angle, in radians."""
+    beyond = np.zeros(1, bool)
+    marks = np.concatenate([crease_edges(mesh, crease), beyond])
+    return replace(panels, is_crease=marks[panels.edge_ids])
 
 
 def opposite_corners(panels: Panels) -> IntArray:

@@ -6,10 +6,11 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray, dot, norm
+from ..arrays import FloatArray, IntArray
 from ..errors import InputError
+from ..meshes.creases import crease_edges, edge_turns
 from ..meshes.curvature import principal_curvatures
-from ..meshes.mesh import Mesh, face_normals, mean_edge_length, shortest_edge
+from ..meshes.mesh import Mesh, mean_edge_length, shortest_edge
 from ..meshes.triangulation import triangulate
 from ..reports import Report
 from ..solvers.weighted_graphs import piece_labels
@@ -220,10 +221,7 @@ def _facts(mesh: Mesh) -> _Facts:
     topology, edge = mesh.topology, mean_edge_length(mesh)
     has_neighbour = np.zeros(mesh.n_faces, bool)
     has_neighbour[topology.edge_faces] = True
-    normals = face_normals(mesh)[topology.edge_faces]
-    cosines = dot(normals[:, 0], normals[:, 1])
-    sines = norm(np.cross(normals[:, 0], normals[:, 1]))
-    turns = np.arctan2(sines, cosines)
+    turns = edge_turns(mesh)
     rim = np.flatnonzero(topology.twins < 0)
     rim_ends = np.stack([mesh.corners, mesh.corners[topology.next_corners]], 1)[rim]
     return _Facts(
@@ -236,7 +234,7 @@ def _facts(mesh: Mesh) -> _Facts:
         planarity=_distances(planarity(mesh), edge),
         circularity=_circularity(mesh, edge),
         umbilicity=_umbilicity(mesh) if edge else None,
-        crease_edges=int((turns > CREASE).sum()),
+        crease_edges=int(crease_edges(mesh, CREASE).sum()),
         sharpest_edge_deg=float(np.degrees(turns.max(initial=0.0))),
     )
 
@@ -308,7 +306,7 @@ def _advice(mesh: Mesh, facts: _Facts, done: RepairReport | None) -> list[str]:
         found.append("faces are planar but have no circle: spheres miss some of their corners")
     if facts.crease_edges:
         found.append(
-            f"edges that turn by more than 40 degrees: {facts.crease_edges}; spheres do not "
-            "meet smoothly there"
+            f"edges that turn by more than 40 degrees: {facts.crease_edges}; they stay sharp, "
+            "and spheres are smooth up to them (--crease)"
         )
     return found

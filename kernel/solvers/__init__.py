@@ -7,12 +7,12 @@ so, which a Newton method must know and CHOLMOD's LDLᵀ does not tell.
 
 newton               Newton's method that knows a minimum from a saddle.
 levenberg_marquardt  Least squares with steps that are taken only if the energy falls.
-blocks               Unknowns in groups of elements.
+blocks               Unknowns in groups of elements; sparse Jacobians made of small blocks.
 block_patterns       Where the blocks of a Hessian go.
 block_systems        Newton systems reduced to the elements that are kept.
 multifrontal         Cholesky factors front by front.
 dissection           Nested dissection: an order of elimination that fills in little.
 factorization        Direct solution of sparse systems.
-symmetric            Symmetric systems with one unknown per face and one entry per edge.
+definite_systems     Symmetric systems on graphs, solved if they are definite.
 weighted_graphs      Pieces of graphs; weighted graphs for the trees and paths of scipy.
 """

@@ -47,3 +47,14 @@ def _solver(factors: SparseArray) -> Solver:
         return np.asarray(factors.solve(right), np.float64)
 
     return _solve
+
+
+def solve_definite(matrix: SparseArray, shift: float, right: FloatArray) -> FloatArray:
+    """Solve ``(H + shift I) x = b`` by factorisation.
+
+    H is symmetric, positive semidefinite, the shift positive.
+    """
+    from scipy.sparse import csc_array, eye_array
+
+    shifted: SparseArray = csc_array(matrix + shift * eye_array(len(right)))
+    return factorize_symmetric(shifted)(right)

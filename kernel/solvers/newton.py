@@ -21,7 +21,7 @@ from ..tolerances import (
     LEAST_DECREMENT,
     LEAST_SHIFT,
     LOWEST_EIGENVALUE,
-    SAME_ENERGY,
+    SAME_FALL,
 )
 from .factorization import Solver
 from .levenberg_marquardt import State, Status
@@ -34,9 +34,9 @@ CONVEX_SHIFT = 1e-5
 GROWTH = 1e3
 RENEWED_SHIFT = 1e-7
 """Shift with which a step that lowered nothing is tried again."""
-SHORTEST_STEP, LONGEST_STEP = 2.0**-7, 2.0**10
+SHORTEST_PART, LONGEST_PART = 2.0**-7, 2.0**10
 BETTER_THAN_PROMISED = 1.3
-ESCAPES = 10
+MOST_ESCAPES = 10
 """Saddles that a descent leaves at most."""
 
 
@@ -195,7 +195,7 @@ def newton(
             continue
         if taken is None and leaves_saddles:
             lowest, vector = _lowest(model, found)
-            if lowest < -LOWEST_EIGENVALUE and escapes < ESCAPES and vector.any():
+            if lowest < -LOWEST_EIGENVALUE and escapes < MOST_ESCAPES and vector.any():
                 taken, escapes = _escape(problem, state, vector, energy), escapes + 1
         if taken is None:
             state = _last(problem, state, found, energy)
@@ -251,12 +251,12 @@ def _search(
     """
     taken = None
     part = problem.reach(state, found.step)
-    while taken is None and part >= SHORTEST_STEP:
+    while taken is None and part >= SHORTEST_PART:
         taken = _tried(problem, state, found, energy, part)
         part /= 2
     while taken is not None and taken.part >= 1 and taken.agreement > BETTER_THAN_PROMISED:
         part = 2 * taken.part
-        if part > LONGEST_STEP or problem.reach(state, part * found.step) < 1:
+        if part > LONGEST_PART or problem.reach(state, part * found.step) < 1:
             break
         longer = _tried(problem, state, found, energy, part)
         if longer is None or longer.fall <= taken.fall:
@@ -316,7 +316,7 @@ def _escape(
         return None
     falls = [energy - float(terms.sum()) for _, terms in found]
     best = int(np.argmax(falls))
-    if len(found) == 2 and abs(falls[0] - falls[1]) <= SAME_ENERGY * max(falls):
+    if len(found) == 2 and abs(falls[0] - falls[1]) <= SAME_FALL * max(falls):
         best = int(np.argmax([problem.preference(state, end) for end, _ in found]))
     state, terms = found[best]
     return _Taken(state, terms, 0.0, falls[best], 1.0)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, dot, norm, sum_by, unit
-from .incidence import normals, project
+from .incidence import evaluate, normals, project
 
 
 @dataclass(frozen=True)
@@ -210,3 +210,33 @@ def arc_reaches(arcs: Arcs, directions: FloatArray) -> FloatArray:
     # From the apex, not from a centre that may be far away.
     rise = np.where(is_between, circles.radii, 0.0) * 2 * np.sin(turn / 2) ** 2
     return np.where(is_between, dot(apex, directions) + rise, ends)
+
+
+def arc_distances(rows: FloatArray, arcs: Arcs) -> tuple[FloatArray, FloatArray]:
+    """Least and greatest signed distances (H,) of points of arcs from unit rows (H, 5).
+
+    Positive on the side to which N points; exact.
+
+    Notes
+    -----
+    On an arc the left side of a sphere's equation is ``(q0 + q1 τ + q2 τ²) / (1 + b² τ²)``, b
+    the bulge: three values tell it, and a quadratic equation where it is extreme.
+    """
+    points = arc_points(arcs, np.array([-1.0, 0.0, 1.0]))
+    before, middle, after = np.moveaxis(evaluate(rows[:, None], points), 1, 0)
+    square = _bulges(arcs) ** 2
+    q1 = (after - before) / 2 * (1 + square)
+    q2 = (after + before) / 2 * (1 + square) - middle
+    linear = 2 * (q2 - square * middle)
+    root = linear + np.copysign(np.sqrt(linear**2 + 4 * square * q1**2), linear)
+    near = np.divide(-2 * q1, root, out=np.zeros_like(q1), where=root != 0)
+    bend = 2 * square * q1
+    far = np.divide(root, bend, out=np.ones_like(q1), where=bend != 0)
+    found: list[FloatArray] = [before, after]
+    for place in (near, far):
+        t = np.clip(place, -1.0, 1.0)
+        found.append((middle + q1 * t + q2 * t**2) / (1 + square * t**2))
+    values = np.stack(found)
+    gradients = np.sqrt(np.maximum(1 + 4 * rows[:, 0] * values, 0.0))
+    distances = -2 * values / (1 + gradients)
+    return distances.min(axis=0), distances.max(axis=0)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, dot, norm, sum_by
+from ..tolerances import PARALLEL_PLANES
 
 
 @dataclass(frozen=True)
@@ -96,6 +97,28 @@ def corner_mismatch(annuli: Annuli) -> FloatArray:
     count = np.bincount(groups)[:, None]
     means = sum_by(groups, points.reshape(-1, 6), len(first)) / count
     return norm(points - means[groups].reshape(-1, 2, 3)).max(axis=1).reshape(-1, 2)
+
+
+def line_misses(annuli: Annuli) -> FloatArray:
+    """How far planes of annuli pass the best line in common at their nodes, (B, 2).
+
+    Of the lines along the node axis the one nearest to all planes there, in least squares;
+    distances at both ends, in model units. 0 where two planes meet, whatever their place.
+    """
+    nodes, planes = annuli.edge_vertices.ravel(), np.repeat(annuli.frames[:, 2], 2, axis=0)
+    _, first, groups = np.unique(nodes, return_index=True, return_inverse=True)
+    origins, axes = np.repeat(annuli.origins, 2, axis=0), annuli.node_axes.reshape(-1, 3)
+    # From the corner of one end per node, near which the line is.
+    tops = (annuli.corners[:, :, 0] + annuli.origins[:, None]).reshape(-1, 3)
+    shifts = tops[first][groups] - origins
+    across = planes - dot(planes, axes)[:, None] * axes
+    levels = -dot(planes, shifts)
+    squares = (across[:, :, None] * across[:, None]).reshape(-1, 9)
+    grams = sum_by(groups, squares, len(first)).reshape(-1, 3, 3)
+    pulls = sum_by(groups, across * levels[:, None], len(first))
+    inverse = np.linalg.pinv(grams, rcond=PARALLEL_PLANES, hermitian=True)
+    moves = np.einsum("nij,nj->ni", inverse, pulls)[groups]
+    return np.abs(dot(across, moves) - levels).reshape(-1, 2)
 
 
 def twist_angles(annuli: Annuli) -> FloatArray:

@@ -9,21 +9,22 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
+from ..arrays import BoolArray, FloatArray, dot
 from ..errors import InputError
-from ..meshes.mesh import Mesh, face_centroids, face_normals, local_corners, mean_edge_length
+from ..meshes.mesh import mean_edge_length
 from ..panels.cutting import flatten_nearly_plane
+from ..panels.edge_axes import EdgeMode
 from ..parts.findings import rejected_report
-from ..parts.records import RejectedPart, part_ids, reject_parts
+from ..parts.records import RejectedPart, reject_parts
 from ..reports import Report
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.incidence import evaluate, meet_lines, normals
 from ..spheres.minkowski import minkowski
-from ..spheres.rows import recenter
-from ..tolerances import BEAM_TILT, DEGENERATE
+from ..tolerances import BEAM_TILT
 from .annuli import Annuli, corner_mismatch, end_depths, twist_angles
 from .annulus_checks import NO_ANNULUS, inner_reasons, standing_reasons
-from .node_axes import SupportStructure, arc_planes, support_structure
+from .node_axes import support_structure
+from .outer_annuli import annuli_on_arcs, annuli_on_walls
 
 
 @dataclass(frozen=True)
@@ -94,7 +95,21 @@ def annulus_support(
     """
     _check_options(depth, kappa, max_tilt)
     sphere_mesh = flatten_nearly_plane(sphere_mesh)
-    annuli, is_real = _outer_annuli(sphere_mesh, support_structure(sphere_mesh))
+    annuli, is_real = annuli_on_arcs(sphere_mesh, support_structure(sphere_mesh))
+    return _completed(
+        annuli, is_real, mean_edge_length(sphere_mesh.mesh), depth, kappa, max_tilt
+    )
+
+
+def _completed(
+    annuli: Annuli,
+    is_real: BoolArray,
+    size: float,
+    depth: float | None,
+    kappa: float | None,
+    max_tilt: float,
+) -> AnnulusSupport:
+    """Annuli with inner arcs, of a depth or a power; those that cannot stand apart."""
     reasons = standing_reasons(annuli, is_real, max_tilt)
     stands = np.ones(annuli.n_annuli, bool)
     stands[list(reasons)] = False
@@ -104,7 +119,7 @@ def annulus_support(
     else:
         _check_kappa(float(kappa or 0), kappa_max)
         annuli = _with_power(annuli, float(kappa or 0), stands)
-    reasons = inner_reasons(annuli, mean_edge_length(sphere_mesh.mesh)) | reasons
+    reasons = inner_reasons(annuli, size) | reasons
     return AnnulusSupport(*reject_parts(annuli, reasons, NO_ANNULUS), kappa_max)
 
 
@@ -128,98 +143,32 @@ def _check_kappa(kappa: float, kappa_max: float) -> None:
         )
 
 
-def _edge_half_edges(mesh: Mesh) -> IntArray:
-    """First half-edge of every edge, those of the boundary included."""
-    twins = mesh.topology.twins
-    return np.flatnonzero((twins > np.arange(len(twins))) | (twins < 0))
+def annuli_in_planes(
+    sphere_mesh: SphereMesh,
+    edges: EdgeMode,
+    axes: FloatArray,
+    depth: float | None,
+    kappa: float | None,
+    max_tilt: float,
+) -> AnnulusSupport:
+    """Annuli in the planes in which panels are cut: on node axes, or upright.
 
-
-def _outer_annuli(
-    sphere_mesh: SphereMesh, structure: SupportStructure
-) -> tuple[Annuli, BoolArray]:
-    """Annuli with planes, outer circles and end lines; where the circles are real."""
-    mesh, topology = sphere_mesh.mesh, sphere_mesh.mesh.topology
-    first = _edge_half_edges(mesh)
-    twins = topology.twins[first]
-    is_interior = twins >= 0
-    starts = local_corners(mesh)
-    chords = (starts[topology.next_corners] - starts)[first]
-    middles = (starts + starts[topology.next_corners]) / 2
-    faces = np.stack([topology.corner_faces[first], topology.corner_faces[twins]], 1)
-    left = recenter(sphere_mesh.local_spheres[faces[:, 0]], middles[first])
-    right = recenter(sphere_mesh.local_spheres[faces[:, 1]], middles[twins])
-    right[~is_interior] = left[~is_interior]
-    vertices = np.stack([mesh.corners[first], mesh.corners[topology.next_corners[first]]], 1)
-    axes = structure.directions[vertices]
-
-    upright = left[:, 1:4] + right[:, 1:4]
-    planes = unit(np.cross(chords, upright))
-    shifts = np.zeros(len(first))
-    free = np.cross(axes.sum(axis=1), chords)
-    circles = arc_planes(sphere_mesh)
-    planes = np.where(norm(free)[:, None] > 0, unit(free), planes)
-    use = np.flatnonzero(is_interior)[circles.exists]
-    planes[use] = circles.normals[circles.exists]
-    shifts[use] = circles.offsets[circles.exists]
-    x = unit(chords - dot(chords, planes)[:, None] * planes)
-    side = np.where(dot(np.cross(planes, x), upright) < 0, -1.0, 1.0)
-    z, shifts = planes * side[:, None], shifts * side
-    feet = shifts[:, None] * z
-    outer, is_real = _great_spheres(recenter(left, feet), recenter(right, feet), z)
-
-    along = axes - dot(axes, z[:, None])[..., None] * z[:, None]
-    directions = unit(along)
-    ends = np.stack([-chords / 2, chords / 2], 1)
-    ends = ends - dot(ends, z[:, None])[..., None] * z[:, None]
-    steps, meets = meet_lines(
-        np.repeat(outer, 2, axis=0), ends.reshape(-1, 3), directions.reshape(-1, 3)
-    )
-    tops = ends + steps.reshape(-1, 2)[..., None] * directions
-    origins = face_centroids(mesh)[faces[:, 0]] + middles[first] + feet
-    across = face_normals(mesh)[faces[:, 0]] + face_normals(mesh)[faces[:, 1]]
-    across = np.where(is_interior[:, None], across, left[:, 1:4])
-    edge_faces = np.where(is_interior[:, None], faces, faces * [1, 0] - [0, 1])
-    annuli = Annuli(
-        part_ids("B", len(first)), np.arange(len(first)), vertices, edge_faces,
-        _panel_ids_beside(edge_faces, mesh.n_faces), origins,
-        np.stack([x, np.cross(z, x), z], 1), outer, outer,
-        np.stack([tops, tops], 2), directions, axes,
-        _angle_of_planes(z, np.cross(chords, across)), 0.0, 0.0,
-    )  # fmt: skip
-    return annuli, is_real & meets.reshape(-1, 2).all(axis=1)
-
-
-def _panel_ids_beside(
-    edge_faces: IntArray, n_faces: int
-) -> tuple[tuple[str | None, str | None], ...]:
-    """Names of the panels beside edges."""
-    names = (*part_ids("P", n_faces), None)  # -1, beyond the boundary, is the last
-    sides: list[list[int]] = edge_faces.tolist()
-    return tuple((names[left], names[right]) for left, right in sides)
-
-
-def _great_spheres(
-    left: FloatArray, right: FloatArray, plane_normals: FloatArray
-) -> tuple[FloatArray, BoolArray]:
-    """Unit rows orthogonal to planes through the origin, through the circles of rows there.
-
-    Of the two spheres, that which stands more upright on the plane tells the circle better.
+    Parameters
+    ----------
+    edges : {"bisector", "axis"}
+        Planes of the annuli, which are the walls of the panels, see `cutting_planes`.
+    axes : (V, 2, 3) float array
+        Two points of each node axis, in any order.
+    depth, kappa : float or None
+        As in `annulus_support`.
+    max_tilt : float
+        As in `annulus_support`.
     """
-    slopes = [dot(rows[:, 1:4], plane_normals) for rows in (left, right)]
-    steeper = np.abs(slopes[1]) < np.abs(slopes[0])
-    rows = np.where(steeper[:, None], right, left)
-    slope = np.where(steeper, slopes[1], slopes[0])
-    great = rows.copy()
-    great[:, 1:4] -= slope[:, None] * plane_normals
-    square = minkowski(great, great)
-    is_real = square > DEGENERATE
-    return great / np.sqrt(np.where(is_real, square, 1.0))[:, None], is_real
-
-
-def _angle_of_planes(first: FloatArray, second: FloatArray) -> FloatArray:
-    a, b = unit(first), unit(second)
-    angles = 2 * np.arctan2(norm(a - b), norm(a + b))
-    return np.minimum(angles, np.pi - angles)
+    _check_options(depth, kappa, max_tilt)
+    sphere_mesh = flatten_nearly_plane(sphere_mesh)
+    annuli, is_real = annuli_on_walls(sphere_mesh, edges, axes)
+    size = mean_edge_length(sphere_mesh.mesh)
+    return _completed(annuli, is_real, size, depth, kappa, max_tilt)
 
 
 def _largest_kappa(annuli: Annuli, stands: BoolArray) -> float:

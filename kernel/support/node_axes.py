@@ -26,6 +26,7 @@ from ..tolerances import (
     AXIS_LEAN,
     MIRROR_LEAST,
     MIRROR_REACH,
+    NODE_LINE,
     NODE_TORSION,
     PARALLEL_PLANES,
     SAME_PLANE,
@@ -68,6 +69,9 @@ class SupportStructure:
         Unit normals of the spheres at the vertices, averaged over the faces.
     torsion : (V,) float array
         Largest angle between an arc plane and the axis, in radians.
+    line_miss : (V,) float array
+        Distance of the farthest arc plane from the line along the axis that is nearest to all
+        of them, in model units: 0 where they have a line in common.
     mirror_miss : (V,) float array
         Distance of the mirror image from the farthest of its spheres, in model units; NaN
         where it is at infinity.
@@ -83,6 +87,7 @@ class SupportStructure:
     directions: FloatArray
     normals: FloatArray
     torsion: FloatArray
+    line_miss: FloatArray
     mirror_miss: FloatArray
     coplanarity: FloatArray
     rank: FloatArray
@@ -159,13 +164,22 @@ def support_structure(sphere_mesh: SphereMesh) -> SupportStructure:
         mesh, mesh.topology.edge_vertices[planes.exists], planes.normals[planes.exists],
         vertex_normals,
     )  # fmt: skip
+    line_miss = _line_miss(sphere_mesh.mesh, planes, directions)
     reach, has_mirror, miss = _mirror(rows, mesh.corners, directions)
     steps = np.where(has_mirror, reach, 1.0)[:, None] * directions * size
     axes = np.stack([mesh.vertices, mesh.vertices + steps], 1)
     coplanarity = _fourth_value(rows[:, :4], mesh.corners, mesh.n_vertices)
     rank = _fourth_value(rows, mesh.corners, mesh.n_vertices)
     return SupportStructure(
-        axes, directions, vertex_normals, torsion, miss * size, coplanarity, rank, has_mirror
+        axes,
+        directions,
+        vertex_normals,
+        torsion,
+        line_miss,
+        miss * size,
+        coplanarity,
+        rank,
+        has_mirror,
     )
 
 
@@ -190,6 +204,27 @@ def _axes(
     sines = np.abs(dot(around, result[nodes]))
     np.maximum.at(torsion, nodes, np.arcsin(np.minimum(sines, 1.0)))
     return result, torsion
+
+
+def _line_miss(mesh: Mesh, planes: ArcPlanes, directions: FloatArray) -> FloatArray:
+    """Distances (V,) of the farthest arc planes from the best lines along the axes."""
+    first = mesh.topology.edge_corners[planes.exists]
+    starts = local_corners(mesh)
+    chords = (starts[mesh.topology.next_corners] - starts)[first]
+    normals, offsets = planes.normals[planes.exists], planes.offsets[planes.exists]
+    rises = dot(chords, normals) / 2
+    nodes = mesh.topology.edge_vertices[planes.exists].T.ravel()
+    levels = np.concatenate([-rises - offsets, rises - offsets])
+    around = np.concatenate([normals, normals])
+    around = around - dot(around, directions[nodes])[:, None] * directions[nodes]
+    result = np.zeros(mesh.n_vertices)
+    for vertices, ids in batches_by_count(nodes, mesh.n_vertices):
+        # The least move of the vertex across its axis, to where planes are nearest on average.
+        inverse = np.linalg.pinv(around[ids], rcond=PARALLEL_PLANES)
+        moves = -np.einsum("vik,vk->vi", inverse, levels[ids])
+        misses = levels[ids] + np.einsum("vki,vi->vk", around[ids], moves)
+        result[vertices] = np.abs(misses).max(axis=1)
+    return result
 
 
 def _mirror(
@@ -219,8 +254,11 @@ def _fourth_value(rows: FloatArray, corners: IntArray, n_vertices: int) -> Float
     return result
 
 
-def node_reasons(structure: SupportStructure) -> dict[int, str]:
-    """Why nodes are not valid, by vertex: of several reasons the first."""
+def node_reasons(structure: SupportStructure, size: float) -> dict[int, str]:
+    """Why nodes are not valid, by vertex: of several reasons the first.
+
+    The size is the mean edge of the mesh.
+    """
     reasons: dict[int, str] = {}
     is_unused = ~structure.directions.any(axis=1)
     for vertex in np.flatnonzero(is_unused).tolist():
@@ -229,6 +267,13 @@ def node_reasons(structure: SupportStructure) -> dict[int, str]:
     for vertex in np.flatnonzero(structure.torsion > NODE_TORSION).tolist():
         reasons.setdefault(
             vertex, f"the beams' planes miss the axis by up to {torsion[vertex]:.3g} degrees"
+        )
+    miss = structure.line_miss / size
+    for vertex in np.flatnonzero(miss > NODE_LINE).tolist():
+        reasons.setdefault(
+            vertex,
+            f"the beams' planes miss a common line by {structure.line_miss[vertex]:.3g}, "
+            f"{100 * miss[vertex]:.2g} % of an edge",
         )
     lean = axis_lean(structure)
     for vertex in np.flatnonzero(lean > AXIS_LEAN).tolist():
@@ -255,6 +300,9 @@ class NodesReport(Report):
     ----------
     torsion_deg : dict
         ``mean`` and ``max`` over the interior vertices, ``boundary_max``.
+    line_miss : float
+        Largest distance of a beam's plane from the line that the beams of a node have in
+        common, in mean edges, over all nodes.
     mirror_miss : float
         Largest distance of a mirror point from its spheres, in mean edges, over the interior
         nodes of at least three faces.
@@ -269,6 +317,7 @@ class NodesReport(Report):
     """
 
     torsion_deg: dict[str, float]
+    line_miss: float
     mirror_miss: float
     beam_tilt_deg: dict[str, float]
     axes_without_mirror: int
@@ -285,14 +334,16 @@ def support_report(sphere_mesh: SphereMesh, structure: SupportStructure) -> Node
     enough = np.bincount(sphere_mesh.mesh.corners, minlength=len(inside)) >= 3
     miss = np.nan_to_num(structure.mirror_miss[inside & enough])
     tilt = np.degrees(beam_tilt(sphere_mesh))
-    reasons = node_reasons(structure)
+    size = mean_edge_length(sphere_mesh.mesh)
+    reasons = node_reasons(structure, size)
     return NodesReport(
         torsion_deg={
             "mean": float(degrees[inside].mean()) if inside.any() else 0.0,
             "max": float(degrees[inside].max(initial=0.0)),
             "boundary_max": float(degrees[~inside].max(initial=0.0)),
         },
-        mirror_miss=float(miss.max(initial=0.0)) / mean_edge_length(sphere_mesh.mesh),
+        line_miss=float(structure.line_miss.max(initial=0.0)) / size,
+        mirror_miss=float(miss.max(initial=0.0)) / size,
         beam_tilt_deg={
             "p95": float(np.percentile(tilt, 95)) if len(tilt) else 0.0,
             "max": float(tilt.max(initial=0.0)),

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray, norm, unit
 from ..errors import InputError
+from ..meshes.isotropic_remeshing import MAX_TRIANGLES
 from ..meshes.mesh import Mesh
 
 SampleShape: TypeAlias = Literal["torus", "annulus", "hypar", "bump", "ellipsoid", "waves"]
@@ -61,7 +62,8 @@ def triangulated_surface(
     Raises
     ------
     InputError
-        If the shape is unknown, or the edge length not positive or too large for the shape.
+        If the shape is unknown, or the edge length not positive, too large for the shape or so
+        small that there would be too many triangles.
     """
     if shape not in SHAPES:
         raise InputError(f"shape must be one of {', '.join(SHAPES)}, not {shape!r}")
@@ -91,12 +93,17 @@ def grid_counts(shape: ParametricShape, edge_length: float) -> tuple[int, int]:
     Raises
     ------
     InputError
-        If the edge length is too large.
+        If the edge length is too large, or so small that there would be too many triangles.
     """
     axes = [np.linspace(low, high, 60) for low, high in zip(shape.low, shape.high, strict=True)]
     patch = shape.patch(*np.meshgrid(*axes, indexing="ij"))
     spans = np.subtract(shape.high, shape.low)
     lengths = norm(patch.along_u).mean() * spans[0], norm(patch.along_v).mean() * spans[1]
+    if 2 * lengths[0] * lengths[1] > MAX_TRIANGLES * edge_length**2:
+        raise InputError(
+            f"edges of {edge_length:g} would make more than {MAX_TRIANGLES} triangles: choose "
+            "longer ones"
+        )
     counts = [round(float(length) / edge_length) for length in lengths]
     if min(counts) < 3:
         raise InputError(

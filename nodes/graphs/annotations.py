@@ -125,6 +125,8 @@ def members(hint: Hint, facts: ArrayFacts | None = None) -> tuple[Member, ...]:
     tuple of Member
         One, or those of a union.
     """
+    if type(hint) is type:  # by far the most: one that stands for itself
+        return (Member(hint, hint, facts),)
     origin = get_origin(hint)
     if isinstance(hint, TypeVar):
         inside = hint.__constraints__ or (hint.__bound__ or Any,)

@@ -179,7 +179,7 @@ def _may_be_choice(target: Member, source: Member) -> bool:
 
 
 def _is_array(target: Member, value: Value) -> bool:
-    return _is_numeric(value) and (target.facts is None or _has_shape(value, target.facts))
+    return _is_numeric(value) and _has_shape(value, target.facts)
 
 
 def _is_numeric(value: Value) -> bool:
@@ -190,13 +190,13 @@ def _is_numeric(value: Value) -> bool:
     return isinstance(value, np.ndarray)
 
 
-def _has_shape(value: Value, facts: ArrayFacts) -> bool:
-    """Whether numbers agree; letters stand for any."""
+def _has_shape(value: Value, facts: ArrayFacts | None) -> bool:
+    """Whether it has a shape, and its numbers agree; letters stand for any."""
     try:
         shape = np.shape(value)
     except ValueError:  # rows of different lengths
         return False
-    if shape == (0,):  # the empty list
+    if facts is None or shape == (0,):  # the empty list
         return True
     return len(shape) == len(facts.shape) and all(
         isinstance(wanted, str) or count == wanted

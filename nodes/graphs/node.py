@@ -3,34 +3,25 @@
 import importlib
 import inspect
 import pkgutil
-import re
 import warnings
 from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
-from functools import cache
-from types import UnionType
+from functools import cache, cached_property
 from typing import (
-    Annotated,
     Any,
     TypeVar,
-    Union,
-    get_args,
-    get_origin,
     get_type_hints,
     overload,
 )
 
-from .annotations import Hint, Value
-from .cache import digest
+from .annotations import Hint
 from .errors import GraphError, nearest
-from .ports import Port, check_value
+from .ports import Port
+from .signatures import input_ports, is_named_tuple, output_ports, split_hint
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-
-# A step has attributes of its own; its outputs are found beside them.
-RESERVED_OUTPUTS = ("graph", "inputs", "name", "node")
 
 
 class NodeWarning(UserWarning):
@@ -58,6 +49,10 @@ class Node:
     result_type : type
     edition : int
         How often the name was defined anew in this process, as happens in notebooks.
+    inner : object
+        The graph of a node that is one; None for functions.
+    is_known : bool
+        Whether there is such a node; what a graph file names may have gone.
     """
 
     name: str
@@ -70,15 +65,35 @@ class Node:
     outputs: Mapping[str, Port] = field(repr=False)
     result_type: Hint = field(repr=False)
     edition: int = 0
+    inner: Any = field(default=None, repr=False)
+    is_known: bool = True
 
-    @property
+    @cached_property
     def has_fields(self) -> bool:  # numpydoc ignore=RT01
         """Whether the result is a NamedTuple, its fields the outputs."""
-        return _is_named_tuple(self.result_type)
+        return is_named_tuple(self.result_type)
+
+    @cached_property
+    def file_inputs(self) -> tuple[Port, ...]:  # numpydoc ignore=RT01
+        """The inputs that are paths of files."""
+        return tuple(port for port in self.inputs.values() if port.reads or port.writes)
+
+    @cached_property
+    def is_writer(self) -> bool:  # numpydoc ignore=RT01
+        """Whether it writes files."""
+        return any(port.writes for port in self.file_inputs)
+
+    @cached_property
+    def label(self) -> str:  # numpydoc ignore=RT01
+        """Name and version."""
+        return f"{self.name} {self.version}"
 
 
 REGISTRY: dict[str, Node] = {}
 
+Report = Callable[[float, str], None]
+
+_report: ContextVar[Report | None] = ContextVar("report", default=None)
 _messages: ContextVar[list[str] | None] = ContextVar("messages", default=None)
 _graph_text: ContextVar[Callable[[], str] | None] = ContextVar("graph_text", default=None)
 
@@ -208,6 +223,42 @@ def warn(text: str) -> None:
     warnings.warn(text, NodeWarning, stacklevel=2)
 
 
+def progress(share: float, text: str = "") -> None:
+    """Say how far the node that is running has come; a run that was called off ends here.
+
+    Parameters
+    ----------
+    share : float
+        From 0 to 1.
+    text : str
+        What it does, in a few words.
+    """
+    report = _report.get()
+    if report is not None:
+        report(share, text)
+
+
+@contextmanager
+def reporting_to(report: Report) -> Generator[None]:
+    """Let nodes say how far they have come.
+
+    Parameters
+    ----------
+    report : callable
+        Given the share and a text, from the thread of the node.
+
+    Yields
+    ------
+    None
+        While the block runs, `progress` calls it.
+    """
+    token = _report.set(report)
+    try:
+        yield
+    finally:
+        _report.reset(token)
+
+
 def running_graph() -> str:
     """The graph that is running, for files that carry how they were made.
 
@@ -286,92 +337,7 @@ def _describe(function: Callable[..., Any], version: str) -> Node:
         category=_category(function.__module__),
         summary=doc.partition("\n")[0],
         help=doc,
-        inputs=_inputs(function, hints, _entries(doc, "Parameters", "Other Parameters")),
-        outputs=_outputs(name, result, _entries(doc, "Returns")),
-        result_type=_split(result)[0],
+        inputs=input_ports(function, hints, doc),
+        outputs=output_ports(name, result, doc),
+        result_type=split_hint(result)[0],
     )
-
-
-def _inputs(
-    function: Callable[..., Any], hints: Mapping[str, Any], texts: Mapping[str, str]
-) -> dict[str, Port]:
-    ports: dict[str, Port] = {}
-    for name, parameter in inspect.signature(function).parameters.items():
-        where = f"{function.__name__}.{name}"
-        if parameter.kind not in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY):
-            raise GraphError(f"{where}: an input must be a plain argument, not {parameter}")
-        if name not in hints:
-            raise GraphError(f"{where}: annotate the input with its type")
-        kind, facts = _split(hints[name])
-        port = replace(
-            facts,
-            name=name,
-            type=kind,
-            default=parameter.default,
-            help=facts.help or texts.get(name, ""),
-        )
-        if parameter.default is not parameter.empty:
-            check_value(port, parameter.default, f"default of {where}")
-            _check_content(parameter.default, where)
-        ports[name] = port
-    return ports
-
-
-def _check_content(default: Value, where: str) -> None:
-    try:
-        digest(default)
-    except TypeError as error:
-        raise GraphError(f"default of {where}: {error}") from error
-
-
-def _outputs(node_name: str, result: Hint, texts: Mapping[str, str]) -> dict[str, Port]:
-    kind, facts = _split(result)
-    if not _is_named_tuple(kind):
-        text = next(iter(texts.values()), "")
-        port = replace(facts, name=facts.name or "result", type=kind, help=facts.help or text)
-        return {port.name: port}
-    own = _entries(inspect.getdoc(kind) or "", "Parameters", "Attributes")
-    ports: dict[str, Port] = {}
-    for name, hint in get_type_hints(kind, include_extras=True).items():
-        if name in RESERVED_OUTPUTS:
-            raise GraphError(f"node {node_name}: an output cannot be called {name!r}")
-        kind, facts = _split(hint)
-        text = facts.help or texts.get(name) or own.get(name, "")
-        ports[name] = replace(facts, name=name, type=kind, help=text)
-    return ports
-
-
-def _split(hint: Hint) -> tuple[Hint, Port]:
-    """An annotation as its type and the facts of its port, also those of an alternative."""
-    if get_origin(hint) is Annotated:
-        kind, *facts = get_args(hint)
-        others = [fact for fact in facts if not isinstance(fact, Port)]
-        kind = Annotated[(kind, *others)] if others else kind
-    else:
-        kind = hint
-        options = get_args(hint) if get_origin(hint) in (Union, UnionType) else ()
-        facts = [fact for option in options for fact in get_args(option)[1:]]
-    return kind, next((fact for fact in facts if isinstance(fact, Port)), Port())
-
-
-def _is_named_tuple(kind: Hint) -> bool:
-    return isinstance(kind, type) and hasattr(kind, "_fields") and issubclass(kind, tuple)
-
-
-def _entries(doc: str, *titles: str) -> dict[str, str]:
-    """Name and text of each entry in sections of a numpydoc docstring."""
-    entries: dict[str, str] = {}
-    names: list[str] = []
-    inside = False
-    lines = doc.splitlines()
-    for line, below in zip(lines, [*lines, ""][1:], strict=True):
-        if re.fullmatch("-{3,}", below):
-            inside = line.strip() in titles
-        elif not inside or not line.strip() or re.fullmatch("-{3,}", line):
-            continue
-        elif not line[0].isspace():
-            names = [name.strip() for name in line.partition(" : ")[0].split(",")]
-            entries.update(dict.fromkeys(names, ""))
-        else:
-            entries.update({name: f"{entries[name]} {line.strip()}".strip() for name in names})
-    return entries

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .annotations import Value, type_name
-from .cache import digest
 from .errors import GraphError
 from .kinds import accepts, is_bool, record_fault
+from .stores.digests import digest
 
 REQUIRED = inspect.Parameter.empty
 UNITS = ("mm", "cm", "m", "in", "ft")

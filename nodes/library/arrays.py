@@ -11,6 +11,8 @@ from ..graphs.ports import Port
 
 _DEGREES = Port(unit="deg")
 
+CreaseAngle: TypeAlias = Annotated[float, Port(unit="deg", min=0, max=180)]
+
 VertexSpheres: TypeAlias = Annotated[FloatArray, ArrayFacts("spheres of vertices", ("V", 5))]
 VertexPoints: TypeAlias = Annotated[FloatArray, ArrayFacts("points of vertices", ("V", 3))]
 VertexNormals: TypeAlias = Annotated[FloatArray, ArrayFacts("normals of vertices", ("V", 3))]

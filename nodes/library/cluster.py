@@ -7,6 +7,7 @@ import numpy as np
 
 from ...fabrication.units import millimeters_per
 from ...kernel.analysis import angle_summary
+from ...kernel.meshes.creases import crease_edges
 from ...kernel.optimization import radius_clustering
 from ...kernel.panels import congruent
 from ...kernel.panels import mould_blanks as blanks
@@ -16,7 +17,7 @@ from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.tolerances import COMMON_VERTEX
 from ..graphs.node import node, warn
 from ..graphs.ports import Length, Port, Units
-from .arrays import FaceLabels, MouldRadii
+from .arrays import CreaseAngle, FaceLabels, MouldRadii
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +31,8 @@ class MouldsReport(Report):
         None for a flat mould.
     panels_per_mould : list of int
     angles_deg, unrelaxed_angles_deg : dict
-        ``mean`` and ``max`` in the end, and before vertices moved.
+        ``mean`` and ``max`` in the end, and before vertices moved, over the edges that are no
+        crease.
     reassigned : list of int
         Faces that are too large for the mould nearest to them.
     relaxed : bool
@@ -57,8 +59,8 @@ class Clusters(NamedTuple):
     report: MouldsReport
 
 
-@node(version="2")
-def cluster_radii(
+@node(version="3")
+def cluster_radii(  # noqa: PLR0913, PLR0917 - a node has an input per choice
     sphere_mesh: SphereMesh,
     k: Annotated[int, Port(min=1)],
     relax: bool = True,  # noqa: FBT001, FBT002 - a toggle on the canvas
@@ -67,6 +69,7 @@ def cluster_radii(
     support: Annotated[float, Port(min=0)] = 0.0,
     same_sagitta: Annotated[float, Port(unit="mm", min=0)] = 0.1,
     units: Units = "m",
+    crease: CreaseAngle = 40.0,
 ) -> Clusters:
     """Give all panels at most k radii.
 
@@ -88,6 +91,9 @@ def cluster_radii(
         differ by less are one, and panels that bulge by less are flat.
     units : {"mm", "cm", "m", "in", "ft"}
         Model units.
+    crease : float
+        Edges at which the flat faces turn by more stay sharp, and count in no mean; 180 for no
+        creases.
 
     Returns
     -------
@@ -112,17 +118,19 @@ def cluster_radii(
         sphere_mesh, k, same_sagitta / millimeters_per(units)
     )
     result, move = clustered, 0.0
-    before = angle_summary(clustered)
+    is_smooth = ~crease_edges(sphere_mesh.mesh, np.radians(crease))
+    before = angle_summary(clustered, is_smooth)
     if relax and tolerance > 0:
         relaxed, run = radius_clustering.relax_moulds(
-            clustered, clusters, tolerance, regularity=regularity, support=support
-        )
+            clustered, clusters, tolerance, regularity=regularity, support=support,
+            edge_weights=is_smooth.astype(np.float64),
+        )  # fmt: skip
         if run.vertex_miss > COMMON_VERTEX:
             warn(
                 f"vertices are not moved: within {tolerance:g} mean edges they do not reach "
                 "the spheres of the moulds; allow more tolerance"
             )
-        elif angle_summary(relaxed)["mean"] >= before["mean"]:
+        elif angle_summary(relaxed, is_smooth)["mean"] >= before["mean"]:
             warn("vertices are not moved: neighbours would meet no more smoothly")
         else:
             result, move = relaxed, run.vertex_move
@@ -139,7 +147,7 @@ def cluster_radii(
         count=len(clusters.radii),
         radii=[float(r) if np.isfinite(r) else None for r in clusters.radii],
         panels_per_mould=clusters.counts.tolist(),
-        angles_deg=angle_summary(result),
+        angles_deg=angle_summary(result, is_smooth),
         unrelaxed_angles_deg=before,
         reassigned=reassigned,
         relaxed=result is not clustered,

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Annotated, Literal, NamedTuple
 
+import numpy as np
+
 from ...fabrication.drawings import beams as dxf
 from ...fabrication.drawings import moulds as mould_drawings
 from ...fabrication.files import check_suffix, replacing
@@ -14,14 +16,14 @@ from ...kernel.beams.beams import Beams
 from ...kernel.errors import name_ids
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.panels import cutting
-from ...kernel.panels.panels import Panels
+from ...kernel.panels.panels import Panels, mark_creases
 from ...kernel.parts.findings import rejected_report
 from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...viewer.render import render_image
 from ..graphs.node import node, running_graph, warn
 from ..graphs.ports import Length, Port, Units, WritePath
-from .arrays import FaceLabels
+from .arrays import CreaseAngle, FaceLabels, VertexAxes
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,9 +33,9 @@ class CutReport(Report):
     Attributes
     ----------
     edge_gap : dict
-        Between the arcs of neighbouring panels, at the ends and in the middle, before the
-        joint: ``max`` and ``mean`` in model units, ``relative_to_edge``, over so many
-        ``edges``.
+        Between the arcs of neighbouring panels, before the joint: ``max`` and ``mean`` in model
+        units, ``relative_to_edge``, ``middle_p95`` and ``middle_max`` in the middle of edges,
+        ``corner_p95`` and ``corner_max`` at their ends, over so many ``edges``.
     thickness : dict
         ``min``, ``mean`` and ``max``.
     written : int
@@ -55,24 +57,27 @@ class PanelSet(NamedTuple):
 
 
 @node
-def panels(
+def panels(  # noqa: PLR0913, PLR0917 - a node has an input per choice
     sphere_mesh: SphereMesh,
-    edges: Literal["bisector", "intersection"] = "bisector",
+    edges: Literal["bisector", "intersection", "axis"] = "bisector",
     thickness: Length = 0.0,
     joint_gap: Length = 0.0,
     labels: FaceLabels | None = None,
     side: Literal["inward", "outward", "centred"] = "inward",
     layer: Literal["offset", "power"] = "offset",
+    axes: VertexAxes | None = None,
+    crease: CreaseAngle = 40.0,
 ) -> PanelSet:
     """Cut a panel out of the sphere of every face.
 
     Parameters
     ----------
     sphere_mesh : SphereMesh
-    edges : {"bisector", "intersection"}
+    edges : {"bisector", "intersection", "axis"}
         Cut along each edge by the plane that bisects the two faces (walls stand upright, the
-        two arcs of an edge differ by a small gap), or by the plane in which the two spheres
-        meet (watertight, as tilted as the spheres left it).
+        two arcs of an edge differ by a small gap), by the plane in which the two spheres meet
+        (watertight, as tilted as they left it), or by the plane of its beam, through its two
+        vertices and node axes (these are needed then).
     thickness : float
         Thickness in model units; 0 for surfaces.
     joint_gap : float
@@ -80,12 +85,15 @@ def panels(
     labels : (F,) int array, optional
         Mould of each face.
     side : {"inward", "outward", "centred"}
-        Where the thickness goes from the spheres: against the face normals, along them, or
-        half each way.
+        Where the thickness goes: against the face normals, along them, or half each way.
     layer : {"offset", "power"}
         The same thickness everywhere; or the same difference of squared radii, so that
         neighbours which bulge to one side meet in one plane on both of their faces: the
         thickness is then met on average, sharp panels are thicker and planes have none.
+    axes : (V, 2, 3) float array, optional
+        Two points of each node axis, as `axis_support` gives them: for edges cut by axes.
+    crease : float
+        Edges at which flat faces turn by more have their own layer and mark; 180 for none.
 
     Returns
     -------
@@ -102,8 +110,9 @@ def panels(
     (72, [])
     """
     made, rejected = cutting.cut_panels(
-        sphere_mesh, edges, thickness, joint_gap, labels, side, layer
+        sphere_mesh, edges, thickness, joint_gap, labels, side, layer, axes
     )
+    made = mark_creases(made, sphere_mesh.mesh, float(np.radians(crease)))
     if rejected:
         warn(
             f"{len(rejected)} panels cannot be made: faces "
@@ -111,7 +120,7 @@ def panels(
             f"({rejected[0].id}: {rejected[0].reason})"
         )
     report = CutReport(
-        edge_gap=cutting.gap_report(sphere_mesh, edges, made.face_ids),
+        edge_gap=cutting.gap_report(sphere_mesh, edges, made.face_ids, axes),
         thickness=cutting.thickness_report(made),
         written=made.n_panels,
         rejected=rejected_report(rejected),

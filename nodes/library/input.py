@@ -28,7 +28,7 @@ class SampledSurface(NamedTuple):
     normals: VertexNormals
 
 
-@node
+@node(version="2")
 def read_mesh(
     path: ReadPath,
     layer: str = "",

@@ -5,28 +5,23 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 
-from ...kernel.analysis import angle_summary
+from ...kernel.arrays import FloatArray
 from ...kernel.errors import ConvergenceError, InputError, name_ids
+from ...kernel.meshes.creases import crease_edges
 from ...kernel.meshes.mesh import Mesh, mean_edge_length
 from ...kernel.optimization import angle_minimization, strips
 from ...kernel.optimization import whole_energy as optimization
 from ...kernel.optimization.comparison import Smoothness
 from ...kernel.optimization.energies.table import EnergyWeights
-from ...kernel.reports import Report
-from ...kernel.sphere_meshes.fit import face_planes
 from ...kernel.sphere_meshes.planarity_circularity import circularity
-from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
-from ...kernel.tolerances import CIRCULAR, LITTLE_GAIN, VERTEX_MISS
+from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
+from ...kernel.tolerances import CIRCULAR, OPENING, VERTEX_MISS
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
-from .arrays import EdgeWeights, FaceRadii, FaceVectors, Vector
+from .arrays import CreaseAngle, EdgeWeights, FaceRadii, FaceVectors, Vector
+from .outcomes import OptimumReport, outcome_of, warn_of_losses, warn_of_support
 
 Weight = Annotated[float, Port(min=0)]
-
-
-@dataclass(frozen=True, eq=False)
-class OptimumReport(Report):
-    """How an optimum was reached: the kinds of report that `panel_report` starts from."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,14 +32,21 @@ class AnglesReport(OptimumReport):
     ----------
     converged : bool
     iterations : list of int
-        Of the two stages.
+        Of the two stages; with a target angle of both, and of the descent to it.
     energies : list of float
     angles_deg : dict
-        ``planar`` and ``spherical``: ``mean`` and ``max`` of the planes and of the spheres.
+        ``planar`` and ``spherical``: ``mean`` and ``max`` of the planes and of the spheres,
+        over the edges that are no crease.
     vertex_error : dict
         ``max`` in model units and ``relative_to_edge``, the mean edge.
+    creases : dict
+        ``angle_deg`` from which on edges stay sharp, the ``edges`` that do, their ``count``,
+        and ``mean_deg`` and ``max_deg`` over them, as built.
     circle_miss : float
         How far vertices lie from the circles of their faces, in mean edges.
+    taken_back : int
+        Faces whose panels are flatter than those of the least energy, because these would be
+        rougher than flat ones in the mean.
     """
 
     converged: bool
@@ -52,7 +54,9 @@ class AnglesReport(OptimumReport):
     energies: list[float]
     angles_deg: dict[str, dict[str, float]]
     vertex_error: dict[str, float]
+    creases: dict[str, Any]
     circle_miss: float
+    taken_back: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,11 +78,10 @@ class EnergyReport(OptimumReport):
     lowest_eigenvalue : float or None
         Of the second derivatives at rest; not below -1e-8 at a minimum.
     kept : str
-        ``optimum``, or what was smoother on average: ``planes`` or the spheres at the
-        ``start``.
+        ``optimum``, or ``planes`` or the spheres at the ``start`` where these are smoother.
     optimum_angles_deg, start_angles_deg : dict
         ``mean`` and ``max`` of the optimum, kept or not, and of the spheres at the start.
-    angles_deg, vertex_error : dict
+    angles_deg, vertex_error, creases : dict
         As in `AnglesReport`.
     """
 
@@ -93,6 +96,7 @@ class EnergyReport(OptimumReport):
     start_angles_deg: dict[str, float]
     angles_deg: dict[str, dict[str, float]]
     vertex_error: dict[str, float]
+    creases: dict[str, Any]
 
 
 class AnglesOptimum(NamedTuple):
@@ -109,12 +113,14 @@ class EnergyOptimum(NamedTuple):
     report: EnergyReport
 
 
-@node
+@node(version="2")
 def minimize_angles(
     sphere_mesh: SphereMesh,
     target_angle: Annotated[float, Port(unit="deg", min=0, max=90)] = 0.0,
     edge_weights: EdgeWeights | None = None,
     max_miss: Annotated[float | None, Port(min=0)] = None,
+    crease: CreaseAngle = 40.0,
+    max_opening: Annotated[float | None, Port(unit="deg", min=0, max=180)] = None,
 ) -> AnglesOptimum:
     """Choose the spheres through the faces' circles that meet their neighbours most smoothly.
 
@@ -125,17 +131,25 @@ def minimize_angles(
     target_angle : float
         Angle at which neighbours shall meet.
     edge_weights : (E,) float array, optional
-        Weight of each interior edge; 1 for all by default.
+        Weight of each interior edge; 1 for all by default. Faces without a weighted edge stay
+        flat.
     max_miss : float, optional
         How far a vertex may lie from the circle of its face, in mean edges; farther off it is
         an error, by default a warning.
+    crease : float
+        Edges at which the flat faces turn by more stay sharp, and count in no mean; 180 for no
+        creases.
+    max_opening : float, optional
+        Largest half opening of the caps, 180 for no bound. By default 60; with a target angle
+        there is none, because the target says how far panels bulge.
 
     Returns
     -------
     sphere_mesh : SphereMesh
-        The optimum. Faces whose vertices lie on no circle keep their best-fit circle.
+        The optimum, in the mean never rougher than flat panels. Faces whose vertices lie on no
+        circle keep their best-fit circle.
     report : AnglesReport
-        The angles before and after, and how far vertices lie off.
+        The angles before and after, the creases, and how far vertices lie off.
 
     Examples
     --------
@@ -144,8 +158,14 @@ def minimize_angles(
     >>> {kind: round(found["mean"], 1) for kind, found in report["angles_deg"].items()}
     {'planar': 24.9, 'spherical': 15.6}
     """
+    if max_opening is None:
+        max_opening = 180.0 if target_angle > 0 else np.degrees(OPENING)
     result, run = angle_minimization.minimize_angles(
-        sphere_mesh, np.radians(target_angle), edge_weights
+        sphere_mesh,
+        np.radians(target_angle),
+        edge_weights,
+        np.radians(crease),
+        np.radians(max_opening),
     )
     if not run.converged:
         raise ConvergenceError(
@@ -160,23 +180,36 @@ def minimize_angles(
             f"{run.circle_miss:.3g} mean edges and {max_miss:g} is allowed; give a tolerance "
             "of about that size"
         )
-    outcome = _outcome(result, sphere_mesh.mesh)
-    relative = outcome["vertex_error"]["relative_to_edge"]
+    found = outcome_of(result, sphere_mesh.mesh, run.is_crease, crease)
+    relative = found["vertex_error"]["relative_to_edge"]
     if relative > VERTEX_MISS:
         warn(
             f"vertices miss their spheres by up to {relative:.3g} mean edges: the faces are "
             "not circular; panels are exact, but their corners are off the mesh by as much"
         )
+    taken_back = int(run.is_taken_back.sum())
+    if taken_back:
+        warn(
+            f"{taken_back} panels are flatter than those of the least energy, which would be "
+            "rougher than flat ones in the mean: the surface is nearly minimal, or bends one "
+            "way only; shorter faces across the bend gain more"
+        )
     if target_angle == 0:
-        _warn_of_little_gain(outcome)
+        warn_of_losses(result, sphere_mesh.mesh, _counted(edge_weights, run.is_crease))
     report = AnglesReport(
         converged=run.converged,
         iterations=list(run.iterations),
         energies=list(run.energies),
-        **outcome,
+        **found,
         circle_miss=run.circle_miss,
+        taken_back=taken_back,
     )
     return AnglesOptimum(result, report)
+
+
+def _counted(weights: FloatArray | None, is_crease: FloatArray) -> FloatArray:
+    """Weight of each edge (E,), 0 on creases."""
+    return np.where(is_crease, 0.0, 1.0 if weights is None else weights)
 
 
 @node(version="2")
@@ -195,6 +228,7 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     interior: Literal["free", "glide"] = "free",
     boundary: Literal["free", "glide", "fixed"] = "free",
     max_iterations: Annotated[int, Port(min=1)] = 100,
+    crease: CreaseAngle = 40.0,
 ) -> EnergyOptimum:
     """Minimise a weighted sum of what a sphere mesh should fulfil.
 
@@ -232,6 +266,9 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
         How boundary vertices move; gliding ones along the boundary.
     max_iterations : int
         Largest number of steps of each stage.
+    crease : float
+        Edges at which the flat faces turn by more stay sharp: their angle counts nothing. 180
+        for no creases.
 
     Returns
     -------
@@ -252,13 +289,19 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
         sphericity=sphericity, angle=angle, regularity=regularity, support=support,
         fairness=fairness, closeness=closeness,
     )  # fmt: skip
+    is_crease = crease_edges(sphere_mesh.mesh, np.radians(crease))
+    smooth = _counted(edge_weights, is_crease)
     conditions = optimization.Conditions(
-        np.radians(target_angle), edge_weights, tolerance, fixed_radii, interior, boundary,
+        np.radians(target_angle), smooth, tolerance, fixed_radii, interior, boundary,
         max_iterations,
     )  # fmt: skip
     result, run = optimization.optimize_spheres(sphere_mesh, weights, conditions)
-    outcome = _outcome(result, sphere_mesh.mesh)
+    outcome = outcome_of(result, sphere_mesh.mesh, is_crease, crease)
     _warn_of_energy(run, outcome, conditions, support)
+    if support > 0:
+        warn_of_support(sphere_mesh, result, outcome["angles_deg"])
+    elif target_angle == 0 and run.kept == "optimum":
+        warn_of_losses(result, sphere_mesh.mesh, smooth)
     lowest = run.lowest_eigenvalue
     report = EnergyReport(
         run.converged,
@@ -286,15 +329,15 @@ def _warn_of_energy(
     support: float,
 ) -> None:
     """Say what did not come out, and what the optimum costs."""
-    if any(stage.status == "exhausted" for stage in run.stages[-1:]):
+    if run.stages[-1].status == "exhausted":
         warn(
             f"the optimisation used up its {conditions.max_iterations} iterations: the result "
             "is its best so far; raise max_iterations"
         )
     elif not run.is_held:
         warn(
-            "what has to hold does not within what is allowed: vertices miss their spheres by "
-            f"up to {run.vertex_miss:.3g} mean edges; allow a larger tolerance, or ask for less"
+            "what has to hold does not: vertices miss their spheres by up to "
+            f"{run.vertex_miss:.3g} mean edges; allow a larger tolerance"
         )
     found = {name: float(np.degrees(each.mean)) for name, each in run.figures.items()}
     if run.kept != "optimum":
@@ -314,14 +357,6 @@ def _warn_of_energy(
             f"vertices miss their spheres by up to {run.vertex_miss:.3g} mean edges: allow a "
             "tolerance to let them move"
         )
-    if support > 0 and found["optimum"] > min(found["planes"], found["start"]):
-        warn(
-            f"the support costs smoothness: neighbours meet at {found['optimum']:.3g} degrees "
-            f"on average, {found['start']:.3g} without it and {found['planes']:.3g} with flat "
-            "panels; beams along the bisectors or the node axes leave the spheres as they are"
-        )
-    elif conditions.target_angle == 0 and support == 0 and run.kept == "optimum":
-        _warn_of_little_gain(outcome)
 
 
 @node
@@ -363,29 +398,3 @@ def _stage(stage: optimization.Stage) -> dict[str, Any]:
         "iterations": stage.iterations,
         "energies": {name: list(map(float, e)) for name, e in stage.energies.items()},
     }
-
-
-def _outcome(sphere_mesh: SphereMesh, design: Mesh) -> dict[str, dict[str, Any]]:
-    """What came out, against flat panels on the mesh as it was designed."""
-    miss = float(vertex_error(sphere_mesh).max())
-    return {
-        "angles_deg": {
-            "planar": angle_summary(face_planes(design)),
-            "spherical": angle_summary(sphere_mesh),
-        },
-        "vertex_error": {
-            "max": miss,
-            "relative_to_edge": miss / mean_edge_length(sphere_mesh.mesh),
-        },
-    }
-
-
-def _warn_of_little_gain(outcome: dict[str, dict[str, Any]]) -> None:
-    planar, spherical = (
-        outcome["angles_deg"][kind]["mean"] for kind in ("planar", "spherical")
-    )
-    if spherical > (1 - LITTLE_GAIN) * planar:
-        warn(
-            f"spheres gain little over planes here ({planar:.3g} to {spherical:.3g} degrees): "
-            "the surface is nearly minimal or flat"
-        )

@@ -11,8 +11,7 @@ from click.testing import CliRunner, Result
 import spheremesh as sm
 from spheremesh.fabrication.mesh_files.writer import write_mesh
 from spheremesh.interfaces.cli import main
-from spheremesh.interfaces.panel_graph import panel_graph
-from spheremesh.interfaces.panel_options import PanelOptions
+from spheremesh.interfaces.panel import PanelOptions, panel_graph
 from spheremesh.kernel.meshes.mesh import Mesh
 from spheremesh.kernel.panels.facts import panel_radii
 from spheremesh.kernel.surfaces.circular_nets import vase_net
@@ -295,7 +294,8 @@ def test_support_writes_beams_and_says_how_straight_they_are(
     assert result.exit_code == 0, result.stderr
     report = json.loads(result.stdout)
     assert report["support"]["torsion_deg_max"] <= 0.05
-    assert report["support"]["landed"]
+    assert report["support"]["kind"] == "axis"
+    assert report["support"]["feasibility"]["verdict"] == "feasible"
     assert report["support"]["beam_tilt_deg_p95"] <= 20
     assert report["beams"]["written"] > 0
     assert report["beams"]["rejected"] == []
@@ -305,9 +305,7 @@ def test_support_writes_beams_and_says_how_straight_they_are(
     assert "PRODUCT('B0000'" in text
     assert "PRODUCT('P0000'" in text
     steps = json.loads((out / "graph.json").read_text(encoding="utf-8"))["steps"]
-    assert {"angles", "optimum", "nodes", "annuli", "beams", "drawing", "beam_table"} <= set(
-        steps
-    )
+    assert {"optimum", "feasibility", "annuli", "beams", "drawing", "beam_table"} <= set(steps)
     rows = (out / "beams.csv").read_text(encoding="utf-8-sig").splitlines()
     assert len(rows) == report["beams"]["written"] + 1
     listed = json.loads((out / "schedule.json").read_text(encoding="utf-8"))
@@ -358,10 +356,9 @@ def test_no_beam_at_all_is_an_error_that_says_why(vase: Path, tmp_path: Path) ->
     assert result.exit_code == 3
     assert "beams can be made" in result.stderr
     assert "make the beams thinner or the node smaller" in result.stderr
-    deep = panel(vase, tmp_path / "out", "--support", "--depth", "100")
-    assert deep.exit_code == 3
-    assert "beams can be made: B0000: the depth 100 is not less than the radius" in deep.stderr
     assert not (tmp_path / "out").exists()
+    deep = panel(vase, tmp_path / "out", "--support", "--depth", "100")
+    assert "rejected B100: B0000: the depth 100 is not less than the radius" in deep.stderr
 
 
 def test_options_of_beams_without_beams_are_told(vase: Path, tmp_path: Path) -> None:
@@ -401,3 +398,27 @@ def test_target_angle(vase: Path, tmp_path: Path) -> None:
 )
 def test_options_out_of_range(option: tuple[str, str], vase: Path, tmp_path: Path) -> None:
     assert panel(vase, tmp_path / "out", *option).exit_code == 2
+
+
+def test_an_error_that_no_input_should_cause_is_one_line_with_its_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError("no way")
+
+    graph = sm.Graph("broken")
+    graph.add("torus_mesh", "ring", n_around=6, n_across=5)
+    path = tmp_path / "broken.json"
+    graph.save(path)
+    monkeypatch.setattr("spheremesh.kernel.surfaces.circular_nets.torus_net", broken)
+    result = CliRunner().invoke(main, ["run", str(path), "-o", str(tmp_path / "out")])
+    assert result.exit_code == 1, result.stderr
+    assert len(result.stderr.splitlines()) == 1
+    assert "step 'ring' (node torus_mesh) failed: no way" in result.stderr
+    assert "ZeroDivisionError, test_cli.py line" in result.stderr
+
+
+def test_an_edge_length_without_surfaces_is_told(vase: Path, tmp_path: Path) -> None:
+    result = panel(vase, tmp_path / "out", "--edge-length", "1")
+    assert result.exit_code == 0
+    assert "warning: the edge length is for surfaces, and changes nothing" in result.stderr

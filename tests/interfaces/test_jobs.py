@@ -10,9 +10,7 @@ import pytest
 
 import spheremesh as sm
 from spheremesh.fabrication.mesh_files.writer import write_mesh
-from spheremesh.interfaces.panel_graph import panel_graph
-from spheremesh.interfaces.panel_job import run_job
-from spheremesh.interfaces.panel_options import PanelOptions
+from spheremesh.interfaces.panel import PanelOptions, panel_graph, run_job
 from spheremesh.nodes import NodeError
 from spheremesh.nodes.library.input import ellipsoid_mesh
 

@@ -11,8 +11,7 @@ from click.testing import CliRunner, Result
 from spheremesh import Graph, Mesh
 from spheremesh.fabrication.mesh_files.writer import write_mesh
 from spheremesh.interfaces.cli import main
-from spheremesh.interfaces.panel_graph import panel_graph
-from spheremesh.interfaces.panel_options import PanelOptions
+from spheremesh.interfaces.panel import PanelOptions, panel_graph
 from spheremesh.kernel.repair.description import describe_lines
 from spheremesh.kernel.surfaces.circular_nets import ellipsoid_net
 from spheremesh.nodes.graphs.node import NodeWarning

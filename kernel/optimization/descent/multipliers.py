@@ -20,9 +20,9 @@ from ...tolerances import (
 from ..energies.setting import Group, Unknowns
 from .derivatives import energy_model
 from .freedom import largest_part, moved, tangents
-from .problem import EnergyProblem, energies_of_terms, misses, names
+from .problem import EnergyProblem, energies_of_terms, hard_misses, names
 
-MOST_ROUNDS = 40
+MULTIPLIER_ROUNDS = 40
 """Largest number of rounds; each makes what is missing several times smaller."""
 FIRST_ROUND, STRICTER = 1e-4, 1e-2
 """Decrement at which the first round, whose multipliers are rough, may end; and from round to
@@ -160,7 +160,7 @@ def hold(
     stages: list[Stage] = []
     unknowns, objective, lowest = start, np.inf, -np.inf
     left = {name: _Left() for name in problem.hard}
-    for number in range(MOST_ROUNDS):
+    for number in range(MULTIPLIER_ROUNDS):
         is_last = number >= len(bound_weights) - 1
         weight = bound_weights[min(number, len(bound_weights) - 1)]
         problem = replace(problem, bound_weight=weight)
@@ -170,7 +170,7 @@ def hold(
         )
         unknowns, lowest = descent.state, descent.lowest
         stages.append(stage_of(problem, f"round {number + 1}", descent))
-        found = misses(problem, unknowns)
+        found = hard_misses(problem, unknowns)
         problem = _taken_up(problem, found)
         is_used_up = descent.status == "exhausted"
         left = {

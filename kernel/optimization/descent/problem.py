@@ -154,7 +154,7 @@ def names(problem: EnergyProblem) -> tuple[str, ...]:
     return (*(term.name for term in problem.terms), "displacement", "lean")
 
 
-def misses(problem: EnergyProblem, unknowns: Unknowns) -> dict[str, FloatArray]:
+def hard_misses(problem: EnergyProblem, unknowns: Unknowns) -> dict[str, FloatArray]:
     """Of each term that has to hold exactly, the residuals c, (m,)."""
     return {
         term.name: term.residuals(problem.setting, unknowns)

@@ -3,10 +3,12 @@
 from dataclasses import dataclass
 from typing import Annotated, Any, NamedTuple
 
-from ....kernel.beams import cutting as beam_cutting
 from ....kernel.beams.beams import Beams, beam_lengths, beam_volumes
+from ....kernel.beams.cutting import cut_beams
 from ....kernel.beams.drilling import drill_beams
+from ....kernel.beams.layers import beams_under_panels
 from ....kernel.errors import InputError
+from ....kernel.panels.panels import Panels
 from ....kernel.parts.findings import findings_report, rejected_report
 from ....kernel.reports import Report
 from ....kernel.support.annuli import Annuli, corner_mismatch, mean_end_depth
@@ -74,12 +76,14 @@ class MarkedBeams(NamedTuple):
     report: DrillingReport
 
 
-@node
+@node(version="2")
 def beams(
     annuli: Annuli,
     thickness: Annotated[float | None, Port(min=0)] = None,
     node_gap: Annotated[float, Port(min=0)] = 0.0,
     node_radius: Annotated[float, Port(min=0)] = 0.0,
+    panels: Panels | None = None,
+    bearing: Annotated[float, Port(min=0)] = 0.0,
 ) -> BeamSet:
     """Give annuli a thickness and cut their ends where beams meet at the nodes.
 
@@ -95,6 +99,11 @@ def beams(
         Radius of cylinders about the node axes before which beams end square. With 0 the ends
         are mitred: cut by the half planes through the axis that bisect the angles between
         neighbours.
+    panels : Panels, optional
+        Panels that rest on the beams: beams keep their depth, and begin below the inner faces
+        of the panels beside them; those of a node begin at one level of its axis.
+    bearing : float
+        Clear distance from panel to beam, in model units.
 
     Returns
     -------
@@ -118,7 +127,12 @@ def beams(
                 "the rejected ones with reasons"
             )
         thickness = mean_end_depth(annuli) / 10
-    made, rejected = beam_cutting.cut_beams(annuli, thickness, node_gap, node_radius)
+    if panels is None:
+        made, rejected = cut_beams(annuli, thickness, node_gap, node_radius)
+    else:
+        made, rejected = beams_under_panels(
+            annuli, panels, thickness, node_gap, node_radius, bearing
+        )
     warn_of_rejected(rejected, "beams")
     report = BeamsReport(
         written=made.n_beams,

@@ -60,7 +60,8 @@ def land_nodes(
 
     An optimum balances torsion against angles and vertices: its nodes are good to a hundredth
     of an edge, and beams end as far from each other. Here all spheres of a node get two points
-    in common, and the node is one of them.
+    in common, and the node is one of them. Radii change by as little: land before there are
+    moulds, whose radii no net of quadrilaterals can keep; after them take `axis_support`.
 
     Parameters
     ----------

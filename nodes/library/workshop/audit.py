@@ -45,7 +45,7 @@ class Audit(NamedTuple):
     report: AuditReport
 
 
-@node
+@node(version="2")
 def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     panels: Panels | None = None,
     cut: CutReport | None = None,
@@ -58,10 +58,15 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     beams: Beams | None = None,
     annuli_report: AnnuliReport | None = None,
     beams_report: BeamsReport | DrillingReport | None = None,
-    max_twist: Degrees = 1.0,
+    max_twist: Degrees = 0.1,
     max_length: Millimeters | None = None,
+    max_gap: Millimeters = 5.0,
 ) -> Audit:
     """Look for whatever would trouble a workshop, as numbered errors and notes.
+
+    Panels are looked at alone, with their neighbours and with everything near: what exceeds the
+    largest step, gap or twist is an error, and so is every overlap. What has no errors and
+    nothing rejected can be built.
 
     Parameters
     ----------
@@ -75,7 +80,8 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
     max_wall_tilt : float
         Largest tilt of a wall or a beam from upright.
     max_step : float
-        Highest step between neighbours, and largest distance of the ends of beams at a node.
+        Highest step between neighbours, anywhere along their joint, and largest distance of
+        the ends of beams at a node.
     max_blank : float, optional
         Diameter of the largest blank to be had.
     units : str
@@ -85,9 +91,12 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
         Reports of the nodes `annulus_support` and `beams`: what they rejected is among the
         errors then. That of `drilling_marks` rejects nothing.
     max_twist : float
-        Largest angle between a beam and a node axis.
+        Largest angle between a beam and a node axis; node cylinders take any.
     max_length : float, optional
         Longest piece that can be cut for a beam.
+    max_gap : float
+        Widest gap in a joint beyond its width, widest hole at a node, and farthest that a
+        corner of a panel or the plane of a beam may be off its node axis.
 
     Returns
     -------
@@ -111,6 +120,7 @@ def audit(  # noqa: PLR0913, PLR0917 - whatever may trouble a workshop
         blank_mm=float("inf") if max_blank is None else max_blank,
         twist_deg=max_twist,
         beam_mm=float("inf") if max_length is None else max_length,
+        gap_mm=max_gap,
     )
     rejected = [
         part

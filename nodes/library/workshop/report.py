@@ -1,7 +1,10 @@
 """The report of a panelling."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
+
+import numpy as np
 
 from ....fabrication.sizes import model_extents
 from ....kernel.analysis import angle_summary
@@ -9,13 +12,17 @@ from ....kernel.meshes.mesh import mean_edge_length
 from ....kernel.reports import Report
 from ....kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ....kernel.support.annulus_construction import AnnuliReport
+from ....kernel.support.beam_supports import SupportReport
+from ....kernel.support.feasibility import FeasibilityReport
 from ....kernel.support.node_axes import NodesReport
-from ...graphs.node import node
+from ....kernel.tolerances import ROUGHER, WIDER_GAP
+from ...graphs.node import node, warn
 from ...graphs.ports import Units
 from ..cluster import BlanksReport, MouldsReport
 from ..fabricate import CutReport
-from ..optimise import OptimumReport
+from ..outcomes import OptimumReport
 from ..support.beams import BeamsReport
+from ..support.exact import ExactSupportReport
 from ..support.structure import LandingReport
 from .audit import AuditReport
 
@@ -29,7 +36,10 @@ class PanellingReport(Report):
     input : dict
         ``vertices``, ``faces``, ``units``, ``size`` along x, y and z, and ``mean_edge``.
     angles_deg : dict
-        ``planar`` and ``spherical`` (what is built), and with moulds ``unclustered``.
+        ``planar`` and ``spherical`` (what is built), and with moulds ``unclustered``; over the
+        edges that are no crease.
+    creases : dict
+        Edges that stay sharp, as in `AnglesReport`.
     vertex_error, edge_gap : dict
         ``max`` in model units and ``relative_to_edge``.
     thickness : dict
@@ -37,16 +47,25 @@ class PanellingReport(Report):
     moulds : dict
         ``count``, ``radii``, ``panels_per_mould`` and ``blanks``.
     support : dict or None
-        ``torsion_deg_max`` of inner nodes, ``beam_tilt_deg_p95`` of inner edges,
-        ``beam_tilt_deg_max`` of annuli made, and ``landed``.
+        ``kind`` and the one ``asked`` for, ``torsion_deg_max`` of nodes,
+        ``beam_tilt_deg_p95`` of inner edges, ``beam_tilt_deg_max`` of annuli made,
+        ``landed``, and ``feasibility`` as in `FeasibilityReport`; of beams in the walls of
+        panels also ``gap``, ``lean_deg_max`` and the least ``node_radius``.
     panels, beams : dict
         ``written`` and ``rejected``.
     audit : dict or None
         As in `AuditReport`.
+    design_move : dict
+        How far vertices moved off the design: ``max`` in model units and
+        ``relative_to_edge``; for exact supports also the largest ``height`` off the surface
+        and ``slide`` in it, in mean edges.
+    buildable : bool
+        Whether no panel or beam is rejected and the audit, if there is one, has no errors.
     """
 
     input: dict[str, Any]
     angles_deg: dict[str, dict[str, float]]
+    creases: dict[str, Any]
     vertex_error: dict[str, float]
     edge_gap: dict[str, float]
     thickness: dict[str, float]
@@ -55,9 +74,11 @@ class PanellingReport(Report):
     panels: dict[str, Any]
     beams: dict[str, Any]
     audit: dict[str, Any] | None
+    design_move: dict[str, float]
+    buildable: bool
 
 
-@node
+@node(version="2")
 def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     sphere_mesh: SphereMesh,
     optimum: OptimumReport,
@@ -70,6 +91,9 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     beams: BeamsReport | None = None,
     landing: LandingReport | None = None,
     units: Units = "m",
+    feasibility: FeasibilityReport | None = None,
+    support: Literal["axis", "exact", "bisector"] | None = None,
+    plain: CutReport | None = None,
 ) -> PanellingReport:
     """Gather the reports of a panelling into one.
 
@@ -78,7 +102,7 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     sphere_mesh : SphereMesh
         What the panels were cut from.
     optimum : OptimumReport
-        Report of `minimize_angles` or `optimize_spheres`.
+        Report of `minimize_angles`, `optimize_spheres` or `exact_support`.
     cut : CutReport
         Report of `panels`.
     moulds : MouldsReport, optional
@@ -90,12 +114,18 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     nodes : NodesReport, optional
         Report of `support_structure`.
     annuli : AnnuliReport, optional
-        Report of `annulus_support`.
+        Report of `annulus_support`, `axis_support` or `bisector_support`.
     beams : BeamsReport, optional
         Report of `beams`.
     landing : LandingReport, optional
         Report of `land_nodes`.
     units : str
+    feasibility : FeasibilityReport, optional
+        Result of `support_feasibility`.
+    support : {"axis", "exact", "bisector"}, optional
+        The kind of support that was asked for.
+    plain : CutReport, optional
+        Report of panels as they would be without moulds and support, to say what these cost.
 
     Returns
     -------
@@ -112,13 +142,21 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     {'written': 72, 'rejected': []}
     """
     mesh = sphere_mesh.mesh
-    angles = {**optimum["angles_deg"], "spherical": angle_summary(sphere_mesh)}
+    angles, creases = _built(sphere_mesh, optimum)
     found: dict[str, Any] = {"count": 0, "radii": [], "panels_per_mould": []}
     if moulds is not None:
         # What is built counts as spherical; what the moulds cost is there to compare.
         angles["unclustered"] = optimum["angles_deg"]["spherical"]
         found = {name: moulds[name] for name in found}
     miss = float(vertex_error(sphere_mesh).max())
+    _warn_of_losses(angles, cut, plain)
+    made_beams = {
+        "written": beams["written"] if beams else 0,
+        "rejected": [
+            entry for found in (annuli, beams) if found for entry in found["rejected"]
+        ],
+    }
+    is_whole = not (cut["rejected"] or made_beams["rejected"])
     return PanellingReport(
         input={
             "vertices": mesh.n_vertices,
@@ -128,26 +166,126 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
             "mean_edge": mean_edge_length(mesh),
         },
         angles_deg=angles,
+        creases=creases,
         vertex_error={"max": miss, "relative_to_edge": miss / mean_edge_length(mesh)},
         edge_gap=dict(cut["edge_gap"]),
         thickness=dict(cut["thickness"]),
         moulds=found | {"blanks": list(blanks["blanks"]) if blanks else []},
-        support=None
-        if nodes is None
-        else {
-            "torsion_deg_max": nodes["torsion_deg"]["max"],
-            "beam_tilt_deg_p95": nodes["beam_tilt_deg"]["p95"],
-            "beam_tilt_deg_max": (annuli["tilt_deg"] if annuli else nodes["beam_tilt_deg"])[
-                "max"
-            ],
-            "landed": bool(landing and landing["landed"]),
-        },
+        support=_support(optimum, nodes, annuli, landing, feasibility, support),
         panels={"written": cut["written"], "rejected": list(cut["rejected"])},
-        beams={
-            "written": beams["written"] if beams else 0,
-            "rejected": [
-                entry for found in (annuli, beams) if found for entry in found["rejected"]
-            ],
-        },
+        beams=made_beams,
         audit=dict(audit) if audit is not None else None,
+        design_move=_design_move(optimum, moulds, mean_edge_length(mesh)),
+        buildable=is_whole and not (audit and audit["errors"]),
     )
+
+
+def _built(
+    sphere_mesh: SphereMesh, optimum: OptimumReport
+) -> tuple[dict[str, dict[str, float]], dict[str, Any]]:
+    """Angles and creases of an optimum, as they are built."""
+    creases: dict[str, Any] = optimum.get("creases") or {"angle_deg": 180.0, "edges": []}
+    is_crease = np.zeros(len(sphere_mesh.mesh.topology.edge_corners), bool)
+    is_crease[creases["edges"]] = True
+    sharp = angle_summary(sphere_mesh, is_crease)
+    return (
+        {**optimum["angles_deg"], "spherical": angle_summary(sphere_mesh, ~is_crease)},
+        {
+            **creases,
+            "count": len(creases["edges"]),
+            "mean_deg": sharp["mean"],
+            "max_deg": sharp["max"],
+        },
+    )
+
+
+def _design_move(
+    optimum: OptimumReport, moulds: MouldsReport | None, edge: float
+) -> dict[str, float]:
+    """How far vertices moved in all: at most what optimum and moulds did one by one."""
+    moved = moulds["vertex_move"] if moulds is not None else 0.0
+    if isinstance(optimum, ExactSupportReport):
+        found = optimum.design_move
+        total = found["relative_to_edge"] + moved
+        return found | {"relative_to_edge": total, "max": found["max"] + moved * edge}
+    total = moved + float(optimum.get("vertex_move", 0.0))
+    return {"max": total * edge, "relative_to_edge": total}
+
+
+def _warn_of_losses(
+    angles: Mapping[str, Mapping[str, float]], cut: CutReport, plain: CutReport | None
+) -> None:
+    """Say where flat panels, or panels without moulds and support, would be better."""
+    spherical, planar = angles["spherical"]["mean"], angles["planar"]["mean"]
+    if spherical > planar * (1 + ROUGHER):
+        warn(
+            f"rougher than flat panels: neighbours meet at {spherical:.3g} degrees in the "
+            f"mean, flat ones at {planar:.3g}; more moulds, or none, may be smoother"
+        )
+    if plain is None:
+        return
+    if cut["written"] < plain["written"]:
+        warn(
+            f"{cut['written']} panels instead of {plain['written']} without moulds and "
+            "support: more moulds, or --support bisector, may keep them"
+        )
+    wide, usual = cut["edge_gap"]["relative_to_edge"], plain["edge_gap"]["relative_to_edge"]
+    if wide > usual + WIDER_GAP:
+        warn(
+            f"gaps between edges are up to {100 * wide:.2g} % of an edge, and without moulds "
+            f"and support {100 * usual:.2g} %: more moulds, or --support exact, may close them"
+        )
+
+
+def _support(
+    optimum: OptimumReport,
+    nodes: NodesReport | None,
+    annuli: AnnuliReport | None,
+    landing: LandingReport | None,
+    feasibility: FeasibilityReport | None,
+    asked: str | None,
+) -> dict[str, Any] | None:
+    """What a user must know of the support; None if there is none."""
+    landed = landing is not None and landing["landed"]
+    common = {
+        "landed": landed or (isinstance(optimum, ExactSupportReport) and optimum.landed),
+        "feasibility": dict(feasibility) if feasibility else None,
+    }
+    if isinstance(annuli, SupportReport):
+        _warn_of_support(annuli, feasibility, asked)
+        return {
+            "kind": "exact" if asked == "exact" else annuli.kind,
+            "asked": asked or annuli.kind,
+            "torsion_deg_max": annuli.torsion_deg["max"],
+            "beam_tilt_deg_p95": annuli.inner_tilt_deg["p95"],
+            "beam_tilt_deg_max": annuli.tilt_deg["max"],
+            "gap": annuli.gap,
+            "lean_deg_max": annuli.lean_deg["max"],
+            "node_radius": annuli.node_radius,
+            **common,
+        }
+    if nodes is None:
+        return None
+    return {
+        "kind": asked or "exact",
+        "asked": asked or "exact",
+        "torsion_deg_max": nodes["torsion_deg"]["max"],
+        "beam_tilt_deg_p95": nodes["beam_tilt_deg"]["p95"],
+        "beam_tilt_deg_max": (annuli["tilt_deg"] if annuli else nodes["beam_tilt_deg"])["max"],
+        **common,
+    }
+
+
+def _warn_of_support(
+    annuli: SupportReport, feasibility: FeasibilityReport | None, asked: str | None
+) -> None:
+    """Say what became of beams on node axes where they were asked for and are not good."""
+    if feasibility is None or asked != "axis" or feasibility.verdict == "feasible":
+        return
+    instead = (
+        "upright beams with node cylinders instead (--support bisector); for axes in common "
+        "remesh to quadrilaterals or hexagons"
+        if annuli.kind == "bisector"
+        else "remesh, or take upright beams (--support bisector)"
+    )
+    warn(f"support {feasibility.verdict}: {feasibility.reason}: {instead}")

@@ -159,7 +159,7 @@ def test_reports_are_plain_and_sorted(squares: Callable[..., SphereMesh]) -> Non
     report = findings_report(findings)
     assert json.loads(json.dumps(report, allow_nan=False)) == report
     assert sum(report["counts"].values()) == len(report["errors"]) + len(report["notes"])
-    assert [error["code"] for error in report["errors"]] == ["P100"]
+    assert [error["code"] for error in report["errors"]] == ["P100", "P201", "P201"]
     texts = warning_texts(findings)
     assert set(texts) == {finding.id for finding in findings}
     assert all(f"{f.code} {f.message}" in texts[f.id].split("; ") for f in findings)

@@ -2,7 +2,6 @@
 
 import importlib
 import os
-import resource
 import sys
 import threading
 import time
@@ -79,6 +78,7 @@ def test_errors_are_raised_here(jobs: ModuleType) -> None:
 
 
 def test_time_is_limited_and_may_be_renewed(jobs: ModuleType) -> None:
+    resource = pytest.importorskip("resource")  # not on Windows
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     with pytest.raises(InputError, match=FAILURE):
         isolated(jobs.spin)

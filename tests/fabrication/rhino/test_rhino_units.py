@@ -13,8 +13,7 @@ from spheremesh import Graph, Mesh, nodes
 from spheremesh.fabrication.mesh_files.reader import read_content
 from spheremesh.fabrication.rhino.mesh_writer import to_rhino_mesh
 from spheremesh.fabrication.units import MILLIMETERS
-from spheremesh.interfaces.panel_graph import panel_graph
-from spheremesh.interfaces.panel_options import PanelOptions, model_units
+from spheremesh.interfaces.panel import PanelOptions, model_units, panel_graph
 from spheremesh.kernel.errors import InputError
 from spheremesh.nodes.graphs.errors import NodeError
 

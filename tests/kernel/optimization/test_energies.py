@@ -24,7 +24,7 @@ from spheremesh.kernel.optimization.descent.problem import (
     EnergyProblem,
     energies_of_terms,
     energy_problem,
-    misses,
+    hard_misses,
 )
 from spheremesh.kernel.optimization.energies.setting import (
     Setting,
@@ -323,7 +323,7 @@ def full_problem(net: Mesh, start: Unknowns, *, has_fairness: bool) -> EnergyPro
     freedom = Freedom(0.3, vertex_freedom(net, "glide", "glide"), fixed)
     problem = replace(problem_of(net, weights, freedom), bound_weight=0.1)
     problem = replace(problem, hard=frozenset({"sphericity", "support"}))
-    found = misses(problem, start)
+    found = hard_misses(problem, start)
     random = np.random.default_rng(4)
     return replace(
         problem,

@@ -282,7 +282,8 @@ def test_plane_panels_among_curved_ones_are_cut_upright(nets: dict[str, Mesh]) -
 def test_meshes_without_interior_edges_have_no_gap() -> None:
     mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     report = gap_report(face_planes(mesh), "bisector", np.arange(mesh.n_faces))
-    assert report == {"max": 0.0, "mean": 0.0, "relative_to_edge": 0.0, "edges": 0}
+    assert report["edges"] == 0
+    assert not any(report.values())
 
 
 def test_edges_that_only_a_joint_lets_exist_have_no_gap() -> None:
@@ -297,7 +298,8 @@ def test_edges_that_only_a_joint_lets_exist_have_no_gap() -> None:
     panels, rejected = cut_panels(found, joint_gap=0.03)
     assert not rejected
     report = gap_report(found, "bisector", panels.face_ids)
-    assert report == {"max": 0.0, "mean": 0.0, "relative_to_edge": 0.0, "edges": 8}
+    assert report.pop("edges") == 8
+    assert not any(report.values())
 
 
 # Joints, thickness, measures

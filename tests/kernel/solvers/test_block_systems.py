@@ -13,9 +13,14 @@ from spheremesh.kernel.solvers.block_systems import (
     factorize_system,
     system_pattern,
 )
-from spheremesh.kernel.solvers.blocks import Block, Layout
+from spheremesh.kernel.solvers.blocks import (
+    Block,
+    Layout,
+    jacobian_matrix,
+    jacobian_pattern,
+)
 from spheremesh.kernel.solvers.dissection import SMALLEST_SET, dissect
-from spheremesh.kernel.solvers.factorization import factorize_symmetric
+from spheremesh.kernel.solvers.factorization import factorize_symmetric, solve_definite
 from spheremesh.kernel.solvers.multifrontal import (
     factorize_fronts,
     frontal_pattern,
@@ -162,3 +167,34 @@ def test_direct_solutions_solve() -> None:
     right = random.normal(size=20)
     found = factorize_symmetric(csc_array(normal))(right)
     np.testing.assert_allclose(found, np.linalg.solve(normal, right), rtol=1e-10)
+
+
+def test_shifted_solutions_solve() -> None:
+    random = np.random.default_rng(3)
+    dense = random.normal(size=(30, 20))
+    right = random.normal(size=20)
+    expected = np.linalg.solve(dense.T @ dense + 0.1 * np.eye(20), right)
+    found = solve_definite(csc_array(dense.T @ dense), 0.1, right)
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
+
+
+def test_jacobians_have_their_blocks_and_keep_zeros() -> None:
+    layout = Layout((4, 0, 3), (2, 5, 3))
+    assert layout.starts.tolist() == [0, 8, 8, 17]
+    assert layout.columns(Block(2, np.array([1]))).tolist() == [[11, 12, 13]]
+    random = np.random.default_rng(2)
+    terms = [
+        (Block(0, random.integers(0, 4, 9)),),
+        (Block(0, np.arange(4)), Block(1, np.arange(4)), Block(2, np.array([0, 1, 2, 0]))),
+    ]
+    pattern = jacobian_pattern(layout, terms)
+    entries = [
+        tuple(random.normal(size=(len(b.ids), layout.widths[b.group])) for b in blocks)
+        for blocks in pattern.blocks
+    ]
+    entries[0][0][3] = 0
+    matrix = jacobian_matrix(pattern, entries)
+    assert matrix.nnz == 9 * 2 + 4 * 5
+    dense = matrix.toarray()
+    np.testing.assert_array_equal(dense[9 + 2, 4:6], entries[1][0][2])
+    np.testing.assert_array_equal(dense[9 + 3, 8:11], entries[1][1][3])

@@ -125,6 +125,31 @@ def test_law_e2_centers_in_a_plane_alone_do_not() -> None:
     assert found.mirror_miss[0] > 0.01
 
 
+@pytest.mark.parametrize("size", [1.0, 1e3])
+def test_arc_planes_that_miss_a_common_line_make_no_node(size: float) -> None:
+    """Their normals are orthogonal to the axis; whether they share a line is in the offsets."""
+    centers, around = size * centers_in_a_plane(5, -3.0), np.arange(5)
+    radii = norm(centers) * np.array([1.05, 0.95, 1.05, 0.95, 1.0])
+    found = support_structure(scaled(around_the_origin(centers / size, radii / size), size))
+    planes = np.diff(centers[[*around, 0]], axis=0)
+    powers = np.sum(centers**2, 1) - radii**2
+    offsets = np.diff(powers[[*around, 0]]) / 2 / norm(planes)
+    normals = unit(planes)
+    best = np.linalg.lstsq(normals, offsets, rcond=1e-9)[0]
+    miss = float(np.abs(normals @ best - offsets).max())
+    assert found.torsion[0] < 1e-12
+    np.testing.assert_allclose(found.line_miss[0], miss, rtol=1e-9)
+    assert "miss a common line" in node_reasons(found, size)[0]
+    through = support_structure(scaled(around_the_origin(centers / size), size))
+    assert through.line_miss[0] < 1e-12 * size
+
+
+def scaled(sphere_mesh: SphereMesh, factor: float) -> SphereMesh:
+    mesh = sphere_mesh.mesh
+    large = Mesh(mesh.vertices * factor, mesh.faces)
+    return SphereMesh.from_local(large, rescale(sphere_mesh.local_spheres, factor))
+
+
 # E4
 
 
@@ -136,7 +161,7 @@ def test_law_e4_torsion_of_four_centers_in_closed_form(height: float) -> None:
     expected = np.arcsin(2 * height / np.sqrt(2 + 4 * height**2))
     assert abs(found.torsion[0] - expected) < 1e-14
     assert norm(np.cross(found.directions[0], [0, 0, -1])) < 1e-13
-    assert (0 in node_reasons(found)) == (np.degrees(expected) > 0.1)
+    assert (0 in node_reasons(found, 1.0)) == (np.degrees(expected) > 0.1)
 
 
 def test_law_e4_valence_three_has_no_torsion(
@@ -277,7 +302,7 @@ def test_unused_vertices_are_listed() -> None:
     mesh = Mesh(np.concatenate([mesh.vertices, [[9, 9, 9]]]), mesh.faces)
     sphere_mesh = face_planes(mesh)
     found = support_structure(sphere_mesh)
-    assert node_reasons(found)[5] == "the vertex belongs to no face"
+    assert node_reasons(found, 1.0)[5] == "the vertex belongs to no face"
     assert (found.axes[5, 1] == found.axes[5, 0]).all()
 
 

@@ -23,6 +23,7 @@ from spheremesh.kernel.surfaces.circular_nets import (
     torus_net,
     vase_net,
 )
+from spheremesh.kernel.surfaces.triangulated import triangulated_surface
 
 CASES: list[tuple[Callable[..., Mesh], tuple[float, ...], int]] = [
     (torus_net, (3, 3, 3.0, 1.0), 9),
@@ -216,3 +217,9 @@ def test_unusable_sizes_are_refused(
 ) -> None:
     with pytest.raises(InputError, match=message):
         make(*sizes)
+
+
+@pytest.mark.parametrize("edge_length", [1e-4, 1e-308])
+def test_a_sample_surface_of_too_many_triangles_is_refused(edge_length: float) -> None:
+    with pytest.raises(InputError, match="more than 2000000 triangles"):
+        triangulated_surface("bump", edge_length)

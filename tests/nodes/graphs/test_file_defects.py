@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 import spheremesh as sm
 from spheremesh.nodes import GraphError, node
-from spheremesh.nodes.graphs import file
 from spheremesh.nodes.graphs.node import running_graph
+from spheremesh.nodes.graphs.specification import file
 
 
 class Parts(NamedTuple):
@@ -83,7 +83,7 @@ def _mixed(content: dict[str, Any]) -> dict[str, Any]:
 
 DEFECTS: list[tuple[Change, str]] = [
     (lambda c: c.update(format="grasshopper"), '"format" must be "spheremesh graph"'),
-    (lambda c: c.update(version=2), '"version" is 2, this spheremesh reads 1'),
+    (lambda c: c.update(version=3), '"version" is 3, this spheremesh reads 1 and 2'),
     (lambda c: c.pop("title"), '"title" is missing'),
     (lambda c: c.update(title=[1]), '"title" must be a text, not [1]'),
     (lambda c: c.update(units="km"), "units = 'km': must be one of mm, cm, m, in, ft"),
@@ -122,7 +122,7 @@ DEFECTS: list[tuple[Change, str]] = [
         lambda c: _mixed(c).update(a={"wire": "split.hihg"}),
         "steps.mixed: step 'split' (node split) has no output 'hihg'; did you mean 'high'?",
     ),
-    (lambda c: c.update(version=True), '"version" is True, this spheremesh reads 1'),
+    (lambda c: c.update(version=True), '"version" is True, this spheremesh reads 1 and 2'),
     (lambda c: c["params"]["k"].update(min=[1]), "params.k: param k: min = [1]: must be a num"),
     (
         lambda c: c["params"]["k"].update(value={"array": [1]}, choices=[1, 2]),
@@ -175,6 +175,23 @@ DEFECTS: list[tuple[Change, str]] = [
         "the steps form a cycle: ",
     ),
     (lambda c: _mixed(c).update(a={"wire": "mixed"}), "the steps form a cycle: mixed -> mixed"),
+    (lambda c: c.update(groups=[]), '"groups" must be an object, not []'),
+    (lambda c: c.update(groups={"a": "split"}), "groups.a must be a list of names of steps"),
+    (lambda c: c.update(groups={"a": ["splat"]}), "groups.a: no step 'splat'"),
+    (lambda c: c.update(comments={"split": 1}), "comments.split must be a text, not 1"),
+    (lambda c: c["steps"]["split"].update(graph=1), 'steps.split: "outputs" is missing'),
+    (
+        lambda c: c["steps"]["split"].update(graph={"version": 7}, outputs={}),
+        'steps.split.graph: "version" is 7',
+    ),
+    (lambda c: _mixed(c).update(weights={"content": "ab"}), "its content 'ab' is missing"),
+    (lambda c: _mixed(c).update(weights={"content": ["../a"]}), "steps.mixed: "),
+    (
+        lambda c: [c.update(contents={"ab": {}}), _mixed(c).update(weights={"content": "ab"})],
+        "steps.mixed: cannot read",
+    ),
+    (lambda c: _mixed(c).update(a={"each": [1], "match": 3}), "each: match = 3: "),
+    (lambda c: _mixed(c).update(a={"each": [1], "axis": "a b"}), "each: axis = 'a b': "),
     (lambda c: c["steps"].update({"a b": c["steps"]["split"]}), "steps.a b: step name 'a b'"),
 ]
 

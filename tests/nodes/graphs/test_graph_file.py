@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 import spheremesh as sm
 from spheremesh.nodes import GraphError, node
-from spheremesh.nodes.graphs import file
 from spheremesh.nodes.graphs.node import running_graph
+from spheremesh.nodes.graphs.specification import reading
 
 
 class Parts(NamedTuple):
@@ -215,23 +215,23 @@ def test_ports_of_old_files_are_read_by_their_present_names(
     with pytest.raises(GraphError, match=r"steps\.split: .* has no input 'number'"):
         sm.Graph.from_json(old)
     renamed = {"mix": {"loads": "weights"}, "split": {"number": "value", "upper": "high"}}
-    monkeypatch.setattr(file, "RENAMED_PORTS", renamed)
+    monkeypatch.setattr(reading, "RENAMED_PORTS", renamed)
     assert sm.Graph.from_json(old).to_json() == text
     # a port that has gone is passed over
     gone = json.loads(text)
     gone["steps"]["mixed"]["inputs"]["seed"] = 7
-    monkeypatch.setattr(file, "RENAMED_PORTS", {"mix": {"seed": ""}})
+    monkeypatch.setattr(reading, "RENAMED_PORTS", {"mix": {"seed": ""}})
     assert sm.Graph.from_json(json.dumps(gone)).to_json() == text
     # a present name is never taken for an old one
     monkeypatch.setattr(
-        file, "RENAMED_PORTS", {"mix": {"a": "limit"}, "split": {"low": "high"}}
+        reading, "RENAMED_PORTS", {"mix": {"a": "limit"}, "split": {"low": "high"}}
     )
     assert sm.Graph.from_json(text).to_json() == text
 
 
 def test_the_table_of_renamed_ports_names_present_ports() -> None:
     code = """
-from spheremesh.nodes.graphs.file import RENAMED_PORTS
+from spheremesh.nodes.graphs.specification.reading import RENAMED_PORTS
 from spheremesh.nodes.graphs.node import find_node
 for name, ports in RENAMED_PORTS.items():
     found = find_node(name)

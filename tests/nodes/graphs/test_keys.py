@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import spheremesh as sm
-from spheremesh.nodes.graphs.cache import digest
+from spheremesh.nodes.graphs.stores.digests import digest
 
 
 @dataclass(frozen=True)

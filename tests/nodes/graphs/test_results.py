@@ -11,7 +11,7 @@ import pytest
 
 import spheremesh as sm
 from spheremesh.nodes import node
-from spheremesh.nodes.graphs.results import own, snapshot
+from spheremesh.nodes.graphs.stores.results import own, snapshot
 
 
 @dataclass(frozen=True)

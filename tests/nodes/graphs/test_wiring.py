@@ -6,9 +6,10 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import spheremesh as sm
-from spheremesh.nodes import GraphError, Port, node
+from spheremesh.nodes import GraphError, NodeError, Port, node
 
 
 class Shape:
@@ -203,3 +204,18 @@ def test_names_of_inputs_cannot_collide() -> None:
 
     g = sm.Graph()
     assert g.run(g.add(odd, "mine", self=1, node=2, name=3)) == 6
+
+
+def test_a_list_of_wires_that_is_no_array_is_refused_by_name() -> None:
+    @node
+    def shape_of(numbers: NDArray[np.float64]) -> int:
+        return numbers.size
+
+    @node
+    def pair() -> list[Any]:
+        return [1.0, 2.0]
+
+    g = sm.Graph()
+    g.add(shape_of, numbers=[1.0, g.add(pair)])
+    with pytest.raises(NodeError, match=r"shape_of\.numbers = .*: must be float64 array"):
+        g.run("shape_of")

@@ -38,6 +38,8 @@ FITTING = {
     "landing": ("land_nodes",),
     "annuli_report": ("annulus_support",),
     "beams_report": ("beams", "drilling_marks"),  # older graphs wire either
+    "feasibility": (),
+    "plain": ("panels",),
 }
 PLACES = [
     (node, name)
@@ -67,7 +69,7 @@ def _wire(graph: sm.Graph, target: str) -> object:
 
 def test_every_input_that_is_a_report_is_tried() -> None:
     assert {name for _, name in PLACES} == set(FITTING)
-    assert len(PLACES) == 3 + 9
+    assert len(PLACES) == 3 + 11
 
 
 @pytest.mark.parametrize(("node", "name"), PLACES)
@@ -100,9 +102,12 @@ def test_no_output_is_just_a_mapping() -> None:
 
 def test_a_report_reads_like_a_dictionary_and_cannot_be_changed() -> None:
     report = minimize_angles(fit_spheres(roof_mesh(6, 8))).report
-    names = ["converged", "iterations", "energies", "angles_deg", "vertex_error", "circle_miss"]
+    names = [
+        "converged", "iterations", "energies", "angles_deg", "vertex_error", "creases",
+        "circle_miss", "taken_back",
+    ]  # fmt: skip
     assert list(report) == list(report.keys()) == list(dict(report)) == names
-    assert len(report) == 6
+    assert len(report) == 8
     assert "angles_deg" in report
     assert "__len__" not in report
     assert report.get("stages") is None

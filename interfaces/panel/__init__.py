@@ -1,0 +1,21 @@
+"""The main job: a mesh in, spherical panels out, as a graph that the user can open again.
+
+graph    The job as a graph.
+job      The job run: all of its files, or none.
+options  What the job is asked to do.
+output   What the command line says of it.
+support  The beams of the job: which annuli, and what is made of them.
+"""
+
+from .graph import feasible_panel_graph, panel_graph
+from .job import is_panel_job, run_job
+from .options import PanelOptions, model_units
+
+__all__ = [
+    "PanelOptions",
+    "feasible_panel_graph",
+    "is_panel_job",
+    "model_units",
+    "panel_graph",
+    "run_job",
+]

@@ -1,0 +1,193 @@
+"""The main job as a graph: a mesh in, spherical panels out."""
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from ...kernel.support.beam_supports import own_spheres
+from ...nodes.graphs.graph import Graph
+from ...nodes.graphs.specification.wires import Param, Step, Wire
+from ...nodes.graphs.stores.entries import Store
+from .options import PanelOptions, SupportKind, fineness, model_units
+from .support import add_annuli, add_beams
+
+_LAYERS: Final = {"constant": "offset", "power": "power"}
+"""Port of `panels` by option: --layer names a layer of the input."""
+
+
+def feasible_panel_graph(options: PanelOptions, store: Store | None = None) -> Graph:
+    """The graph of the main job, as the mesh allows it.
+
+    A support on node axes keeps spheres that the mesh has already if their nodes are exact;
+    where no beams on node axes can stand, they are upright. Both are found before anything is
+    optimised, with results of the store if there is one.
+    """
+    graph = panel_graph(options)
+    store = graph.cache = store or graph.cache
+    if options.support != "axis":
+        return graph
+    may_keep = not (options.target_angle or options.tolerance)
+    if may_keep and own_spheres(graph.run(_source(graph))) is not None:
+        graph = panel_graph(options, keeps_spheres=True)
+    elif graph.run("feasibility")["verdict"] == "no":
+        graph = panel_graph(options, "bisector")
+    graph.cache = store
+    return graph
+
+
+def panel_graph(
+    options: PanelOptions, beams: SupportKind | None = None, *, keeps_spheres: bool = False
+) -> Graph:
+    """The graph of the main job.
+
+    Parameters
+    ----------
+    options : PanelOptions
+        What is asked for.
+    beams : {"axis", "exact", "bisector"}, optional
+        The kind of support that is made; by default that which is asked for.
+    keeps_spheres : bool
+        Whether the spheres of the mesh stay as they are.
+
+    Returns
+    -------
+    Graph
+        Its steps are named mesh, description, start, angles (before an optimum of more than
+        angles), optimum, panels, audit, report, step, rhino, table, list and picture; with a
+        number of moulds also moulds, blanks, mould_drawing and mould_picture, with a support
+        also feasibility, annuli, beams, drawing and beam_table, with either plain, the panels
+        without them.
+        Its writers write relative to the folder of the run.
+
+    Raises
+    ------
+    GraphError
+        If an option is out of range.
+    InputError
+        If the units of the file are to be used and it cannot be read.
+    """
+    graph = Graph(
+        options.mesh.stem if options.mesh else "roof",
+        units=options.units or model_units(options)[0],
+    )
+    thickness = graph.param("thickness", options.thickness, min=0)
+    joint_gap = graph.param("joint_gap", options.joint_gap, min=0)
+    mesh = _mesh(graph, options)
+    graph.add("mesh_report", "description", mesh=mesh)
+    moves: dict[str, Param] = {}
+    if options.tolerance:
+        moves = {"tolerance": graph.param("tolerance", options.tolerance, min=0)}
+    crease = graph.param("crease", options.crease, min=0, max=180)
+    if keeps_spheres:
+        optimum = _kept_spheres(graph, mesh, crease)
+    elif options.support == "exact":
+        optimum = _exact(graph, options, mesh)
+    else:
+        optimum = _optimum(graph, options, mesh, moves, crease)
+    design = spheres = optimum.sphere_mesh
+    labels, clusters, blanks = None, None, None
+    if options.moulds is not None:
+        count = graph.param("moulds", options.moulds, min=1)
+        moulds = graph.add(
+            "cluster_radii", "moulds", sphere_mesh=spheres, k=count, crease=crease, **moves
+        )
+        spheres, labels, clusters = moulds.sphere_mesh, moulds.labels, moulds.report
+    kind = beams or options.support
+    layers: dict[str, Any] = {
+        "thickness": thickness, "joint_gap": joint_gap, "side": options.side,
+        "layer": _LAYERS[options.offset], "crease": crease,
+    }  # fmt: skip
+    annuli = add_annuli(graph, options, kind, spheres, design, layers) if kind else None
+    cut = annuli.cut if annuli else {"edges": options.edges or "bisector"}
+    panels = graph.add(
+        "panels", "panels", sphere_mesh=spheres, labels=labels, **{**layers, **cut}
+    )
+    support = add_beams(graph, options, annuli, panels.panels) if annuli else None
+    plain: dict[str, Wire] = {}
+    if support or spheres is not design:
+        # What there would be without moulds and beams, to say what these cost.
+        plain["plain"] = graph.add("panels", "plain", sphere_mesh=design, **layers).report
+    if options.moulds is not None:
+        blanks = _add_blanks(graph, panels.panels)
+    audit = graph.add(
+        "audit", "audit", panels=panels.panels, cut=panels.report,
+        max_step=options.allow_step, max_gap=options.allow_gap,
+        max_twist=options.allow_torsion, **(support.audit if support else {}),
+    )  # fmt: skip
+    graph.add(
+        "panel_report", "report", sphere_mesh=spheres, optimum=optimum.report,
+        cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report, **plain,
+        **(support.report if support else {}),
+    )  # fmt: skip
+    made = {"panels": panels.panels}
+    if support:
+        made["beams"] = support.beams
+    _add_writers(graph, mesh, made)
+    return graph
+
+
+def _add_blanks(graph: Graph, panels: Wire) -> Step:
+    """Blanks of the moulds, and their drawings."""
+    for name, path in (("mould_drawing", "moulds.dxf"), ("mould_picture", "moulds.svg")):
+        graph.add("write_mould_drawings", name, panels=panels, path=path)
+    return graph.add("mould_blanks", "blanks", panels=panels)
+
+
+def _add_writers(graph: Graph, mesh: Step | Wire, made: Mapping[str, Wire]) -> None:
+    """Files of the parts; those of moulds and beams stand beside what they show."""
+    panels = made["panels"]
+    graph.add("write_step", "step", **made, path="panels.step")
+    graph.add("write_3dm", "rhino", **made, path="model.3dm", reference=mesh)
+    graph.add("write_schedule", "table", panels=panels, path="schedule.csv")
+    graph.add("write_schedule", "list", **made, path="schedule.json")
+    graph.add("render", "picture", panels=panels, path="preview.png")
+
+
+def _source(graph: Graph) -> str:
+    """Name of the output that is the mesh: of the file, or repaired."""
+    return "mesh.mesh" if graph.steps["mesh"].node.name == "repair_mesh" else "mesh"
+
+
+def _mesh(graph: Graph, options: PanelOptions) -> Step | Wire:
+    """The mesh: of a file, repaired or as it is, or for a demonstration."""
+    if options.mesh is None:
+        return graph.add("roof_mesh", "mesh")
+    path = str(options.mesh.resolve())
+    rows = fineness(options)
+    if options.repair:
+        return graph.add("repair_mesh", "mesh", mesh=path, layer=options.layer, **rows).mesh
+    return graph.add("read_mesh", "mesh", path=path, layer=options.layer, **rows)
+
+
+def _kept_spheres(graph: Graph, mesh: Step | Wire, crease: Param) -> Step:
+    """The spheres that the mesh has already, in place of an optimum."""
+    start = graph.add("fit_spheres", "start", mesh=mesh, ring=0)
+    return graph.add("keep_spheres", "optimum", sphere_mesh=start, crease=crease)
+
+
+def _exact(graph: Graph, options: PanelOptions, mesh: Step | Wire) -> Step:
+    """The spheres of an exact support; for one mould with the same radius from the start."""
+    bounds = {
+        "max_height": graph.param("max_height", options.max_height, min=0),
+        "max_slide": graph.param("max_slide", options.max_slide, min=0),
+    }
+    return graph.add(
+        "exact_support", "optimum", mesh=mesh, one_radius=options.moulds == 1, **bounds
+    )
+
+
+def _optimum(
+    graph: Graph, options: PanelOptions, mesh: Step | Wire, moves: Mapping[str, Param],
+    crease: Param,
+) -> Step:  # fmt: skip
+    """The spheres: of smallest angles alone, or of more than that."""
+    start = graph.add("fit_spheres", "start", mesh=mesh)
+    target: dict[str, Any] = {"crease": crease}
+    if options.target_angle:
+        target["target_angle"] = options.target_angle
+    if not moves:
+        allowed = {} if options.tolerance is None else {"max_miss": options.tolerance}
+        return graph.add("minimize_angles", "optimum", sphere_mesh=start, **target, **allowed)
+    angles = graph.add("minimize_angles", "angles", sphere_mesh=start, **target)
+    return graph.add(
+        "optimize_spheres", "optimum", sphere_mesh=angles.sphere_mesh, **target, **moves
+    )
