@@ -90,10 +90,12 @@ def test_support_on_moved_vertices(mesh: Mesh) -> None:
 
 
 def test_support_of_a_hybrid_mesh() -> None:
-    found, report = optimize_spheres(smooth(hybrid()), TABLE_1)
+    found, report = optimize_spheres(smooth(hybrid()), TABLE_1, Conditions(tolerance=0.05))
     assert report.converged
-    assert support_structure(found).torsion.max() <= 0.05
-    assert miss(found) <= 0.01
+    nodes = support_structure(found)
+    assert nodes.torsion.max() <= 0.05
+    assert nodes.is_valid.all()
+    assert miss(found) <= 1e-6
 
 
 # Tolerance
