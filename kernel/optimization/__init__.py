@@ -17,8 +17,8 @@ equal ones the one that bulges more, so the numbering decides nothing. Creases w
 the openings of caps are bounded (projected Newton), and no part is handed over rougher than
 its planes.
 
-Everything else, moving vertices, upright planes and nodes with axes, is `whole_energy`, by
-Levenberg-Marquardt on the terms in `energies`.
+Everything else, moving vertices, upright planes and nodes with axes, is `whole_energy`, by the
+Newton method in `descent` on the terms in `energies`.
 
 angle_minimization  Angles in the pencils of the faces' circles, vertices fixed.
 pencil_energy       Energies of the angles between neighbours, one unknown per face.
@@ -27,6 +27,8 @@ target_starts       Where to start when neighbours shall meet at an angle.
 strips              Rows of faces whose spheres join smoothly along the row, and only there.
 radius_clustering   Few moulds: the radii of a sphere mesh gathered into clusters.
 line_clusters       Clusters of numbers on a line with the least sum of squares, exactly.
+comparison          Is an optimum better than doing nothing?
 whole_energy        Energy (6): smooth spheres, upright planes between them, nodes with axes.
-energies            The terms of energy (6), their table, and how their sum falls.
+energies            The terms of energy (6) and their table.
+descent             How their sum falls, and what has to hold.
 """

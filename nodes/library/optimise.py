@@ -5,21 +5,27 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 
-from ...kernel.analysis import angle_summary
 from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.errors import ConvergenceError, InputError, name_ids
 from ...kernel.meshes.creases import crease_edges
 from ...kernel.meshes.mesh import Mesh, mean_edge_length
 from ...kernel.optimization import angle_minimization, strips
 from ...kernel.optimization import whole_energy as optimization
+from ...kernel.optimization.comparison import Smoothness
 from ...kernel.optimization.energies.table import EnergyWeights
 from ...kernel.sphere_meshes.planarity_circularity import circularity
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
-from ...kernel.tolerances import CIRCULAR, FLATTENED, LITTLE_GAIN, OPENING, VERTEX_MISS
+from ...kernel.tolerances import CIRCULAR, OPENING, VERTEX_MISS
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
 from .arrays import CreaseAngle, EdgeWeights, FaceRadii, FaceVectors, Vector
-from .outcomes import OptimumReport, flatten_rejected, outcome_of, warn_of_losses
+from .outcomes import (
+    OptimumReport,
+    flatten_rejected,
+    outcome_of,
+    warn_of_losses,
+    warn_of_support,
+)
 
 Weight = Annotated[float, Port(min=0)]
 
@@ -73,6 +79,14 @@ class EnergyReport(OptimumReport):
         pass through it) or ``own`` (each within the tolerance of it).
     vertex_move : float
         In mean edges.
+    held : bool
+        Whether what had to hold exactly does: nodes with axes, vertices on their spheres.
+    lowest_eigenvalue : float or None
+        Of the second derivatives at rest; not below -1e-8 at a minimum.
+    kept : str
+        ``optimum``, or ``planes`` or the spheres at the ``start`` where these are smoother.
+    optimum_angles_deg, start_angles_deg : dict
+        ``mean`` and ``max`` of the optimum, kept or not, and of the spheres at the start.
     angles_deg, vertex_error, creases : dict
         As in `AnglesReport`.
     """
@@ -81,6 +95,11 @@ class EnergyReport(OptimumReport):
     stages: list[dict[str, Any]]
     corners: str
     vertex_move: float
+    held: bool
+    lowest_eigenvalue: float | None
+    kept: str
+    optimum_angles_deg: dict[str, float]
+    start_angles_deg: dict[str, float]
     angles_deg: dict[str, dict[str, float]]
     vertex_error: dict[str, float]
     creases: dict[str, Any]
@@ -214,7 +233,7 @@ def _weights(weights: FloatArray | None, is_crease: BoolArray) -> FloatArray:
     return np.where(is_crease, 0.0, 1.0 if weights is None else weights)
 
 
-@node
+@node(version="2")
 def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     sphere_mesh: SphereMesh,
     sphericity: Weight = 1.0,
@@ -245,8 +264,8 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     regularity : float
         Weight of the planes between neighbours standing upright; 3.5 goes with a support.
     support : float
-        Weight of nodes without torsion; 1 asks for them. It is raised until they have none.
-        Spheres then miss vertices, by what the report says: `land_nodes` moves the vertices.
+        Weight of nodes without torsion; with any, they have none in the end. Spheres then miss
+        vertices, by what the report says: allow a tolerance, or let `land_nodes` move them.
     fairness : float
         Weight of moving vertices lying near the mean of their neighbours.
     closeness : float
@@ -258,7 +277,8 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     tolerance : float
         How far vertices may move, in mean edges. They move until all spheres of a vertex pass
         through it; where that would be rougher than flat panels, they stay, and each sphere
-        passes within the tolerance of them.
+        passes within the tolerance of them. Of optima that are equal, the one that moves
+        vertices least is found.
     fixed_radii : (F,) float array, optional
         Radius of each face, infinite for a plane, 0 where it is free.
     interior : {"free", "glide"}
@@ -266,7 +286,7 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     boundary : {"free", "glide", "fixed"}
         How boundary vertices move; gliding ones along the boundary.
     max_iterations : int
-        Largest number of linear systems of each stage.
+        Largest number of steps of each stage.
     crease : float
         Edges at which the flat faces turn by more stay sharp: their angle counts nothing. 180
         for no creases.
@@ -274,7 +294,8 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     Returns
     -------
     sphere_mesh : SphereMesh
-        The optimum, on moved vertices if they may move.
+        The optimum, on moved vertices if they may move. Where nothing but angles was asked for
+        and flat panels or the spheres at the start meet more smoothly, these.
     report : EnergyReport
         The angles before and after, the stages, and how far vertices moved.
 
@@ -297,29 +318,66 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     )  # fmt: skip
     result, run = optimization.optimize_spheres(sphere_mesh, weights, conditions)
     outcome = outcome_of(result, sphere_mesh.mesh, is_crease, crease)
-    if not run.converged:
+    _warn_of_energy(run, outcome, conditions, support)
+    if support > 0:
+        warn_of_support(sphere_mesh, result, outcome, ~is_crease)
+    elif target_angle == 0 and run.kept == "optimum":
+        warn_of_losses(result, sphere_mesh.mesh, smooth, is_crease)
+    lowest = run.lowest_eigenvalue
+    report = EnergyReport(
+        run.converged,
+        [_stage(stage) for stage in run.stages],
+        run.corners,
+        run.vertex_move,
+        run.is_held,
+        lowest if np.isfinite(lowest) else None,
+        run.kept,
+        _degrees(run.figures["optimum"]),
+        _degrees(run.figures["start"]),
+        **outcome,
+    )
+    return EnergyOptimum(result, report)
+
+
+def _degrees(found: Smoothness) -> dict[str, float]:
+    return {"mean": float(np.degrees(found.mean)), "max": float(np.degrees(found.largest))}
+
+
+def _warn_of_energy(
+    run: optimization.Optimization,
+    outcome: dict[str, dict[str, Any]],
+    conditions: optimization.Conditions,
+    support: float,
+) -> None:
+    """Say what did not come out, and what the optimum costs."""
+    if run.stages[-1].status == "exhausted":
         warn(
-            f"the optimisation used up its {max_iterations} iterations: the result is its best "
-            "so far; raise max_iterations"
+            f"the optimisation used up its {conditions.max_iterations} iterations: the result "
+            "is its best so far; raise max_iterations"
         )
-    if run.corners == "own":
+    elif not run.is_held:
         warn(
-            f"no common spheres within a tolerance of {tolerance:g} mean edges are smoother "
-            "than flat panels: vertices stay, and each panel has corners of its own within the "
-            "tolerance of them"
+            "what has to hold does not: vertices miss their spheres by up to "
+            f"{run.vertex_miss:.3g} mean edges; allow a larger tolerance"
+        )
+    found = {name: float(np.degrees(each.mean)) for name, each in run.figures.items()}
+    if run.kept != "optimum":
+        kept = "flat panels" if run.kept == "planes" else "the spheres at the start"
+        warn(
+            f"{kept} are kept: they meet at {found[run.kept]:.3g} degrees on average, the "
+            f"optimum at {found['optimum']:.3g}; allow a tolerance for smoother panels"
+        )
+    elif run.corners == "own":
+        warn(
+            f"no common spheres within a tolerance of {conditions.tolerance:g} mean edges are "
+            "smoother than flat panels: vertices stay, and each panel has corners of its own "
+            "within the tolerance of them"
         )
     elif support == 0 and outcome["vertex_error"]["relative_to_edge"] > VERTEX_MISS:
         warn(
             f"vertices miss their spheres by up to {run.vertex_miss:.3g} mean edges: allow a "
             "tolerance to let them move"
         )
-    if target_angle == 0 and support == 0:
-        warn_of_losses(result, sphere_mesh.mesh, smooth, is_crease)
-    if support > 0:
-        _warn_of_support(sphere_mesh, result, outcome, ~is_crease)
-    stages = [_stage(stage) for stage in run.stages]
-    report = EnergyReport(run.converged, stages, run.corners, run.vertex_move, **outcome)
-    return EnergyOptimum(result, report)
 
 
 @node
@@ -361,33 +419,3 @@ def _stage(stage: optimization.Stage) -> dict[str, Any]:
         "iterations": stage.iterations,
         "energies": {name: list(map(float, e)) for name, e in stage.energies.items()},
     }
-
-
-def _warn_of_support(
-    start: SphereMesh, result: SphereMesh, outcome: dict[str, dict[str, Any]],
-    is_smooth: BoolArray,
-) -> None:  # fmt: skip
-    """Say where nodes without torsion cost what spheres are for."""
-    planar, spherical = (
-        outcome["angles_deg"][kind]["mean"] for kind in ("planar", "spherical")
-    )
-    bends = [
-        float(np.median(np.abs(each.local_spheres[:, 0]))) * mean_edge_length(each.mesh)
-        for each in (start, result)
-    ]
-    before = angle_summary(start, is_smooth)["mean"]
-    found: list[str] = []
-    if bends[1] < FLATTENED * bends[0] and spherical > (1 + LITTLE_GAIN) * before:
-        share = 100 * bends[1] / bends[0]
-        found.append(
-            f"flatten to {share:.0f} % of their curvature ({before:.3g} to {spherical:.3g} "
-            "degrees)"
-        )
-    if spherical > planar:
-        found.append(f"are rougher than planes ({planar:.3g} to {spherical:.3g} degrees)")
-    if found:
-        warn(
-            f"for nodes without torsion spheres {' and '.join(found)}: the net does not follow "
-            "the lines of curvature; let its vertices slide (exact_support), or leave spheres "
-            "as they are and take axis_support"
-        )

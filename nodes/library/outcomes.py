@@ -12,7 +12,7 @@ from ...kernel.panels.cutting import cut_panels
 from ...kernel.reports import Report
 from ...kernel.sphere_meshes.fit import face_planes
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
-from ...kernel.tolerances import DEEP_CAP, LITTLE_GAIN
+from ...kernel.tolerances import DEEP_CAP, FLATTENED, LITTLE_GAIN
 from ..graphs.node import warn
 
 
@@ -133,4 +133,44 @@ def warn_of_losses(
             f"the sharpest edge{along} rises from {planar['max']:.3g} to "
             f"{spherical['max']:.3g} degrees, while the mean goes from {planar['mean']:.3g} to "
             f"{spherical['mean']:.3g}"
+        )
+
+
+def warn_of_support(
+    start: SphereMesh, result: SphereMesh, outcome: dict[str, dict[str, Any]],
+    is_smooth: BoolArray,
+) -> None:  # fmt: skip
+    """Say where nodes without torsion cost what spheres are for.
+
+    Parameters
+    ----------
+    start, result : SphereMesh
+        Before and after.
+    outcome : dict
+        Of the result, from `outcome_of`.
+    is_smooth : (E,) bool array
+        Edges that are no crease.
+    """
+    planar, spherical = (
+        outcome["angles_deg"][kind]["mean"] for kind in ("planar", "spherical")
+    )
+    bends = [
+        float(np.median(np.abs(each.local_spheres[:, 0]))) * mean_edge_length(each.mesh)
+        for each in (start, result)
+    ]
+    before = angle_summary(start, is_smooth)["mean"]
+    found: list[str] = []
+    if bends[1] < FLATTENED * bends[0] and spherical > (1 + LITTLE_GAIN) * before:
+        share = 100 * bends[1] / bends[0]
+        found.append(
+            f"flatten to {share:.0f} % of their curvature ({before:.3g} to {spherical:.3g} "
+            "degrees)"
+        )
+    if spherical > planar:
+        found.append(f"are rougher than planes ({planar:.3g} to {spherical:.3g} degrees)")
+    if found:
+        warn(
+            f"for nodes without torsion spheres {' and '.join(found)}: the net does not follow "
+            "the lines of curvature; let its vertices slide (exact_support), or leave spheres "
+            "as they are and take axis_support"
         )
