@@ -5,15 +5,15 @@ from typing import Any
 
 import numpy as np
 
-from ...kernel.analysis import angle_summary
-from ...kernel.arrays import BoolArray, FloatArray, norm
-from ...kernel.meshes.mesh import Mesh, local_corners, mean_edge_length
-from ...kernel.panels.cutting import cut_panels
-from ...kernel.reports import Report
-from ...kernel.sphere_meshes.fit import face_planes
-from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
-from ...kernel.tolerances import DEEP_CAP, FLATTENED, LITTLE_GAIN
-from ..graphs.node import warn
+from ....kernel.analysis import angle_summary
+from ....kernel.arrays import BoolArray, FloatArray, norm
+from ....kernel.meshes.mesh import Mesh, local_corners, mean_edge_length
+from ....kernel.panels.cutting import cut_panels
+from ....kernel.reports import Report
+from ....kernel.sphere_meshes.fit import face_planes
+from ....kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
+from ....kernel.tolerances import DEEP_CAP, FLATTENED, LITTLE_GAIN
+from ...graphs.node import warn
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,3 +174,8 @@ def warn_of_support(
             "the lines of curvature; let its vertices slide (exact_support), or leave spheres "
             "as they are and take axis_support"
         )
+
+
+def counted_weights(weights: FloatArray | None, is_crease: BoolArray) -> FloatArray:
+    """Weight of each edge (E,), 0 on creases."""
+    return np.where(is_crease, 0.0, 1.0 if weights is None else weights)
