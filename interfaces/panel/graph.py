@@ -100,10 +100,7 @@ def panel_graph(
         "panels", "panels", sphere_mesh=spheres, labels=labels, **{**layers, **cut}
     )
     support = add_beams(graph, options, annuli, panels.panels) if annuli else None
-    plain: dict[str, Wire] = {}
-    if support or spheres is not design:
-        # What there would be without moulds and beams, to say what these cost.
-        plain["plain"] = graph.add("panels", "plain", sphere_mesh=design, **layers).report
+    plain = _plain(graph, design, layers) if support or spheres is not design else {}
     if options.moulds is not None:
         blanks = _add_blanks(graph, panels.panels)
     audit = graph.add(
@@ -143,6 +140,11 @@ def _add_writers(graph: Graph, mesh: Step | Wire, made: Mapping[str, Wire]) -> N
 def _source(graph: Graph) -> str:
     """Name of the output that is the mesh: of the file, or repaired."""
     return "mesh.mesh" if graph.steps["mesh"].node.name == "repair_mesh" else "mesh"
+
+
+def _plain(graph: Graph, design: Wire, layers: Mapping[str, Any]) -> dict[str, Wire]:
+    """Panels as they would be without moulds and beams, to say what these cost."""
+    return {"plain": graph.add("panels", "plain", sphere_mesh=design, **layers).report}
 
 
 def _mesh(graph: Graph, options: PanelOptions) -> Step | Wire:

@@ -6,6 +6,7 @@ cluster     Few moulds for many panels, and their blanks.
 congruence  Spheres at the vertices of a surface, and the surfaces that they envelop.
 fabricate   Panels, and the files that fabricators open.
 input       Meshes to start from: read from files, or exactly circular nets.
+lists       Lists as values: what steps mapped over lists give, in another form.
 meshing     Other meshes of the same shape: triangulated, subdivided, remeshed, repaired.
 mobius      Möbius transforms, and the coordinates on which they act.
 models      Sphere meshes with a support structure by construction, and how to recognise them.

@@ -5,7 +5,8 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 
-from ...kernel.arrays import FloatArray
+from ...kernel.analysis import angle_summary
+from ...kernel.arrays import BoolArray, FloatArray
 from ...kernel.errors import ConvergenceError, InputError, name_ids
 from ...kernel.meshes.creases import crease_edges
 from ...kernel.meshes.mesh import Mesh, mean_edge_length
@@ -14,11 +15,11 @@ from ...kernel.optimization import whole_energy as optimization
 from ...kernel.optimization.energies.table import EnergyWeights
 from ...kernel.sphere_meshes.planarity_circularity import circularity
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
-from ...kernel.tolerances import CIRCULAR, OPENING, VERTEX_MISS
+from ...kernel.tolerances import CIRCULAR, FLATTENED, LITTLE_GAIN, OPENING, VERTEX_MISS
 from ..graphs.node import node, warn
 from ..graphs.ports import Port
 from .arrays import CreaseAngle, EdgeWeights, FaceRadii, FaceVectors, Vector
-from .outcomes import OptimumReport, outcome_of, warn_of_losses, warn_of_support
+from .outcomes import OptimumReport, flatten_rejected, outcome_of, warn_of_losses
 
 Weight = Annotated[float, Port(min=0)]
 
@@ -45,7 +46,7 @@ class AnglesReport(OptimumReport):
         How far vertices lie from the circles of their faces, in mean edges.
     taken_back : int
         Faces whose panels are flatter than those of the least energy, because these would be
-        rougher than flat ones in the mean.
+        rougher than flat ones in the mean, or could not be cut.
     """
 
     converged: bool
@@ -144,27 +145,30 @@ def minimize_angles(
     >>> {kind: round(found["mean"], 1) for kind, found in report["angles_deg"].items()}
     {'planar': 24.9, 'spherical': 15.6}
     """
-    if max_opening is None:
-        max_opening = 180.0 if target_angle > 0 else np.degrees(OPENING)
+    opening = float(np.pi) if target_angle > 0 else OPENING
+    if max_opening is not None:
+        opening = float(np.radians(max_opening))
     result, run = angle_minimization.minimize_angles(
         sphere_mesh,
         np.radians(target_angle),
         edge_weights,
         np.radians(crease),
-        np.radians(max_opening),
+        opening,
     )
     if not run.converged:
         raise ConvergenceError(
             f"the angles did not converge in {sum(run.iterations)} steps (last step "
             f"{run.step:.1e} rad): look for nearly degenerate faces"
         )
-    if max_miss is not None and run.circle_miss > max(max_miss, CIRCULAR):
-        misses = circularity(result.mesh) / mean_edge_length(result.mesh)
-        faces = np.flatnonzero(misses > max(max_miss, CIRCULAR)).tolist()
-        raise ConvergenceError(
-            f"the vertices of faces {name_ids(faces)} lie on no circle: they miss it by up to "
-            f"{run.circle_miss:.3g} mean edges and {max_miss:g} is allowed; give a tolerance "
-            "of about that size"
+    if max_miss is not None:
+        _refuse_far_corners(result.mesh, run.circle_miss, max(max_miss, CIRCULAR))
+    flattened: list[int] = []
+    if target_angle == 0:
+        result, flattened = flatten_rejected(result, run.is_crease)
+    if flattened:
+        warn(
+            f"the panels of faces {name_ids(flattened)} are flat: pieces of their spheres "
+            "cannot be cut; smaller or rounder faces there let them bulge"
         )
     found = outcome_of(result, sphere_mesh.mesh, run.is_crease, crease)
     relative = found["vertex_error"]["relative_to_edge"]
@@ -181,19 +185,31 @@ def minimize_angles(
             "way only; shorter faces across the bend gain more"
         )
     if target_angle == 0:
-        warn_of_losses(result, sphere_mesh.mesh, _counted(edge_weights, run.is_crease))
+        weights = _weights(edge_weights, run.is_crease)
+        warn_of_losses(result, sphere_mesh.mesh, weights, run.is_crease)
     report = AnglesReport(
         converged=run.converged,
         iterations=list(run.iterations),
         energies=list(run.energies),
         **found,
         circle_miss=run.circle_miss,
-        taken_back=taken_back,
+        taken_back=taken_back + len(flattened),
     )
     return AnglesOptimum(result, report)
 
 
-def _counted(weights: FloatArray | None, is_crease: FloatArray) -> FloatArray:
+def _refuse_far_corners(mesh: Mesh, miss: float, allowed: float) -> None:
+    """Raise an error if corners lie farther from the circles of their faces than allowed."""
+    if miss <= allowed:
+        return
+    faces = np.flatnonzero(circularity(mesh) / mean_edge_length(mesh) > allowed).tolist()
+    raise ConvergenceError(
+        f"the vertices of faces {name_ids(faces)} lie on no circle: they miss it by up to "
+        f"{miss:.3g} mean edges and {allowed:g} is allowed; give a tolerance of about that size"
+    )
+
+
+def _weights(weights: FloatArray | None, is_crease: BoolArray) -> FloatArray:
     """Weight of each edge (E,), 0 on creases."""
     return np.where(is_crease, 0.0, 1.0 if weights is None else weights)
 
@@ -265,7 +281,7 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     Examples
     --------
     >>> from spheremesh.nodes import fit_spheres, optimize_spheres, vase_mesh
-    >>> optimum = optimize_spheres(fit_spheres(vase_mesh(8, 4)), angle=0.01)
+    >>> optimum = optimize_spheres(fit_spheres(vase_mesh(12, 4)), angle=0.01)
     >>> optimum.report["converged"], optimum.report["corners"]
     (True, 'soft')
     """
@@ -274,7 +290,7 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
         fairness=fairness, closeness=closeness,
     )  # fmt: skip
     is_crease = crease_edges(sphere_mesh.mesh, np.radians(crease))
-    smooth = _counted(edge_weights, is_crease)
+    smooth = _weights(edge_weights, is_crease)
     conditions = optimization.Conditions(
         np.radians(target_angle), smooth, tolerance, fixed_radii, interior, boundary,
         max_iterations,
@@ -298,9 +314,9 @@ def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
             "tolerance to let them move"
         )
     if target_angle == 0 and support == 0:
-        warn_of_losses(result, sphere_mesh.mesh, smooth)
+        warn_of_losses(result, sphere_mesh.mesh, smooth, is_crease)
     if support > 0:
-        warn_of_support(sphere_mesh, result, outcome["angles_deg"])
+        _warn_of_support(sphere_mesh, result, outcome, ~is_crease)
     stages = [_stage(stage) for stage in run.stages]
     report = EnergyReport(run.converged, stages, run.corners, run.vertex_move, **outcome)
     return EnergyOptimum(result, report)
@@ -345,3 +361,33 @@ def _stage(stage: optimization.Stage) -> dict[str, Any]:
         "iterations": stage.iterations,
         "energies": {name: list(map(float, e)) for name, e in stage.energies.items()},
     }
+
+
+def _warn_of_support(
+    start: SphereMesh, result: SphereMesh, outcome: dict[str, dict[str, Any]],
+    is_smooth: BoolArray,
+) -> None:  # fmt: skip
+    """Say where nodes without torsion cost what spheres are for."""
+    planar, spherical = (
+        outcome["angles_deg"][kind]["mean"] for kind in ("planar", "spherical")
+    )
+    bends = [
+        float(np.median(np.abs(each.local_spheres[:, 0]))) * mean_edge_length(each.mesh)
+        for each in (start, result)
+    ]
+    before = angle_summary(start, is_smooth)["mean"]
+    found: list[str] = []
+    if bends[1] < FLATTENED * bends[0] and spherical > (1 + LITTLE_GAIN) * before:
+        share = 100 * bends[1] / bends[0]
+        found.append(
+            f"flatten to {share:.0f} % of their curvature ({before:.3g} to {spherical:.3g} "
+            "degrees)"
+        )
+    if spherical > planar:
+        found.append(f"are rougher than planes ({planar:.3g} to {spherical:.3g} degrees)")
+    if found:
+        warn(
+            f"for nodes without torsion spheres {' and '.join(found)}: the net does not follow "
+            "the lines of curvature; let its vertices slide (exact_support), or leave spheres "
+            "as they are and take axis_support"
+        )
