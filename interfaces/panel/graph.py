@@ -79,8 +79,6 @@ def panel_graph(
     crease = graph.param("crease", options.crease, min=0, max=180)
     if keeps_spheres:
         optimum = _kept_spheres(graph, mesh, crease)
-    elif options.support == "exact":
-        optimum = _exact(graph, options, mesh)
     else:
         optimum = _optimum(graph, options, mesh, moves, crease)
     design = spheres = optimum.sphere_mesh
@@ -180,6 +178,8 @@ def _optimum(
     crease: Param,
 ) -> Step:  # fmt: skip
     """The spheres: of smallest angles alone, or of more than that."""
+    if options.support == "exact":
+        return _exact(graph, options, mesh)
     start = graph.add("fit_spheres", "start", mesh=mesh)
     target: dict[str, Any] = {"crease": crease}
     if options.target_angle:
