@@ -98,17 +98,31 @@ NOISE_MARGIN: Final = 8.0
 
 LINEAR_SOLVE: Final = 1e-6
 """Relative residual to which the linear system of a Newton step is solved."""
-STEP_MODEL: Final = 0.01
-"""A Gauss-Newton step is solved until its model would gain no more than this share."""
-RESTING_MODEL: Final = 1e-3
-"""The same in a flat valley, where what is left of a step would decide where a descent ends."""
-ROUNDED_DIRECTION: Final = 1e-28
-"""A squared gradient below this share of the first is rounding."""
+LEAST_SHIFT: Final = 1e-10
+"""Least shift of a Hessian, lengths in mean edges: rounding moves nothing that is free."""
+LEAST_DECREMENT: Final = 1e-26
+"""A step that promises less energy than this is at rest: 1e-10 of a mean edge, weighted."""
+LOWEST_EIGENVALUE: Final = 1e-8
+"""Where the lowest eigenvalue of the Hessian is not below minus this, a minimum is reached."""
+SAME_FALL: Final = 1e-6
+"""Two falls of an energy that differ by a smaller share are equal."""
 
 # Optimization
 
 ANGLE_STEP: Final = 1e-9
 """An angle minimisation has converged when no unknown moves by more (radians)."""
+ENERGY_CHANGE: Final = 1e-6
+"""A descent has converged when a step lowers the energy by less than this share."""
+AT_REST: Final = 1e-12
+"""A descent is at rest when a step promises no more than this share of the energy."""
+HELD: Final = 1e-8
+"""What has to hold exactly holds when it misses by no more, in mean edges."""
+HELD_AXES: Final = 1e-11
+"""Nodes have axes when products of two curvatures miss by no more, in mean edges."""
+SAME_OBJECTIVE: Final = 1e-9
+"""The optimum is found when a round changes the rest of the energy by no larger share."""
+SAME_ANGLES: Final = 1e-6
+"""Mean angles that differ by a smaller share are equal."""
 NEGATIVE_MODE: Final = 1e-8
 """An eigenvalue above minus this share of the largest entry of its matrix is not negative."""
 SAME_ENERGY: Final = 1e-9
@@ -117,12 +131,6 @@ SAME_BULGE: Final = 1e-6
 """Optima whose spheres bulge alike up to this share bulge alike."""
 OPENING: Final = 1.0471975511965976
 """Half opening (60 degrees) up to which a spherical cap is taken for a panel."""
-AT_BOUND: Final = 1e-9
-"""Vertices this close to the bound of their displacement, relative to it, lie on it."""
-ENERGY_CHANGE: Final = 1e-6
-"""A descent has converged when a step lowers the energy by less than this share."""
-STAGE_CHANGE: Final = 1e-4
-"""A descent that others follow may end at this relative change of the energy."""
 LEAST_ENERGY: Final = 1e-16
 """An energy as good as zero: no residual above 1e-8 of a mean edge is left."""
 

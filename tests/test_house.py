@@ -16,7 +16,7 @@ SOURCES = [path for name in PACKAGES for path in sorted((ROOT / name).rglob("*.p
 ROOMS = sorted({path.parent for path in SOURCES if path.name != "__init__.py"})
 MOST_FILES, MOST_LINES, MOST_FUNCTION_LINES = 15, 400, 60
 
-TERMS_OF_ENERGY = {"blocks", "residuals", "jacobian"}
+TERMS_OF_ENERGY = {"blocks", "residuals", "jacobian", "second_derivatives"}
 """What every module of a term of energy (6) gives."""
 SHARED_NAMES: dict[str, str] = {}
 """Other names that two modules may give, with the reason; five at most."""

@@ -113,9 +113,7 @@ def panel_graph(
         cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report, **plain,
         **(support.report if support else {}),
     )  # fmt: skip
-    made = {"panels": panels.panels}
-    if support:
-        made["beams"] = support.beams
+    made = {"panels": panels.panels} | ({"beams": support.beams} if support else {})
     _add_writers(graph, mesh, made)
     return graph
 

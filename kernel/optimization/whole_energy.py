@@ -8,7 +8,7 @@ instead.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -17,25 +17,32 @@ from numpy.typing import ArrayLike
 from ..arrays import BoolArray, FloatArray, norm
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_centroids, mean_edge_length, with_vertices
-from ..solvers.levenberg_marquardt import Status
 from ..sphere_meshes.fit import face_planes
-from ..sphere_meshes.sphere_mesh import SphereMesh, intersection_angles, vertex_error
+from ..sphere_meshes.sphere_mesh import SphereMesh, vertex_error
 from ..spheres.circles import circle_pencils, face_circles, pencil_spheres
 from ..spheres.rows import recenter, rescale
-from ..tolerances import COMMON_VERTEX, ENERGY_CHANGE, RESTING_MODEL, STAGE_CHANGE, STEP_MODEL
+from ..tolerances import COMMON_VERTEX, LOWEST_EIGENVALUE
 from .angle_minimization import check_angle_options, minimize_angles, pencil_angles
-from .energies.freedom import Boundary, Freedom, Interior, vertex_freedom
-from .energies.minimize import energy_problem, minimize_energy
+from .comparison import Kept, Smoothness, smoother, smoothness
+from .descent.freedom import Boundary, Freedom, Interior, vertex_freedom
+from .descent.multipliers import BOUND_MARGIN, Stage, descend_energy, hold, stage_of
+from .descent.problem import EnergyProblem, energy_problem
 from .energies.setting import Setting, Unknowns, energy_setting, first_unknowns
-from .energies.table import EnergyWeights
+from .energies.table import TERMS, EnergyWeights
 
 Corners = Literal["soft", "common", "own"]
 
-SPHERICITY_FACTORS = (10, 100, 1000)
-SUPPORT_FACTORS = (10, 100, 1000, 10_000, 100_000)
-LANDING_SUPPORT = 100.0
-"""Weight of the support against that of sphericity in the landing: its residuals are products
-of two curvatures, and small."""
+HARD = {"sphericity": 10.0, "support": 100.0}
+"""Factors on the weights of what has to hold exactly; its multipliers do the rest."""
+BOUND_WEIGHTS = (1e-2, 3e-3, 1e-3)
+"""Weights of the displacements, from round to round. What costs nothing else moves least."""
+LIMIT_WEIGHTS = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3)
+"""Weights of misses that have a limit, from round to round."""
+NEARER = (1, 10, 100, 1000)
+"""Factors on the weight of the misses until all are within their limit."""
+FIRST_STEPS = 10
+FIRST_DECREMENT = 1e-3
+"""Steps without second derivatives end at this decrement: they lead out of saddles."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +66,7 @@ class Conditions:
     boundary : {"free", "glide", "fixed"}
         How boundary vertices move; gliding ones along the boundary.
     max_iterations : int
-        Largest number of linear systems of each stage.
+        Largest number of steps of each stage.
     """
 
     target_angle: float = 0.0
@@ -69,26 +76,6 @@ class Conditions:
     interior: Interior = "free"
     boundary: Boundary = "free"
     max_iterations: int = 100
-
-
-@dataclass(frozen=True)
-class Stage:
-    """One minimisation on the way.
-
-    Attributes
-    ----------
-    name : str
-        What it was for.
-    status : {"converged", "stalled", "exhausted"}
-        How it ended.
-    energies : mapping of str to (n,) float arrays
-        Weighted energy of each term at the start and after each accepted step.
-    """
-
-    name: str
-    status: Status
-    iterations: int
-    energies: Mapping[str, FloatArray]
 
 
 @dataclass(frozen=True)
@@ -107,17 +94,33 @@ class Optimization:
         Largest displacement of a vertex, in mean edges.
     vertex_miss : float
         Largest distance of a vertex from one of its spheres, in mean edges.
+    is_held : bool
+        Whether all that had to hold exactly does: nodes have axes if asked for, vertices lie
+        on their spheres, or spheres pass within the tolerance of them.
+    lowest_eigenvalue : float
+        Lowest eigenvalue of the Hessian at rest, or a bound from below: no minimum where it is
+        clearly negative. Minus infinity where it is not known.
+    figures : mapping of str to Smoothness
+        Of the ``optimum``, of ``planes`` on the mesh as it was, of the spheres at ``start``.
+    kept : {"optimum", "planes", "start"}
+        Which of these is the result: where nothing was asked for but small angles, an optimum
+        that is rougher on average is not handed over.
     """
 
     stages: tuple[Stage, ...]
     corners: Corners
     vertex_move: float
     vertex_miss: float
+    is_held: bool = True
+    lowest_eigenvalue: float = -np.inf
+    figures: Mapping[str, Smoothness] = field(default_factory=dict[str, Smoothness])
+    kept: Kept = "optimum"
 
     @property
     def converged(self) -> bool:
-        """Whether the last stage came to rest: False if it used up its iterations."""
-        return self.stages[-1].status != "exhausted"
+        """Whether the last stage came to rest in a minimum, and all that had to hold does."""
+        is_minimum = self.lowest_eigenvalue >= -LOWEST_EIGENVALUE
+        return self.stages[-1].status == "converged" and is_minimum and self.is_held
 
 
 def optimize_spheres(
@@ -135,11 +138,8 @@ def optimize_spheres(
     Notes
     -----
     Regularity and support vanish when all spheres are planes, so they come after a stage of
-    angles alone. What has to hold exactly, nodes with an axis and vertices on their spheres, is
-    brought about by raising its weight from stage to stage; where neighbours are nearly the
-    same sphere, the residuals of the support are small whatever the torsion. Last, moving
-    vertices land: what has to hold is minimised alone, which Gauss-Newton steps do quickly and
-    without moving anything more than needed.
+    angles alone. What has to hold exactly, nodes with an axis and vertices on their spheres,
+    is brought about by multipliers (`descent.multipliers`).
 
     References
     ----------
@@ -147,19 +147,51 @@ def optimize_spheres(
     """
     weights = EnergyWeights() if weights is None else weights
     conditions = Conditions() if conditions is None else conditions
-    near = _angles_first(_problem(sphere_mesh, conditions), weights)
+    result, report = _optimum(sphere_mesh, weights, conditions)
+    edge_weights = check_angle_options(
+        sphere_mesh.mesh, conditions.target_angle, conditions.edge_weights
+    )
+    others = {"planes": face_planes(sphere_mesh.mesh), "start": sphere_mesh}
+    figures = {
+        name: smoothness(each, edge_weights, conditions.target_angle)
+        for name, each in {"optimum": result, **others}.items()
+    }
+    report = replace(report, figures=figures)
+    explains = not _asks_for_angles_alone(weights, conditions)
+    if weights.support > 0 and (report.corners == "own" or not report.is_held):
+        # Without common vertices nodes have no axes: the support explains nothing.
+        explains = False
+    if weights.angle == 0 or explains:
+        return result, report
+    kept = smoother(
+        figures["optimum"], figures["planes"], figures["start"], conditions.tolerance
+    )
+    if kept == "optimum":
+        return result, report
+    miss = figures[kept].miss
+    corners: Corners = "soft" if conditions.tolerance == 0 else "own"
+    report = replace(report, corners=corners, vertex_move=0.0, vertex_miss=miss, kept=kept)
+    return others[kept], report
+
+
+def _asks_for_angles_alone(weights: EnergyWeights, conditions: Conditions) -> bool:
+    """Whether nothing that was asked for explains rougher spheres."""
+    others = weights.regularity, weights.support, weights.fairness, weights.closeness
+    return not any(others) and conditions.fixed_radii is None
+
+
+def _optimum(
+    sphere_mesh: SphereMesh, weights: EnergyWeights, conditions: Conditions
+) -> tuple[SphereMesh, Optimization]:
+    run = _angles_first(_prepared(sphere_mesh, conditions), weights)
     if conditions.tolerance == 0:
-        return _finished(_tightened(near, weights, ()), "soft")
-    result, report = _landed(near, weights, conditions)
+        return _finished(_held(run, weights, ()), "soft")
+    result, report = _landed(run, weights, conditions)
     is_free = weights.regularity == 0 and weights.support == 0
     is_rough = is_free and _is_rougher_than_planes(result, conditions)
     if report.vertex_miss <= COMMON_VERTEX and not is_rough:
         return result, report
-    allowance = conditions.tolerance * (1 - COMMON_VERTEX)
-    near = replace(
-        near, setting=replace(near.setting, allowance=allowance), stages=report.stages
-    )
-    return _finished(_tightened(near, weights, ("sphericity",)), "own")
+    return _finished(_within(replace(run, stages=report.stages), weights, conditions), "own")
 
 
 def move_vertices(
@@ -175,37 +207,37 @@ def move_vertices(
     InputError
         If a condition is out of range or does not match the mesh.
     """
-    near = _angles_first(_problem(sphere_mesh, conditions), weights)
-    return _landed(near, weights, conditions)
+    run = _angles_first(_prepared(sphere_mesh, conditions), weights)
+    return _landed(run, weights, conditions)
 
 
 @dataclass(frozen=True)
-class _Problem:
+class _Run:
+    """An optimisation under way."""
+
     mesh: Mesh
     setting: Setting
     freedom: Freedom
     unknowns: Unknowns
     max_iterations: int
     stages: tuple[Stage, ...] = ()
+    is_held: bool = True
+    lowest: float = -np.inf
 
 
 def _landed(
-    problem: _Problem, weights: EnergyWeights, conditions: Conditions
+    run: _Run, weights: EnergyWeights, conditions: Conditions
 ) -> tuple[SphereMesh, Optimization]:
     """Vertices move onto their spheres."""
     freedom = replace(
-        problem.freedom,
+        run.freedom,
         tolerance=conditions.tolerance,
-        vertices=vertex_freedom(problem.mesh, conditions.interior, conditions.boundary),
+        vertices=vertex_freedom(run.mesh, conditions.interior, conditions.boundary),
     )
-    problem = _tightened(replace(problem, freedom=freedom), weights, ("sphericity",))
-    exact = EnergyWeights(sphericity=1.0, angle=0.0, support=LANDING_SUPPORT * weights.support)
-    # Coming closer than this gains nothing, and moves much where few shapes of a mesh will do.
-    problem = replace(problem, setting=replace(problem.setting, allowance=COMMON_VERTEX / 2))
-    return _finished(_descend(problem, ("landing", exact), ENERGY_CHANGE), "common")
+    return _finished(_held(replace(run, freedom=freedom), weights, ("sphericity",)), "common")
 
 
-def _problem(sphere_mesh: SphereMesh, conditions: Conditions) -> _Problem:
+def _prepared(sphere_mesh: SphereMesh, conditions: Conditions) -> _Run:
     mesh = sphere_mesh.mesh
     weights = check_angle_options(mesh, conditions.target_angle, conditions.edge_weights)
     tolerance = conditions.tolerance
@@ -215,7 +247,7 @@ def _problem(sphere_mesh: SphereMesh, conditions: Conditions) -> _Problem:
         # At smooth contact the energy of another target is stationary: start in the pencils.
         sphere_mesh, _ = minimize_angles(sphere_mesh, conditions.target_angle, weights)
     sphere_mesh, is_fixed = _with_radii(sphere_mesh, conditions.fixed_radii)
-    return _Problem(
+    return _Run(
         mesh,
         energy_setting(mesh, weights, conditions.target_angle),
         Freedom(0.0, vertex_freedom(mesh, "free", "free"), is_fixed),
@@ -253,74 +285,90 @@ def _with_radii(
     return SphereMesh.from_local(mesh, rows), is_fixed
 
 
-def _angles_first(problem: _Problem, weights: EnergyWeights) -> _Problem:
+def _angles_first(run: _Run, weights: EnergyWeights) -> _Run:
     """Leave the planes, on which regularity and support vanish; vertices stay."""
     if weights.angle == 0 or (weights.regularity == 0 and weights.support == 0):
-        return problem
+        return run
     alone = replace(weights, regularity=0.0, support=0.0)
-    return _descend(problem, ("angles", alone), STAGE_CHANGE)
+    return _first_steps(run, "angles", energy_problem(run.setting, run.freedom, alone))
 
 
-def _tightened(problem: _Problem, weights: EnergyWeights, hard: tuple[str, ...]) -> _Problem:
-    """Minimise; then again and again with ten times the weight on what has to hold exactly.
+def _first_steps(run: _Run, name: str, problem: EnergyProblem) -> _Run:
+    """A few steps without second derivatives, which lead downhill from anywhere."""
+    steps = min(run.max_iterations, FIRST_STEPS)
+    found = descend_energy(problem, run.unknowns, steps, FIRST_DECREMENT, is_exact=False)
+    stage = stage_of(problem, name, found)
+    return replace(run, unknowns=found.state, stages=(*run.stages, stage))
 
-    Where vertices stay, the first stage comes to rest. The valley of the energy is flat: a
-    descent that ends halfway, or whose steps leave much out, ends where rounding has led it,
-    and raised weights, which make the valley steep, keep it there. Vertices that move make too
-    flat a valley to rest in.
-    """
-    stays = problem.freedom.tolerance == 0
-    ends = (ENERGY_CHANGE, RESTING_MODEL) if stays else (STAGE_CHANGE, STEP_MODEL)
-    problem = _descend(problem, ("energy", weights), *ends)
-    factors = SPHERICITY_FACTORS if hard else SUPPORT_FACTORS if weights.support > 0 else ()
+
+def _held(run: _Run, weights: EnergyWeights, hard: tuple[str, ...]) -> _Run:
+    """Minimise the energy such that the terms named, and the support if asked for, hold."""
+    bound_weights = BOUND_WEIGHTS if run.freedom.tolerance > 0 else (0.0,)
+    soft = energy_problem(run.setting, run.freedom, weights, bound_weights[0])
+    return _rounds(_first_steps(run, "energy", soft), weights, hard, {}, bound_weights)
+
+
+def _within(run: _Run, weights: EnergyWeights, conditions: Conditions) -> _Run:
+    """Minimise the energy with spheres that pass within the tolerance of the vertices."""
+    allowance = conditions.tolerance * (1 - COMMON_VERTEX)
+    run = replace(run, setting=replace(run.setting, allowance=allowance))
+    term = next(term for term in TERMS if term.name == "sphericity")
+    misses = np.zeros(0)
+    for factor in NEARER:
+        near = replace(weights, sphericity=factor * (weights.sphericity or 1.0))
+        run = _first_steps(run, "nearer", energy_problem(run.setting, run.freedom, near))
+        misses = np.abs(term.residuals(run.setting, run.unknowns))
+        if misses.max() < BOUND_MARGIN * allowance:
+            break
+    limits = {"sphericity": np.maximum(allowance, misses / BOUND_MARGIN)}
+    found = _rounds(run, replace(weights, sphericity=1.0), (), limits, LIMIT_WEIGHTS)
+    is_near = bool((limits["sphericity"] <= allowance).all())
+    return replace(found, is_held=found.is_held and is_near)
+
+
+def _rounds(
+    run: _Run,
+    weights: EnergyWeights,
+    hard: tuple[str, ...],
+    limits: dict[str, FloatArray],
+    bound_weights: tuple[float, ...],
+) -> _Run:
     if weights.support > 0:
         hard = (*hard, "support")
-    for factor in factors:
-        raised = {name: factor * getattr(weights, name) for name in hard}
-        stage = f"{' and '.join(hard)} x {factor}", replace(weights, **raised)
-        change = ENERGY_CHANGE if factor == max(factors) else STAGE_CHANGE
-        problem = _descend(problem, stage, change)
-    return problem
+    raised = {name: HARD[name] * (getattr(weights, name) or 1.0) for name in hard}
+    problem = energy_problem(run.setting, run.freedom, replace(weights, **raised))
+    problem = replace(problem, hard=frozenset(hard), limits=limits)
+    held = hold(problem, run.unknowns, run.max_iterations, bound_weights)
+    return replace(
+        run,
+        unknowns=held.unknowns,
+        stages=(*run.stages, *held.stages),
+        is_held=held.is_held,
+        lowest=held.lowest,
+    )
 
 
-def _descend(
-    problem: _Problem,
-    stage: tuple[str, EnergyWeights],
-    change: float,
-    share: float = STEP_MODEL,
-) -> _Problem:
-    name, weights = stage
-    terms = energy_problem(problem.setting, problem.freedom, weights)
-    descent = minimize_energy(terms, problem.unknowns, problem.max_iterations, change, share)
-    energies = {
-        term.name: history for term, history in zip(terms.terms, descent.history.T, strict=True)
-    }
-    done = Stage(name, descent.status, descent.iterations, energies)
-    return replace(problem, unknowns=descent.state, stages=(*problem.stages, done))
-
-
-def _finished(problem: _Problem, corners: Corners) -> tuple[SphereMesh, Optimization]:
-    edge, mesh, unknowns = mean_edge_length(problem.mesh), problem.mesh, problem.unknowns
+def _finished(run: _Run, corners: Corners) -> tuple[SphereMesh, Optimization]:
+    edge, mesh, unknowns = mean_edge_length(run.mesh), run.mesh, run.unknowns
     rows = rescale(unknowns.spheres, edge)
-    if problem.freedom.tolerance > 0:
+    if run.freedom.tolerance > 0:
         mesh = with_vertices(mesh, mesh.vertices + edge * unknowns.displacements)
-        rows = recenter(rows, face_centroids(mesh) - face_centroids(problem.mesh))
+        rows = recenter(rows, face_centroids(mesh) - face_centroids(run.mesh))
     result = SphereMesh.from_local(mesh, rows)
     report = Optimization(
-        problem.stages,
+        run.stages,
         corners,
         float(norm(unknowns.displacements).max()),
         float(vertex_error(result).max()) / edge,
+        run.is_held,
+        run.lowest,
     )
     return result, report
 
 
 def _is_rougher_than_planes(sphere_mesh: SphereMesh, conditions: Conditions) -> bool:
     """Whether the angles lie farther from their target than those of flat panels."""
-    angles = intersection_angles(sphere_mesh)
-    planar = intersection_angles(face_planes(sphere_mesh.mesh))
-    weights = check_angle_options(
-        sphere_mesh.mesh, conditions.target_angle, conditions.edge_weights
-    )
     target = conditions.target_angle
-    return float(weights @ np.abs(angles - target)) > float(weights @ np.abs(planar - target))
+    weights = check_angle_options(sphere_mesh.mesh, target, conditions.edge_weights)
+    planes = smoothness(face_planes(sphere_mesh.mesh), weights, target)
+    return smoothness(sphere_mesh, weights, target).mean > planes.mean

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import FloatArray, IntArray, sum_by
+from ..arrays import FloatArray, IntArray
 from .factorization import SparseArray
 
 
@@ -124,30 +124,6 @@ def jacobian_matrix(
             place += count * width
     shape = (len(pattern.starts) - 1, int(pattern.layout.starts[-1]))
     return csr_array((data, pattern.columns, pattern.starts), shape=shape)
-
-
-def diagonal_blocks(
-    pattern: JacobianPattern, entries: Sequence[Sequence[FloatArray]]
-) -> tuple[FloatArray, ...]:
-    """Blocks on the diagonal of ``JᵀJ``: (count, width, width), one table per group.
-
-    The entries are the values (m, width) of the blocks of each term.
-    """
-    layout = pattern.layout
-    results = tuple(
-        np.zeros((count, width, width))
-        for count, width in zip(layout.counts, layout.widths, strict=True)
-    )
-    for blocks, values in zip(pattern.blocks, entries, strict=True):
-        for block, rows in zip(blocks, values, strict=True):
-            result = results[block.group]
-            for i in range(rows.shape[1]):
-                for j in range(i + 1):
-                    sums = sum_by(block.ids, rows[:, i] * rows[:, j], len(result))
-                    result[:, i, j] += sums
-                    if i != j:
-                        result[:, j, i] += sums
-    return results
 
 
 def block_diagonal(blocks: FloatArray) -> SparseArray:

@@ -1,8 +1,7 @@
 """Direct solution of sparse systems."""
 
-import importlib.util
 from collections.abc import Callable
-from typing import Any, TypeAlias, cast
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -54,24 +53,8 @@ def solve_definite(matrix: SparseArray, shift: float, right: FloatArray) -> Floa
     """Solve ``(H + shift I) x = b`` by factorisation.
 
     H is symmetric, positive semidefinite, the shift positive.
-
-    Notes
-    -----
-    CHOLMOD where scikit-sparse is installed, else SuperLU in its symmetric mode: its default
-    ordering fills in ten times as much on these meshes.
     """
     from scipy.sparse import csc_array, eye_array
 
     shifted: SparseArray = csc_array(matrix + shift * eye_array(len(right)))
-    if importlib.util.find_spec("sksparse") is not None:
-        return solve_by_cholmod(shifted, right)
     return factorize_symmetric(shifted)(right)
-
-
-def solve_by_cholmod(matrix: SparseArray, right: FloatArray) -> FloatArray:
-    """Solve ``H x = b`` by CHOLMOD, H positive definite; needs scikit-sparse 0.4."""
-    from scipy.sparse import csc_matrix
-    from sksparse.cholmod import cholesky  # pyright: ignore
-
-    solution = cholesky(csc_matrix(matrix))(right)  # pyright: ignore
-    return np.asarray(cast("FloatArray", solution), np.float64)

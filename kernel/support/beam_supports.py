@@ -156,8 +156,8 @@ def bisector_axes(sphere_mesh: SphereMesh) -> FloatArray:
     system = across @ (gram + LEAN_WEIGHT**2 * np.eye(3)) @ across
     is_used = norm(upright)[:, None, None] > 0
     system = np.where(is_used, system + upright[:, :, None] * upright[:, None], np.eye(3))
-    leans: FloatArray = np.linalg.solve(system, pull[..., None])[..., 0]
-    return axis_points(mesh, -unit(upright - leans))
+    leans = np.asarray(np.linalg.solve(system, pull[..., None]), np.float64)
+    return axis_points(mesh, -unit(upright - leans.reshape(-1, 3)))
 
 
 def wall_planes(

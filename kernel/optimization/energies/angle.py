@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from ...arrays import FloatArray
+from ...arrays import FloatArray, dot
 from ...solvers.blocks import Block
 from ...spheres.minkowski import minkowski, minkowski_gradient
 from ...spheres.rows import recenter
+from .second_derivatives import SecondDerivatives
 from .setting import Group, Setting, Unknowns
 
 
@@ -38,6 +39,45 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
         slope[:, None] * _product_gradient(other, middle)
         for other, middle in zip((second, first), setting.edge_middles, strict=True)
     )
+
+
+def second_derivatives(
+    setting: Setting, unknowns: Unknowns, multipliers: FloatArray
+) -> SecondDerivatives:
+    """Second derivatives of the residuals, each times its multiplier, by pairs of blocks.
+
+    ``2 √w (|g| ∂²g + sign(g) ∂g ∂gᵀ)``; only the mixed derivative of g is not zero.
+    """
+    first, second = _rows_at_middles(setting, unknowns)
+    g = minkowski(first, second)
+    by_first, by_second = (
+        _product_gradient(other, middle)
+        for other, middle in zip((second, first), setting.edge_middles, strict=True)
+    )
+    scale = 2 * np.sqrt(setting.edge_weights) * multipliers
+    bent = scale * np.sign(g)
+    mixed = _product_form(setting) * (scale * np.abs(g))[:, None, None]
+    return {
+        (0, 0): _outer(by_first, by_first * bent[:, None]),
+        (0, 1): mixed + _outer(by_first, by_second * bent[:, None]),
+        (1, 1): _outer(by_second, by_second * bent[:, None]),
+    }
+
+
+def _product_form(setting: Setting) -> FloatArray:
+    """Matrices K (E, 5, 5) with ``<<S, S'>> = Sᵀ K S'``, each row local to its face."""
+    shift = setting.edge_middles[1] - setting.edge_middles[0]
+    form = np.zeros((len(shift), 5, 5))
+    form[:, 0, 0] = -2 * dot(shift, shift)
+    form[:, 0, 1:4] = 2 * shift
+    form[:, 1:4, 0] = -2 * shift
+    form[:, [1, 2, 3], [1, 2, 3]] = 1
+    form[:, [0, 4], [4, 0]] = -2
+    return form
+
+
+def _outer(a: FloatArray, b: FloatArray) -> FloatArray:
+    return a[:, :, None] * b[:, None, :]
 
 
 def _product_gradient(other: FloatArray, middle: FloatArray) -> FloatArray:

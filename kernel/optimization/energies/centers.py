@@ -36,6 +36,30 @@ def center_line_gradients(
     )
 
 
+def center_line_forms(setting: Setting, edges: IntArray, directions: FloatArray) -> FloatArray:
+    """Matrices K (m, 5, 5) with ``D·a = Sᵀ K S'``, for vectors a (m, 3)."""
+    b, c = (middles[edges] for middles in setting.edge_middles)
+    form = np.zeros((len(edges), 5, 5))
+    form[:, 0, 0] = 2 * dot(b - c, directions)
+    form[:, 0, 1:4] = directions
+    form[:, 1:4, 0] = -directions
+    return form
+
+
+def center_line_jacobians(
+    setting: Setting, unknowns: Unknowns, edges: IntArray
+) -> tuple[FloatArray, FloatArray]:
+    """Derivatives of the vectors D by the rows of the two faces, (m, 5, 3)."""
+    first, second = (unknowns.spheres[faces] for faces in setting.edge_faces[edges].T)
+    b, c = (middles[edges] for middles in setting.edge_middles)
+    results = np.zeros((2, len(edges), 5, 3))
+    results[0, :, 0] = normals(second, c) + 2 * second[:, :1] * b
+    results[1, :, 0] = -normals(first, b) - 2 * first[:, :1] * c
+    results[0, :, 1:4] = -second[:, 0, None, None] * np.eye(3)
+    results[1, :, 1:4] = first[:, 0, None, None] * np.eye(3)
+    return results[0], results[1]
+
+
 def _gradient(by_a: FloatArray, by_b: FloatArray, directions: FloatArray) -> FloatArray:
     zero = np.zeros(len(directions))
     return np.column_stack([dot(by_a, directions), by_b * directions, zero])

@@ -4,6 +4,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...solvers.blocks import Block
+from .second_derivatives import SecondDerivatives
 from .setting import Group, Setting, Unknowns
 
 
@@ -20,3 +21,12 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:  # noqa: ARG0
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  # noqa: ARG001
     """Derivatives by the point of the vertex: identities (3 V, 3)."""
     return (np.tile(np.eye(3), (setting.n_vertices, 1)),)
+
+
+def second_derivatives(
+    setting: Setting,  # noqa: ARG001 - as all terms
+    unknowns: Unknowns,  # noqa: ARG001
+    multipliers: FloatArray,  # noqa: ARG001
+) -> SecondDerivatives:
+    """None: the residuals are linear."""
+    return {}

@@ -4,6 +4,7 @@ import numpy as np
 
 from ...arrays import FloatArray, dot
 from ...solvers.blocks import Block
+from .second_derivatives import SecondDerivatives
 from .setting import Group, Setting, Unknowns
 
 
@@ -25,3 +26,12 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:  # noqa: ARG0
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  # noqa: ARG001
     """Derivatives by the dual normal: ``2 n``, (N, 3)."""
     return (2 * unknowns.normals,)
+
+
+def second_derivatives(
+    setting: Setting,  # noqa: ARG001 - as all terms
+    unknowns: Unknowns,  # noqa: ARG001
+    multipliers: FloatArray,
+) -> SecondDerivatives:
+    """Second derivatives of the residuals, each times its multiplier: ``2 I``."""
+    return {(0, 0): 2 * multipliers[:, None, None] * np.eye(3)}

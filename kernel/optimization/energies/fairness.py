@@ -4,6 +4,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...solvers.blocks import Block
+from .second_derivatives import SecondDerivatives
 from .setting import Group, Setting, Unknowns
 
 
@@ -44,6 +45,15 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:  #
         for column in _weights(setting).T
     )
     return own, *others
+
+
+def second_derivatives(
+    setting: Setting,  # noqa: ARG001 - as all terms
+    unknowns: Unknowns,  # noqa: ARG001
+    multipliers: FloatArray,  # noqa: ARG001
+) -> SecondDerivatives:
+    """None: the residuals are linear."""
+    return {}
 
 
 def _weights(setting: Setting) -> FloatArray:

@@ -4,7 +4,8 @@ import numpy as np
 
 from ...arrays import FloatArray, dot
 from ...solvers.blocks import Block
-from .centers import center_line_gradients, center_lines
+from .centers import center_line_forms, center_line_gradients, center_lines
+from .second_derivatives import SecondDerivatives
 from .setting import Group, Setting, Unknowns
 
 
@@ -35,3 +36,14 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
     edges = np.tile(np.arange(len(setting.edge_faces)), 2)
     directions = np.concatenate([setting.edge_normals, setting.edge_directions])
     return center_line_gradients(setting, unknowns, edges, directions)
+
+
+def second_derivatives(
+    setting: Setting,
+    unknowns: Unknowns,  # noqa: ARG001 - as all terms
+    multipliers: FloatArray,
+) -> SecondDerivatives:
+    """Second derivatives of the residuals, each times its multiplier: D is bilinear."""
+    edges = np.tile(np.arange(len(setting.edge_faces)), 2)
+    directions = np.concatenate([setting.edge_normals, setting.edge_directions])
+    return {(0, 1): center_line_forms(setting, edges, multipliers[:, None] * directions)}

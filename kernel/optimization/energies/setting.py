@@ -10,7 +10,7 @@ from enum import IntEnum
 import numpy as np
 
 from ...arrays import FloatArray, IntArray, sum_by, unit
-from ...meshes.mesh import Mesh, face_normals, local_corners, mean_edge_length
+from ...meshes.mesh import Mesh, face_centroids, face_normals, local_corners, mean_edge_length
 from ...sphere_meshes.sphere_mesh import SphereMesh
 from ...spheres.rows import rescale
 
@@ -77,8 +77,12 @@ class Setting:
         Neighbours of each node along its edges; the node itself where it has fewer than k.
     node_umbrellas : (N, 3) float array
         Each node minus the mean of its neighbours, before any vertex moves.
+    node_normals : (N, 3) float array
+        Mean of the normals of the faces around each node, unit.
     n_vertices : int
         Number of vertices V.
+    face_points, vertex_points, node_points : (F, 3), (V, 3) and (N, 3) float arrays
+        Where faces, vertices and nodes lie: near is near.
     """
 
     corner_faces: IntArray
@@ -96,7 +100,11 @@ class Setting:
     spoke_nodes: IntArray
     ring_vertices: IntArray
     node_umbrellas: FloatArray
+    node_normals: FloatArray
     n_vertices: int
+    face_points: FloatArray
+    vertex_points: FloatArray
+    node_points: FloatArray
 
     @property
     def n_faces(self) -> int:
@@ -143,7 +151,11 @@ def energy_setting(
         spoke_nodes=ends[edges, sides],
         ring_vertices=_rings(mesh, nodes),
         node_umbrellas=_umbrellas(mesh)[nodes],
+        node_normals=_vertex_normals(mesh)[nodes],
         n_vertices=mesh.n_vertices,
+        face_points=face_centroids(mesh),
+        vertex_points=mesh.vertices,
+        node_points=mesh.vertices[nodes],
     )
 
 
@@ -178,8 +190,14 @@ def first_unknowns(sphere_mesh: SphereMesh) -> Unknowns:
     """
     mesh = sphere_mesh.mesh
     spheres = rescale(sphere_mesh.local_spheres, 1 / mean_edge_length(mesh))
-    corner_normals = face_normals(mesh)[mesh.topology.corner_faces]
-    normals = unit(sum_by(mesh.corners, corner_normals, mesh.n_vertices))
     return Unknowns(
-        spheres, np.zeros((mesh.n_vertices, 3)), normals[~mesh.topology.is_boundary_vertex]
+        spheres,
+        np.zeros((mesh.n_vertices, 3)),
+        _vertex_normals(mesh)[~mesh.topology.is_boundary_vertex],
     )
+
+
+def _vertex_normals(mesh: Mesh) -> FloatArray:
+    """Unit mean of the normals of the faces around each vertex."""
+    corner_normals = face_normals(mesh)[mesh.topology.corner_faces]
+    return unit(sum_by(mesh.corners, corner_normals, mesh.n_vertices))

@@ -5,6 +5,7 @@ import numpy as np
 from ...arrays import FloatArray, dot
 from ...solvers.blocks import Block
 from ...spheres.incidence import evaluate, normals
+from .second_derivatives import SecondDerivatives
 from .setting import Group, Setting, Unknowns
 
 
@@ -17,45 +18,43 @@ def blocks(setting: Setting) -> tuple[Block, ...]:
 
 
 def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """What ``A |v|² - B·v + C`` exceeds the allowance by, at each corner, (H,).
+    """``A |v|² - B·v + C`` at each corner, (H,), shifted for an allowance a by ``-A a²``.
 
     For a unit row it is nearly the signed distance of the vertex from the sphere, in mean
-    edges.
+    edges: at distance d it is ``d + A d²``, so ± a gives ± a after the shift.
 
     References
     ----------
     Meshes with Spherical Faces, eq. (7) and (8); the last row of φ_sphere as printed has a
     wrong sign.
     """
-    misses = _centered_misses(setting, unknowns)
-    return misses - np.clip(misses, -setting.allowance, setting.allowance)
-
-
-def _vertex_misses(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """``A |v|² - B·v + C`` at each corner: nearly the distance of vertex and sphere."""
-    return evaluate(unknowns.spheres[setting.corner_faces], _points(setting, unknowns))
+    rows = unknowns.spheres[setting.corner_faces]
+    return evaluate(rows, _points(setting, unknowns)) - rows[:, 0] * setting.allowance**2
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
     """Derivatives by the row of the face, (H, 5), and by the point of the vertex, (H, 3).
 
-    ``(|v|² - a², -v, 1)`` with the allowance a, and ``2 A v - B``; zero within a.
+    ``(|v|² - a², -v, 1)`` with the allowance a, and ``2 A v - B``.
     """
     points = _points(setting, unknowns)
-    counts = np.abs(_centered_misses(setting, unknowns)) >= setting.allowance
     squares = dot(points, points) - setting.allowance**2
     by_row = np.column_stack([squares, -points, np.ones(len(points))])
-    by_point = -normals(unknowns.spheres[setting.corner_faces], points)
-    return by_row * counts[:, None], by_point * counts[:, None]
+    return by_row, -normals(unknowns.spheres[setting.corner_faces], points)
 
 
-def _centered_misses(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    """Misses shifted such that distances of ± the allowance give ± the allowance.
-
-    A vertex at distance d from a unit row misses by ``d + A d²``.
-    """
+def second_derivatives(
+    setting: Setting, unknowns: Unknowns, multipliers: FloatArray
+) -> SecondDerivatives:
+    """Second derivatives of the residuals, each times its multiplier."""
+    mixed = np.zeros((len(multipliers), 5, 3))
+    mixed[:, 0] = 2 * _points(setting, unknowns)
+    mixed[:, 1:4] = -np.eye(3)
     curvatures = unknowns.spheres[setting.corner_faces, 0]
-    return _vertex_misses(setting, unknowns) - curvatures * setting.allowance**2
+    return {
+        (0, 1): multipliers[:, None, None] * mixed,
+        (1, 1): (2 * multipliers * curvatures)[:, None, None] * np.eye(3),
+    }
 
 
 def _points(setting: Setting, unknowns: Unknowns) -> FloatArray:

@@ -2,7 +2,13 @@
 
 from ...arrays import FloatArray, dot
 from ...solvers.blocks import Block
-from .centers import center_line_gradients, center_lines
+from .centers import (
+    center_line_forms,
+    center_line_gradients,
+    center_line_jacobians,
+    center_lines,
+)
+from .second_derivatives import SecondDerivatives
 from .setting import Group, Setting, Unknowns
 
 
@@ -37,3 +43,17 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
     axes = unknowns.normals[setting.spoke_nodes]
     first, second = center_line_gradients(setting, unknowns, setting.spoke_edges, axes)
     return first, second, center_lines(setting, unknowns)[setting.spoke_edges]
+
+
+def second_derivatives(
+    setting: Setting, unknowns: Unknowns, multipliers: FloatArray
+) -> SecondDerivatives:
+    """Second derivatives of the residuals, each times its multiplier: D·n is trilinear."""
+    edges, weights = setting.spoke_edges, multipliers[:, None]
+    axes = weights * unknowns.normals[setting.spoke_nodes]
+    first, second = center_line_jacobians(setting, unknowns, edges)
+    return {
+        (0, 1): center_line_forms(setting, edges, axes),
+        (0, 2): weights[:, None] * first,
+        (1, 2): weights[:, None] * second,
+    }

@@ -1,7 +1,7 @@
 """The table of terms of energy (6).
 
-A new term is one module with `blocks`, `residuals` and `jacobian`, one row in `TERMS`, and one
-weight in `EnergyWeights`.
+A new term is one module with `blocks`, `residuals`, `jacobian` and `second_derivatives`, one
+row in `TERMS`, and one weight in `EnergyWeights`.
 """
 
 from collections.abc import Callable
@@ -13,6 +13,7 @@ from ...arrays import FloatArray
 from ...errors import InputError
 from ...solvers.blocks import Block
 from . import angle, closeness, dual_norm, fairness, regularity, sphericity, support, unit_norm
+from .second_derivatives import SecondDerivatives
 from .setting import Setting, Unknowns
 
 
@@ -71,22 +72,24 @@ class Term:
         Setting and unknowns to (m,) residuals.
     jacobian : callable
         Setting and unknowns to one (m, width) table of derivatives per block.
+    second_derivatives : callable
+        Setting, unknowns and (m,) multipliers to second derivatives by pairs of blocks.
     is_gauge : bool
-        Whether the term holds a scale that moves keep exactly. It is zero then, but makes the
-        linear systems regular.
+        Whether the term holds a scale that moves keep exactly: it is zero always.
     """
 
     name: str
     blocks: Callable[[Setting], tuple[Block, ...]]
     residuals: Callable[[Setting, Unknowns], FloatArray]
     jacobian: Callable[[Setting, Unknowns], tuple[FloatArray, ...]]
+    second_derivatives: Callable[[Setting, Unknowns, FloatArray], SecondDerivatives]
     is_gauge: bool
 
 
 TERMS = tuple(
     Term(
         module.__name__.rpartition(".")[2], module.blocks, module.residuals, module.jacobian,
-        is_gauge=module in (unit_norm, dual_norm),
+        module.second_derivatives, is_gauge=module in (unit_norm, dual_norm),
     )
     for module in (
         sphericity, unit_norm, angle, regularity, support, dual_norm, fairness, closeness,

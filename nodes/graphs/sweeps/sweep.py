@@ -106,7 +106,21 @@ def run_sweep(
     cache: str | os.PathLike[str] | None = None,
     on_row: OnRow | None = None,
 ) -> Sweep:
-    """`sweep` for sliders of any name; failures are in the rows alone."""
+    """`sweep` for sliders of any name; failures are in the rows alone.
+
+    Parameters
+    ----------
+    graph : Graph
+    targets : sequence of Step, Wire or str
+    params : mapping of str to iterable
+    executor, workers, write_to, cache, on_row : object
+        As for `sweep`.
+
+    Returns
+    -------
+    Sweep
+        Rows in the order of the points.
+    """
     points = combined(graph, params)
     names = tuple(_name(graph, target) for target in targets)
     if not names:

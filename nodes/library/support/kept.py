@@ -9,7 +9,7 @@ from ....kernel.meshes.creases import crease_edges
 from ....kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...graphs.node import node, warn
 from ..arrays import CreaseAngle
-from ..outcomes import OptimumReport, outcome_of
+from ..optimise.outcomes import OptimumReport, outcome_of
 
 
 @dataclass(frozen=True, eq=False)

@@ -58,7 +58,7 @@ def test_beams_and_panels_meet_to_rounding(dome: Mesh, found: Attempt) -> None:
     assert found.sphere_mesh.mesh.n_faces == dome.n_faces
 
 
-def test_spheres_of_a_node_share_a_second_point(found: Attempt) -> None:
+def test_law_e3_spheres_of_a_node_share_a_second_point(found: Attempt) -> None:
     mesh = found.sphere_mesh.mesh
     size = mean_edge_length(mesh)
     axes = common_axes(found.sphere_mesh)

@@ -46,7 +46,7 @@ def state(setting: SlideSetting) -> SlidState:
 
 
 @pytest.mark.parametrize("term", TERMS, ids=lambda term: term.name)
-def test_derivatives_are_those_of_differences(
+def test_law_d9_derivatives_are_those_of_differences(
     setting: SlideSetting, state: SlidState, term: SlideTerm
 ) -> None:
     layout = setting.layout

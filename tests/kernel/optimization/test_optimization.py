@@ -84,17 +84,18 @@ def test_support_on_moved_vertices(mesh: Mesh) -> None:
     found, report = optimize_spheres(smooth(mesh), TABLE_1, Conditions(tolerance=0.05))
     assert report.corners == "common"
     assert report.converged
-    assert report.stages[-1].iterations <= 10
     assert support_structure(found).torsion.max() <= 1e-3
     assert miss(found) <= 1e-6
     assert 0 < moves(found, mesh) <= 0.05 * (1 + 1e-12)
 
 
 def test_support_of_a_hybrid_mesh() -> None:
-    found, report = optimize_spheres(smooth(hybrid()), TABLE_1)
+    found, report = optimize_spheres(smooth(hybrid()), TABLE_1, Conditions(tolerance=0.05))
     assert report.converged
-    assert support_structure(found).torsion.max() <= 0.05
-    assert miss(found) <= 0.01
+    nodes = support_structure(found)
+    assert nodes.torsion.max() <= 0.05
+    assert nodes.is_valid.all()
+    assert miss(found) <= 1e-6
 
 
 # Tolerance
@@ -116,7 +117,9 @@ def test_vertices_move_onto_their_spheres_within_the_tolerance(boundary: str) ->
 def test_gliding_vertices_stay_in_their_tangent_planes() -> None:
     mesh = torus_mesh(12, 8)
     conditions = Conditions(tolerance=0.05, interior="glide")
-    found, report = optimize_spheres(smooth(mesh), None, conditions)
+    # With a price on moves, an optimum that trades the mean for single angles is a result too.
+    weights = EnergyWeights(closeness=1e-4)
+    found, report = optimize_spheres(smooth(mesh), weights, conditions)
     assert miss(found) <= 1e-6
     steps = found.mesh.vertices - mesh.vertices
     ring = np.column_stack([mesh.vertices[:, :2], np.zeros(mesh.n_vertices)])
@@ -299,7 +302,7 @@ def test_a_single_face() -> None:
 def test_history_falls_within_each_stage() -> None:
     _, report = optimize_spheres(smooth(noisy(vase_mesh(9, 7), 0.01)), TABLE_1)
     names = [stage.name for stage in report.stages]
-    assert names[:3] == ["angles", "energy", "support x 10"]
+    assert names[:3] == ["angles", "energy", "round 1"]
     for stage in report.stages:
         total = sum(stage.energies.values())
         assert (np.diff(total) < 0).all()

@@ -158,7 +158,8 @@ def test_spheres_cost_no_panel(seed: int) -> None:
     net = roof_mesh(6, 8)
     ends = net.vertices[net.topology.edge_vertices]
     edge = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).mean()
-    noise = np.random.default_rng(seed).normal(size=net.vertices.shape)
+    rng = np.random.default_rng(seed)
+    noise = rng.normal(size=(net.n_vertices, 3))
     mesh = triangulate(Mesh(net.vertices + 0.25 * edge * noise, net.faces))
     found = minimize_angles(fit_spheres(mesh))
     lost = {part["id"] for part in panels(found.sphere_mesh).report["rejected"]}

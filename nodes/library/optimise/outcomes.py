@@ -5,15 +5,15 @@ from typing import Any
 
 import numpy as np
 
-from ...kernel.analysis import angle_summary
-from ...kernel.arrays import BoolArray, FloatArray, norm
-from ...kernel.meshes.mesh import Mesh, local_corners, mean_edge_length
-from ...kernel.panels.cutting import cut_panels
-from ...kernel.reports import Report
-from ...kernel.sphere_meshes.fit import face_planes
-from ...kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
-from ...kernel.tolerances import DEEP_CAP, LITTLE_GAIN
-from ..graphs.node import warn
+from ....kernel.analysis import angle_summary
+from ....kernel.arrays import BoolArray, FloatArray, norm
+from ....kernel.meshes.mesh import Mesh, local_corners, mean_edge_length
+from ....kernel.panels.cutting import cut_panels
+from ....kernel.reports import Report
+from ....kernel.sphere_meshes.fit import face_planes
+from ....kernel.sphere_meshes.sphere_mesh import SphereMesh, vertex_error
+from ....kernel.tolerances import DEEP_CAP, FLATTENED, LITTLE_GAIN
+from ...graphs.node import warn
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,3 +134,48 @@ def warn_of_losses(
             f"{spherical['max']:.3g} degrees, while the mean goes from {planar['mean']:.3g} to "
             f"{spherical['mean']:.3g}"
         )
+
+
+def warn_of_support(
+    start: SphereMesh, result: SphereMesh, outcome: dict[str, dict[str, Any]],
+    is_smooth: BoolArray,
+) -> None:  # fmt: skip
+    """Say where nodes without torsion cost what spheres are for.
+
+    Parameters
+    ----------
+    start, result : SphereMesh
+        Before and after.
+    outcome : dict
+        Of the result, from `outcome_of`.
+    is_smooth : (E,) bool array
+        Edges that are no crease.
+    """
+    planar, spherical = (
+        outcome["angles_deg"][kind]["mean"] for kind in ("planar", "spherical")
+    )
+    bends = [
+        float(np.median(np.abs(each.local_spheres[:, 0]))) * mean_edge_length(each.mesh)
+        for each in (start, result)
+    ]
+    before = angle_summary(start, is_smooth)["mean"]
+    found: list[str] = []
+    if bends[1] < FLATTENED * bends[0] and spherical > (1 + LITTLE_GAIN) * before:
+        share = 100 * bends[1] / bends[0]
+        found.append(
+            f"flatten to {share:.0f} % of their curvature ({before:.3g} to {spherical:.3g} "
+            "degrees)"
+        )
+    if spherical > planar:
+        found.append(f"are rougher than planes ({planar:.3g} to {spherical:.3g} degrees)")
+    if found:
+        warn(
+            f"for nodes without torsion spheres {' and '.join(found)}: the net does not follow "
+            "the lines of curvature; let its vertices slide (exact_support), or leave spheres "
+            "as they are and take axis_support"
+        )
+
+
+def counted_weights(weights: FloatArray | None, is_crease: BoolArray) -> FloatArray:
+    """Weight of each edge (E,), 0 on creases."""
+    return np.where(is_crease, 0.0, 1.0 if weights is None else weights)

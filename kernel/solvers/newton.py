@@ -1,0 +1,339 @@
+"""Newton's method that knows a minimum from a saddle.
+
+A step solves ``(H + μ I) s = -g`` by a factorisation that refuses matrices which are not
+positive definite: the shift μ grows until it accepts, and falls to next to nothing where H is
+positive definite of itself. So every step goes down. At rest under a shift, the lowest
+eigenvector is found, and where the energy falls along it, the descent goes on from there.
+
+The method knows nothing of matrices: a problem hands it the energy of a state, a model at a
+state, and the way to move along a step.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Generic, NamedTuple
+
+import numpy as np
+
+from ..arrays import FloatArray, dot
+from ..tolerances import (
+    ENERGY_ROUNDING,
+    LEAST_DECREMENT,
+    LEAST_SHIFT,
+    LOWEST_EIGENVALUE,
+    SAME_FALL,
+)
+from .factorization import Solver
+from .levenberg_marquardt import State, Status
+
+Factorize = Callable[[float], Solver | None]
+
+LARGEST_SHIFT = 1e3
+CONVEX_SHIFT = 1e-5
+"""Where the Hessian needs a larger shift, its convex part leads on faster."""
+GROWTH = 1e3
+RENEWED_SHIFT = 1e-7
+"""Shift with which a step that lowered nothing is tried again."""
+SHORTEST_PART, LONGEST_PART = 2.0**-7, 2.0**10
+BETTER_THAN_PROMISED = 1.3
+MOST_ESCAPES = 10
+"""Saddles that a descent leaves at most."""
+
+
+class Model(NamedTuple):
+    """The energy near a state, to second order.
+
+    Attributes
+    ----------
+    gradient : (n,) float array
+        Half of the gradient of the energy.
+    factorize : callable
+        Shift to a function that solves with ``H + shift I``, H half of the second derivatives,
+        or to None if that is not positive definite.
+    convex : callable
+        Makes the same for the part of H that is never indefinite: ``JᵀJ`` of least squares.
+    """
+
+    gradient: FloatArray
+    factorize: Factorize
+    convex: Callable[[], Factorize]
+
+
+@dataclass(frozen=True)
+class Problem(Generic[State]):
+    """What is minimised.
+
+    Attributes
+    ----------
+    energies : callable
+        State to the energies (terms,) of its terms; infinite where a state is out of bounds.
+    model : callable
+        State to its model.
+    move : callable
+        State and step to the moved state.
+    reach : callable
+        State and step to the largest part of the step, up to 1, that stays within bounds.
+    preference : callable
+        A number of a state that decides between the two sides of a saddle where they are equal.
+    """
+
+    energies: Callable[[State], FloatArray]
+    model: Callable[[State], Model]
+    move: Callable[[State, FloatArray], State]
+    reach: Callable[[State, FloatArray], float]
+    preference: Callable[[State, State], float]
+
+
+@dataclass(frozen=True)
+class NewtonDescent(Generic[State]):
+    """How a minimisation went.
+
+    Attributes
+    ----------
+    status : {"converged", "stalled", "exhausted"}
+        ``converged``: no step within rounding lowers the energy, and no direction curves down;
+        ``stalled``: steps that should lower the energy do not; ``exhausted``: the number of
+        iterations is used up.
+    history : (n + 1, terms) float array
+        Energy of each term at the start and after each accepted step.
+    iterations : int
+        Steps, accepted or not.
+    lowest : float
+        A bound from below on the lowest eigenvalue of H at rest; minus infinity where it was
+        not asked for.
+    """
+
+    state: State
+    status: Status
+    history: FloatArray
+    iterations: int
+    lowest: float
+
+
+class _Taken(NamedTuple, Generic[State]):
+    state: State
+    terms: FloatArray
+    part: float
+    fall: float
+    agreement: float
+
+
+class _Step(NamedTuple):
+    shift: float
+    solve: Solver
+    step: FloatArray
+    decrement: float
+    is_exact: bool
+
+    @property
+    def is_least(self) -> bool:
+        return self.is_exact and self.shift <= LEAST_SHIFT
+
+
+class _Shifts(NamedTuple):
+    """Shifts to begin with: of the Hessian, and of its convex part."""
+
+    exact: float
+    convex: float
+
+    def adapted(self, found: _Step, part: float, agreement: float) -> "_Shifts":
+        shift = found.shift
+        if agreement > 0.75 and part >= 1:
+            shift = max(shift / 8, LEAST_SHIFT)
+        elif agreement < 0.25 or part < 0.25:
+            shift *= 4
+        return _Shifts(shift, self.convex) if found.is_exact else _Shifts(LEAST_SHIFT, shift)
+
+    def renewed(self, found: _Step) -> "_Shifts":
+        shift = max(10 * found.shift, RENEWED_SHIFT)
+        return _Shifts(shift, self.convex) if found.is_exact else _Shifts(self.exact, shift)
+
+
+def newton(
+    problem: Problem[State],
+    start: State,
+    max_iterations: int,
+    tolerance: float,
+    *,
+    is_exact: bool = True,
+    leaves_saddles: bool = True,
+) -> NewtonDescent[State]:
+    """Minimise an energy.
+
+    Parameters
+    ----------
+    max_iterations : int
+        Largest number of steps.
+    tolerance : float
+        Decrement ``-g·s``, relative to the energy, at which the descent is at rest.
+    is_exact : bool
+        Whether the Hessian is used, or its convex part alone.
+    leaves_saddles : bool
+        Whether the lowest eigenvalue at rest is checked.
+
+    References
+    ----------
+    Nocedal, Wright 2006, Numerical Optimization, Secs. 3.4 and 3.5.
+    """
+    state, history = start, [problem.energies(start)]
+    shifts = _Shifts(LEAST_SHIFT, LEAST_SHIFT)
+    model, escapes, lowest, is_refused = None, 0, -np.inf, False
+    for iteration in range(1, max_iterations + 1):
+        model = problem.model(state) if model is None else model
+        energy = float(history[-1].sum())
+        rest = tolerance * energy + LEAST_DECREMENT
+        found = _step(model, shifts, uses_curvature=is_exact)
+        if found.decrement <= rest and is_exact and not (is_refused or found.is_least):
+            # A shift makes steps short, and a convex model knows no saddle.
+            found = _exact_step(model, LEAST_SHIFT, LARGEST_SHIFT) or found
+        taken = _search(problem, state, found, energy) if found.decrement > rest else None
+        is_refused = taken is None and found.decrement > rest
+        if is_refused and found.decrement > ENERGY_ROUNDING * energy:
+            if found.shift > LARGEST_SHIFT:
+                return NewtonDescent(state, "stalled", np.array(history), iteration, lowest)
+            shifts = shifts.renewed(found)
+            continue
+        if taken is None and leaves_saddles:
+            lowest, vector = _lowest(model, found)
+            if lowest < -LOWEST_EIGENVALUE and escapes < MOST_ESCAPES and vector.any():
+                taken, escapes = _escape(problem, state, vector, energy), escapes + 1
+        if taken is None:
+            state = _last(problem, state, found, energy)
+            return NewtonDescent(state, "converged", np.array(history), iteration, lowest)
+        state, model = taken.state, None
+        history.append(taken.terms)
+        shifts = shifts.adapted(found, taken.part, taken.agreement)
+    return NewtonDescent(state, "exhausted", np.array(history), max_iterations, lowest)
+
+
+def _last(problem: Problem[State], state: State, found: _Step, energy: float) -> State:
+    """Where the step at rest leads: it gains digits of the state, though none of the energy."""
+    part = problem.reach(state, found.step)
+    moved = problem.move(state, part * found.step)
+    change = float(problem.energies(moved).sum()) - energy
+    return moved if change <= ENERGY_ROUNDING * energy + LEAST_DECREMENT else state
+
+
+def _step(model: Model, shifts: _Shifts, *, uses_curvature: bool) -> _Step:
+    """Step by the Hessian where it is nearly positive definite, else by its convex part."""
+    found = None
+    if uses_curvature:
+        found = _exact_step(model, shifts.exact, max(CONVEX_SHIFT, shifts.exact))
+    found = found or _solved(model, model.convex(), shifts.convex, np.inf, is_exact=False)
+    return found or _Step(np.inf, np.copy, -model.gradient, np.inf, is_exact=False)
+
+
+def _exact_step(model: Model, shift: float, largest: float) -> _Step | None:
+    return _solved(model, model.factorize, shift, largest, is_exact=True)
+
+
+def _solved(
+    model: Model, factorize: Factorize, shift: float, largest: float, *, is_exact: bool
+) -> _Step | None:
+    """Step under the least shift, from the one given on, that makes H positive definite."""
+    while shift <= min(largest, 1e6 * LARGEST_SHIFT):
+        solve = factorize(shift)
+        if solve is not None:
+            step = solve(-model.gradient)
+            if np.isfinite(step).all():
+                return _Step(shift, solve, step, -float(dot(model.gradient, step)), is_exact)
+        shift *= GROWTH
+    return None
+
+
+def _search(
+    problem: Problem[State], state: State, found: _Step, energy: float
+) -> _Taken[State] | None:
+    """The part of a step, halved again and again, that lowers the energy enough.
+
+    A step that gains more than its model promised, as where the shift alone made it short, is
+    doubled as long as that gains more.
+    """
+    taken = None
+    part = problem.reach(state, found.step)
+    while taken is None and part >= SHORTEST_PART:
+        taken = _tried(problem, state, found, energy, part)
+        part /= 2
+    while taken is not None and taken.part >= 1 and taken.agreement > BETTER_THAN_PROMISED:
+        part = 2 * taken.part
+        if part > LONGEST_PART or problem.reach(state, part * found.step) < 1:
+            break
+        longer = _tried(problem, state, found, energy, part)
+        if longer is None or longer.fall <= taken.fall:
+            break
+        taken = longer
+    return taken
+
+
+def _tried(
+    problem: Problem[State], state: State, found: _Step, energy: float, part: float
+) -> _Taken[State] | None:
+    moved = problem.move(state, part * found.step)
+    terms = problem.energies(moved)
+    fall = energy - float(terms.sum())
+    # s·(H + μ) s is the decrement: the shift counts as curvature, to be on the safe side.
+    promised = max(2 * part - part**2, part) * found.decrement
+    if not (fall > 0 and fall >= 1e-4 * promised):
+        return None
+    return _Taken(moved, terms, part, fall, fall / promised)
+
+
+def _lowest(model: Model, found: _Step) -> tuple[float, FloatArray]:
+    """Lowest eigenvalue of H and its vector.
+
+    Where H itself is positive definite, or as good as that, only this is said.
+    """
+    from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
+
+    size = len(model.gradient)
+    if found.is_least:
+        return -found.shift, np.zeros(size)
+    if not found.is_exact:
+        return -np.inf, np.zeros(size)
+    if size < 3:
+        inverse = np.stack([found.solve(row) for row in np.eye(size)])
+        values, vectors = np.linalg.eigh((inverse + inverse.T) / 2)
+        return 1 / float(values[-1]) - found.shift, vectors[:, -1]
+    operator = LinearOperator((size, size), matvec=found.solve, dtype=np.float64)
+    start = np.cos(np.arange(size))
+    try:
+        values, vectors = eigsh(operator, k=1, which="LA", v0=start, tol=1e-3, maxiter=50)
+    except ArpackNoConvergence:
+        return -np.inf, np.zeros(size)
+    return 1 / float(values[0]) - found.shift, vectors[:, 0]
+
+
+def _escape(
+    problem: Problem[State], state: State, vector: FloatArray, energy: float
+) -> _Taken[State] | None:
+    """Go along a direction in which the energy curves down, to the side where it falls more."""
+    ends = [
+        _line_search(problem, state, side * vector / np.abs(vector).max(), energy)
+        for side in (1.0, -1.0)
+    ]
+    found = [end for end in ends if end is not None]
+    if not found:
+        return None
+    falls = [energy - float(terms.sum()) for _, terms in found]
+    best = int(np.argmax(falls))
+    if len(found) == 2 and abs(falls[0] - falls[1]) <= SAME_FALL * max(falls):
+        best = int(np.argmax([problem.preference(state, end) for end, _ in found]))
+    state, terms = found[best]
+    return _Taken(state, terms, 0.0, falls[best], 1.0)
+
+
+def _line_search(
+    problem: Problem[State], state: State, direction: FloatArray, energy: float
+) -> tuple[State, FloatArray] | None:
+    """The step, doubled from a small one on, that lowers the energy most."""
+    best, least, length = None, energy, 1e-4
+    while length <= 1:
+        moved = problem.move(state, length * direction)
+        if problem.reach(state, length * direction) < 1:
+            break
+        terms = problem.energies(moved)
+        if not float(terms.sum()) < least:
+            break
+        best, least = (moved, terms), float(terms.sum())
+        length *= 2
+    return best
