@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
 from ..arrays import FloatArray, IntArray
 from ..solvers.blocks import Block
 from .setting import SlideSetting, SlidState
@@ -38,8 +36,3 @@ def rows_at(setting: SlideSetting, state: SlidState, corners: IntArray) -> Float
 def points_at(setting: SlideSetting, state: SlidState, corners: IntArray) -> FloatArray:
     """Points (m, 3) of corners, local to their face."""
     return setting.corners[corners] + state.shifts[setting.mesh.corners[corners]]
-
-
-def stacked(tables: list[FloatArray]) -> FloatArray:
-    """Tables (m, k), one per coordinate, as one table in the order of coordinates."""
-    return np.concatenate(tables, axis=0)
