@@ -84,7 +84,7 @@ def minimize_within(
         system = _positive_sum(system, *curvature(forces))
         pull = target / slacks - forces - weights * miss
         right: FloatArray = np.einsum("nmk,nm->nk", slopes, pull) - dual
-        step: FloatArray = np.linalg.solve(system, right[..., None])[..., 0]
+        step = np.asarray(np.linalg.solve(system, right[..., None])[..., 0], np.float64)
         opening = np.einsum("nmk,nk->nm", slopes, step) + miss
         pushing = target / slacks - forces - weights * opening
         near, far = _longest(slacks, opening), _longest(forces, pushing)
