@@ -65,10 +65,10 @@ def minimize_within(
     (n, k) float array
         Stationary points; the best near the start where the functions are nearly linear.
     """
-    unknowns = start.copy()
+    unknowns: FloatArray = start.copy()
     values, slopes = functions(unknowns)
-    slacks = np.maximum(values, _BEGIN)
-    forces = _BEGIN**2 / slacks
+    slacks: FloatArray = np.maximum(values, _BEGIN)
+    forces: FloatArray = _BEGIN**2 / slacks
     eye = np.eye(start.shape[1])
     for _ in range(rounds):
         gap = dot(slacks, forces)[:, None] / slacks.shape[1]
@@ -76,17 +76,19 @@ def minimize_within(
         dual: FloatArray = (
             unknowns @ quadratic + linear - np.einsum("nmk,nm->nk", slopes, forces)
         )
-        miss = values - slacks
-        weights = forces / slacks
+        miss: FloatArray = values - slacks
+        weights: FloatArray = forces / slacks
         system = np.einsum("nmk,nm,nml->nkl", slopes, weights, slopes, optimize=True)
         scale = 8 * EPSILON * np.trace(system, axis1=1, axis2=2)
         system += quadratic + (_LEAST + scale)[:, None, None] * eye
         system = _positive_sum(system, *curvature(forces))
-        pull = target / slacks - forces - weights * miss
+        pull: FloatArray = target / slacks - forces - weights * miss
         right: FloatArray = np.einsum("nmk,nm->nk", slopes, pull) - dual
-        step: FloatArray = np.linalg.solve(system, right[..., None])[..., 0]
-        opening = np.einsum("nmk,nk->nm", slopes, step) + miss
-        pushing = target / slacks - forces - weights * opening
+        step: FloatArray = np.asarray(
+            np.linalg.solve(system, right[..., None])[..., 0], np.float64
+        )
+        opening: FloatArray = np.einsum("nmk,nk->nm", slopes, step) + miss
+        pushing: FloatArray = target / slacks - forces - weights * opening
         near, far = _longest(slacks, opening), _longest(forces, pushing)
         unknowns += near * step
         slacks += near * opening

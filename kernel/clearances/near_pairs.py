@@ -1,7 +1,7 @@
 """Pairs of bodies whose boxes are near: by a tree, none is missed."""
 
 from itertools import chain
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -28,9 +28,9 @@ def near_pairs(
     for part in np.array_split(order, 4):
         if len(part) == 0:
             continue
-        tree = KDTree(other_middles[part])
+        tree = cast("Any", KDTree)(other_middles[part])
         reach = radii + other_radii[part].max() + distance
-        lists = cast("list[list[int]]", tree.query_ball_point(middles, reach).tolist())
+        lists: list[list[int]] = tree.query_ball_point(middles, reach).tolist()
         rows.append(np.repeat(np.arange(len(boxes)), [len(each) for each in lists]))
         found.append(part[np.array(list(chain.from_iterable(lists)), np.int64)])
     first, second = np.concatenate(rows), np.concatenate(found)

@@ -70,9 +70,9 @@ def _reach(normals: FloatArray, points: FloatArray, edges: IntArray) -> FloatArr
     starts, middles, ends = (points[row, edges[..., k]] for k in range(3))
     along = norm(ends - starts)[:, None]
     rises = middles - (starts + ends) / 2
-    columns = np.arange(values.shape[1])[None, :, None]
+    columns: IntArray = np.arange(values.shape[1])
     before, middle, after = (
-        values[row[..., None], columns, edges[:, None, :, k]] for k in range(3)
+        values[row[..., None], columns[None, :, None], edges[:, None, :, k]] for k in range(3)
     )
     lean = np.divide(after - before, along**2, out=np.zeros_like(before), where=along > 0)
     bulge = HALF_ARC * (

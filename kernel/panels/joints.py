@@ -57,11 +57,13 @@ def _along_joints(
     starts = np.stack([panels.corners[first], panels.corners[following[second]] + shift], 1)
     ends = np.stack([panels.corners[following[first]], panels.corners[second] + shift], 1)
     middle = (starts + ends).mean(axis=1) / 2
-    away: FloatArray = panels.plane_normals[first] - panels.plane_normals[second]
+    normals = panels.plane_normals
+    away: FloatArray = np.subtract(normals[first], normals[second])
     normal = unit(away)
-    chord = (ends - starts).mean(axis=1)
+    chord: FloatArray = (ends - starts).mean(axis=1)
     chord = chord - dot(chord, normal)[:, None] * normal
-    rise = unit(np.cross(chord, normal))
+    across: FloatArray = np.cross(chord, normal)
+    rise = unit(across)
     rows = np.stack([panels.spheres[own], recenter(panels.spheres[other], -shift)], 1)
     circles = recenter(rows, middle[:, None])
     slopes = dot(circles[..., 1:4], normal[:, None])
