@@ -12,11 +12,12 @@ import sys
 import time
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from spheremesh import Mesh, nodes
-from spheremesh.kernel.arrays import FloatArray
+from spheremesh.kernel.arrays import FloatArray, IntArray
 from spheremesh.kernel.optimization.angle_minimization import minimize_angles, pencil_angles
 from spheremesh.kernel.optimization.pencil_energy import (
     PencilCoupling,
@@ -33,10 +34,10 @@ CREASE = np.radians(40)
 
 def grid(points: FloatArray) -> Mesh:
     """Quads of a table of points (m, n, 3)."""
-    rows, columns = points.shape[0] - 1, points.shape[1] - 1
-    first = np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)
-    steps = np.array([0, columns + 1, columns + 2, 1])
-    return Mesh(points.reshape(-1, 3), first.reshape(-1, 1) + steps)
+    rows, columns = len(points), len(points[0])
+    place: IntArray = np.arange(rows * columns).reshape(rows, columns)
+    sides = [place[:-1, :-1], place[1:, :-1], place[1:, 1:], place[:-1, 1:]]
+    return Mesh(points.reshape(-1, 3), np.stack([side.ravel() for side in sides], 1))
 
 
 def flat(count: int, length: float) -> Mesh:
@@ -88,8 +89,9 @@ def best_of_scipy(
     coupling: PencilCoupling, target: float, smooth: FloatArray, starts: int
 ) -> float:
     """Least energy of L-BFGS from random starts, half of them near smooth contact."""
-    from scipy.optimize import minimize
+    import scipy.optimize
 
+    solver: Any = scipy.optimize.minimize
     density = angle_density(target)
     rng = np.random.default_rng(3)
 
@@ -102,7 +104,7 @@ def best_of_scipy(
         spread = rng.uniform(-1.2, 1.2, len(smooth))
         start = spread if number % 2 else smooth + np.sign(spread) * target / 2
         options = {"maxiter": 5000, "maxfun": 10_000, "ftol": 1e-14, "gtol": 1e-10}
-        found = minimize(_energy, start, jac=True, method="L-BFGS-B", options=options)
+        found = solver(_energy, start, jac=True, method="L-BFGS-B", options=options)
         best = min(best, float(found.fun))
     return best
 
@@ -140,21 +142,23 @@ def targets() -> None:
     print(f"worse than a general solver: {worse}")
 
 
+def sized(name: str, size: int) -> Mesh:
+    """A mesh of about size² faces."""
+    if name == "roof":
+        return nodes.roof_mesh(round(size / 2**0.5), round(size * 2**0.5))
+    if name == "free, 1:20":
+        return surface(round(size * 4.5), round(size / 4.5), "free")
+    return surface(size, size, name)
+
+
 def speed(*, is_large: bool) -> None:
     """Seconds of the smallest angles, and how they grow."""
     sizes = (71, 225, 707) if is_large else (71, 225)
     minimize_angles(nodes.fit_spheres(tube(4, 4)))  # load scipy outside of the clock
-    shapes = {
-        "roof": lambda k: nodes.roof_mesh(round(k / 2**0.5), round(k * 2**0.5)),
-        "free": lambda k: surface(k, k, "free"),
-        "dome": lambda k: surface(k, k, "dome"),
-        "bowl": lambda k: surface(k, k, "bowl"),
-        "free, 1:20": lambda k: surface(round(k * 4.5), round(k / 4.5), "free"),
-    }
-    for name, shape in shapes.items():
+    for name in ("roof", "free", "dome", "bowl", "free, 1:20"):
         counts, seconds = list[int](), list[float]()
         for size in sizes:
-            start = nodes.fit_spheres(shape(size))
+            start = nodes.fit_spheres(sized(name, size))
             began = time.process_time()
             _, report = minimize_angles(start, crease=CREASE)
             seconds.append(time.process_time() - began)

@@ -2,7 +2,6 @@
 
 import json
 import sys
-import warnings
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from pathlib import Path
@@ -90,7 +89,7 @@ def _swept(
     from ..kernel.errors import InputError
     from ..nodes.graphs.graph import Graph
     from ..nodes.graphs.sweeps.rows import Sweep
-    from ..nodes.graphs.sweeps.sweep import sweep as run_sweep
+    from ..nodes.graphs.sweeps.sweep import run_sweep
 
     if options["workers"] and options["dask"]:
         raise click.UsageError("--workers and --dask exclude each other; drop one")
@@ -117,11 +116,10 @@ def _swept(
             Sweep(rows, names).save(out / TABLE)
         shown(row, done, total)
 
-    with _executor(options["dask"]) as executor, warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # they are in the rows
+    with _executor(options["dask"]) as executor:
         found = run_sweep(
-            graph, *names, executor=executor, workers=options["workers"], write_to=out,
-            on_row=_on_row, **axes,
+            graph, names, axes, executor=executor, workers=options["workers"], write_to=out,
+            on_row=_on_row,
         )  # fmt: skip
     found.save(out / TABLE)
     if fields:

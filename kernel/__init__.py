@@ -21,6 +21,7 @@ solvers         Least squares and the linear systems in it.
 parts           What panels, beams and nodes are called, and what is said of them.
 arrays          Array types, and the few operations on rows that NumPy has no short name for.
 errors          What can go wrong, as types.
+progress        How far a long computation has come, told to whoever listens.
 reports         Records that read like dictionaries.
 tolerances      The only home of small numbers.
 """

@@ -259,6 +259,8 @@ VERTEX_MISS: Final = 0.01
 """Vertices farther from their sphere than this share of the mean edge are worth a warning."""
 FLATTENED: Final = 0.25
 """Spheres of which less than this share of the curvature is left have become nearly planes."""
+DEEP_CAP: Final = 0.5235987755982988
+"""Caps that open by less (30 degrees) from their middle can be cut as well as planes."""
 LITTLE_GAIN: Final = 0.05
 """A relative gain of spheres over planes that is worth saying to be small."""
 MOSTLY_EVEN: Final = 0.95

@@ -6,6 +6,7 @@ All nodes of the library can be imported from here by name or with ``*``.
 from collections.abc import Callable
 from typing import Any
 
+from ..kernel.progress import listen
 from .graphs.errors import GraphError, NodeError
 from .graphs.graph import Graph
 from .graphs.node import (
@@ -46,6 +47,8 @@ __all__ = [
     "sweep",
     "warn",
 ]
+
+listen(progress)  # long computations of the kernel tell it of the node that runs them
 
 # The nodes are found when first asked for, by the registry: a new function in a module of
 # nodes/library needs no line here, and `import spheremesh` does not import the library.

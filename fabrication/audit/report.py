@@ -39,7 +39,7 @@ def audit_model(
     cylinder, B202 twisted against a node axis, B203 ends at a node lie apart, B209 its plane
     passes the line of the others at a node. Notes: B201 tilted against the surface, B204
     shallow, B205 short, B206 sharp bevel, B207 too long a piece, B208 drilling marks do not
-    fit; with node cylinders, which take every end, B203 and B209 as well, and no B202.
+    fit; with node cylinders, which take every end, P205, B203 and B209 as well, and no B202.
 
     Checks from P101 and B102 on need finite numbers: where there is a P002 or B002 they wait
     until it is mended. Surfaces without thickness overlap nothing. Raises InputError if the

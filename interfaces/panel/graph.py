@@ -79,8 +79,6 @@ def panel_graph(
     crease = graph.param("crease", options.crease, min=0, max=180)
     if keeps_spheres:
         optimum = _kept_spheres(graph, mesh, crease)
-    elif options.support == "exact":
-        optimum = _exact(graph, options, mesh)
     else:
         optimum = _optimum(graph, options, mesh, moves, crease)
     design = spheres = optimum.sphere_mesh
@@ -102,10 +100,7 @@ def panel_graph(
         "panels", "panels", sphere_mesh=spheres, labels=labels, **{**layers, **cut}
     )
     support = add_beams(graph, options, annuli, panels.panels) if annuli else None
-    plain: dict[str, Wire] = {}
-    if support or spheres is not design:
-        # What there would be without moulds and beams, to say what these cost.
-        plain["plain"] = graph.add("panels", "plain", sphere_mesh=design, **layers).report
+    plain = _plain(graph, design, layers) if support or spheres is not design else {}
     if options.moulds is not None:
         blanks = _add_blanks(graph, panels.panels)
     audit = graph.add(
@@ -118,9 +113,7 @@ def panel_graph(
         cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report, **plain,
         **(support.report if support else {}),
     )  # fmt: skip
-    made = {"panels": panels.panels}
-    if support:
-        made["beams"] = support.beams
+    made = {"panels": panels.panels} | ({"beams": support.beams} if support else {})
     _add_writers(graph, mesh, made)
     return graph
 
@@ -145,6 +138,11 @@ def _add_writers(graph: Graph, mesh: Step | Wire, made: Mapping[str, Wire]) -> N
 def _source(graph: Graph) -> str:
     """Name of the output that is the mesh: of the file, or repaired."""
     return "mesh.mesh" if graph.steps["mesh"].node.name == "repair_mesh" else "mesh"
+
+
+def _plain(graph: Graph, design: Wire, layers: Mapping[str, Any]) -> dict[str, Wire]:
+    """Panels as they would be without moulds and beams, to say what these cost."""
+    return {"plain": graph.add("panels", "plain", sphere_mesh=design, **layers).report}
 
 
 def _mesh(graph: Graph, options: PanelOptions) -> Step | Wire:
@@ -180,6 +178,8 @@ def _optimum(
     crease: Param,
 ) -> Step:  # fmt: skip
     """The spheres: of smallest angles alone, or of more than that."""
+    if options.support == "exact":
+        return _exact(graph, options, mesh)
     start = graph.add("fit_spheres", "start", mesh=mesh)
     target: dict[str, Any] = {"crease": crease}
     if options.target_angle:

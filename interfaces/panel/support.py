@@ -86,11 +86,7 @@ def add_annuli(
         annuli = graph.add(
             "bisector_support", "annuli", sphere_mesh=spheres, **depth, **thickness
         )
-        joint = graph.add(
-            "least_joint", "joint", sphere_mesh=spheres, axes=annuli.axes,
-            thickness=layers["thickness"], joint_gap=layers["joint_gap"],
-        )  # fmt: skip
-        cut: dict[str, Any] = {"edges": "bisector", "joint_gap": joint}
+        cut: dict[str, Any] = {"edges": "bisector"}
     else:
         if kind == "exact":
             depth["axes"] = graph.add("common_axes", "axes", sphere_mesh=design)
@@ -100,6 +96,10 @@ def add_annuli(
             depth["axes"] = axes
         annuli = graph.add("axis_support", "annuli", sphere_mesh=spheres, **depth)
         cut = {"edges": "axis", "axes": annuli.axes}
+    cut["joint_gap"] = graph.add(
+        "least_joint", "joint", sphere_mesh=spheres, axes=annuli.axes, edges=cut["edges"],
+        thickness=layers["thickness"], joint_gap=layers["joint_gap"],
+    )  # fmt: skip
     return AnnuliSteps(kind, annuli, cut, thickness, feasibility)
 
 

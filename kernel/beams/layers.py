@@ -144,9 +144,9 @@ def _rests(annuli: Annuli, panels: Panels, thickness: float, bearing: float) -> 
 def rest_clearances(beams: Beams, panels: Panels) -> tuple[IntArray, IntArray, FloatArray]:
     """How far tops of beams are below the panels that rest on them.
 
-    Rows (n,) of beams and of the panels beside them, and distances that are no larger than the
-    true ones: those of the whole top as it is before its ends are cut, over the side of the
-    panel. Negative where a top reaches into the panel.
+    Rows (n,) of beams and of the panels beside them, and distances in the planes of the beams:
+    of the whole top as far as any of its ends reaches, over the side of the panel. Negative
+    where it reaches into the panel, whose sphere is taken to go on.
     """
     annuli = beams.annuli
     rests = _rests(annuli, panels, beams.thickness, 0.0)

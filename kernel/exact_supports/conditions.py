@@ -19,24 +19,24 @@ from ..arrays import FloatArray, dot
 from ..solvers.blocks import Block
 from ..spheres.incidence import evaluate, normals
 from ..spheres.minkowski import minkowski, minkowski_gradient
-from .setting import Group, NetState, Setting
-from .terms import Term, points_at, rows_at
+from .setting import SlideSetting, SlidState, Unknown
+from .terms import SlideTerm, points_at, rows_at
 
 
-def _incidence_blocks(setting: Setting) -> tuple[Block, ...]:
+def _incidence_blocks(setting: SlideSetting) -> tuple[Block, ...]:
     mesh = setting.mesh
     return (
-        Block(Group.ROW, mesh.topology.corner_faces),
-        Block(Group.SHIFT, mesh.corners),
+        Block(Unknown.ROW, mesh.topology.corner_faces),
+        Block(Unknown.SHIFT, mesh.corners),
     )
 
 
-def _incidence(setting: Setting, state: NetState) -> FloatArray:
+def _incidence(setting: SlideSetting, state: SlidState) -> FloatArray:
     corners = np.arange(len(setting.corners))
     return evaluate(rows_at(setting, state, corners), points_at(setting, state, corners))
 
 
-def _incidence_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray, ...]:
+def _incidence_jacobian(setting: SlideSetting, state: SlidState) -> tuple[FloatArray, ...]:
     corners = np.arange(len(setting.corners))
     rows, points = rows_at(setting, state, corners), points_at(setting, state, corners)
     ones = np.ones((len(points), 1))
@@ -44,16 +44,16 @@ def _incidence_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray, 
     return by_row, -normals(rows, points)
 
 
-def _axis_blocks(setting: Setting) -> tuple[Block, ...]:
+def _axis_blocks(setting: SlideSetting) -> tuple[Block, ...]:
     mesh, spokes = setting.mesh, setting.spokes
     return (
-        Block(Group.ROW, mesh.topology.corner_faces[spokes]),
-        Block(Group.SHIFT, mesh.corners[spokes]),
-        Block(Group.POLE, setting.spoke_nodes),
+        Block(Unknown.ROW, mesh.topology.corner_faces[spokes]),
+        Block(Unknown.SHIFT, mesh.corners[spokes]),
+        Block(Unknown.POLE, setting.spoke_nodes),
     )
 
 
-def _axis(setting: Setting, state: NetState) -> FloatArray:
+def _axis(setting: SlideSetting, state: SlidState) -> FloatArray:
     rows, points = (
         rows_at(setting, state, setting.spokes),
         points_at(setting, state, setting.spokes),
@@ -63,7 +63,7 @@ def _axis(setting: Setting, state: NetState) -> FloatArray:
     return (rows[:, 0] - dot(poles, normals(rows, points))) / units
 
 
-def _axis_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray, ...]:
+def _axis_jacobian(setting: SlideSetting, state: SlidState) -> tuple[FloatArray, ...]:
     rows, points = (
         rows_at(setting, state, setting.spokes),
         points_at(setting, state, setting.spokes),
@@ -76,29 +76,29 @@ def _axis_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray, ...]:
     return by_row / units, by_shift / units, -normals(rows, points) / units
 
 
-def _unit_blocks(setting: Setting) -> tuple[Block, ...]:
-    return (Block(Group.ROW, np.arange(setting.mesh.n_faces)),)
+def _unit_blocks(setting: SlideSetting) -> tuple[Block, ...]:
+    return (Block(Unknown.ROW, np.arange(setting.mesh.n_faces)),)
 
 
-def _unit(_: Setting, state: NetState) -> FloatArray:
+def _unit(_: SlideSetting, state: SlidState) -> FloatArray:
     return minkowski(state.rows, state.rows) - 1
 
 
-def _unit_jacobian(_: Setting, state: NetState) -> tuple[FloatArray, ...]:
+def _unit_jacobian(_: SlideSetting, state: SlidState) -> tuple[FloatArray, ...]:
     return (2 * minkowski_gradient(state.rows),)
 
 
-def _flat_blocks(setting: Setting) -> tuple[Block, ...]:
+def _flat_blocks(setting: SlideSetting) -> tuple[Block, ...]:
     (first, second), (tails, heads) = setting.beam_nodes.T, setting.nodes[setting.beam_nodes].T
     return (
-        Block(Group.POLE, first),
-        Block(Group.POLE, second),
-        Block(Group.SHIFT, tails),
-        Block(Group.SHIFT, heads),
+        Block(Unknown.POLE, first),
+        Block(Unknown.POLE, second),
+        Block(Unknown.SHIFT, tails),
+        Block(Unknown.SHIFT, heads),
     )
 
 
-def _beam(setting: Setting, state: NetState) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _beam(setting: SlideSetting, state: SlidState) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Poles (n, 3) at both ends of the beams between nodes, in their units, and edges."""
     ends = setting.beam_nodes
     poles = state.poles[ends] / setting.node_scales[ends, None]
@@ -107,12 +107,12 @@ def _beam(setting: Setting, state: NetState) -> tuple[FloatArray, FloatArray, Fl
     return poles[:, 0], poles[:, 1], along
 
 
-def _flat(setting: Setting, state: NetState) -> FloatArray:
+def _flat(setting: SlideSetting, state: SlidState) -> FloatArray:
     first, second, along = _beam(setting, state)
     return dot(np.cross(first, second), along)
 
 
-def _flat_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray, ...]:
+def _flat_jacobian(setting: SlideSetting, state: SlidState) -> tuple[FloatArray, ...]:
     first, second, along = _beam(setting, state)
     units = setting.node_scales[setting.beam_nodes].T[..., None]
     by_tail = -np.cross(first, second)
@@ -124,15 +124,15 @@ def _flat_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray, ...]:
     )
 
 
-COMMON_AXES = Term("axis", _axis_blocks, _axis, _axis_jacobian)
+COMMON_AXES = SlideTerm("axis", _axis_blocks, _axis, _axis_jacobian)
 """All spheres of a node pass through a second point on its axis."""
 
 CONDITIONS = (
-    Term("incidence", _incidence_blocks, _incidence, _incidence_jacobian),
+    SlideTerm("incidence", _incidence_blocks, _incidence, _incidence_jacobian),
     COMMON_AXES,
-    Term("unit", _unit_blocks, _unit, _unit_jacobian),
+    SlideTerm("unit", _unit_blocks, _unit, _unit_jacobian),
 )
 """Spheres pass through their vertices, nodes have axes, rows are unit."""
 
-FLATNESS = Term("flat", _flat_blocks, _flat, _flat_jacobian)
+FLATNESS = SlideTerm("flat", _flat_blocks, _flat, _flat_jacobian)
 """Beams are flat."""

@@ -41,7 +41,8 @@ def common_curvatures(mesh: Mesh) -> FloatArray:
     """
     topology = mesh.topology
     curvatures, lengths = edge_curvatures(mesh)
-    pieces = piece_labels(*topology.edge_faces.T, mesh.n_faces)
+    left, right = topology.edge_faces.T
+    pieces = piece_labels(left, right, mesh.n_faces)
     result = np.zeros(mesh.n_faces)
     for piece in range(int(pieces.max()) + 1):
         chosen = pieces[topology.edge_faces[:, 0]] == piece
@@ -61,8 +62,9 @@ def _median(curvatures: FloatArray, weights: FloatArray) -> float:
     if not len(curvatures):
         return 0.0
     order = np.argsort(curvatures)
-    place = np.searchsorted(np.cumsum(weights[order]), weights.sum() / 2)
-    best = float(curvatures[order][min(int(place), len(order) - 1)])
+    sums: FloatArray = np.cumsum(weights[order])
+    place = int((sums < sums[-1] / 2).sum())
+    best = float(curvatures[order][place])
     least = LEAST_CURVATURE * float(np.median(np.abs(curvatures)))
     return best if abs(best) >= least else float(np.copysign(least, best))
 

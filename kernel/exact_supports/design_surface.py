@@ -96,7 +96,7 @@ def _polynomials(
     ridge[ridge == 0] = 1.0
     gram += ridge[:, None, None] * np.eye(6)
     right = sum_by(centers, weighted * z[:, None], mesh.n_vertices)
-    found = np.linalg.solve(gram, right[..., None])[..., 0]
+    found: FloatArray = np.asarray(np.linalg.solve(gram, right[..., None])[..., 0], np.float64)
     found[:, 4] *= root
     found[:, 3:] /= spacing[:, None]
     return found[:, 1:]

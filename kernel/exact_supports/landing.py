@@ -8,13 +8,13 @@ from ..arrays import unit
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..tolerances import NODE_EXACT
 from .descent import meet_conditions, misses
-from .setting import NetState, Setting, assembled, farthest
+from .setting import SlideSetting, SlidState, assembled, farthest
 
 NEAR = 0.05
 """Mean edges by which landing may move a vertex."""
 
 
-def land(setting: Setting, state: NetState) -> tuple[SphereMesh, bool]:
+def land(setting: SlideSetting, state: SlidState) -> tuple[SphereMesh, bool]:
     """Meet all conditions to rounding; also whether that was near.
 
     If not, the sphere mesh is the one of the state.
@@ -31,7 +31,7 @@ def land(setting: Setting, state: NetState) -> tuple[SphereMesh, bool]:
     return assembled(setting, state), False
 
 
-def _unit(state: NetState) -> NetState:
+def _unit(state: SlidState) -> SlidState:
     """The state with exactly unit rows: what is left to do goes to B, so that radii stay."""
     rows = state.rows.copy()
     lengths = np.sqrt(1 + 4 * rows[:, 0] * rows[:, 4])

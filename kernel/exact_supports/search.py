@@ -9,15 +9,17 @@ from ..arrays import FloatArray, sum_by
 from ..errors import InputError
 from ..meshes.mesh import Mesh, with_vertices
 from ..remesh.planar.conditions import must_be_planar
+from ..sphere_meshes.fit import face_planes
 from ..sphere_meshes.sphere_mesh import SphereMesh
+from ..support.feasibility import judge_support
 from .curvatures import common_curvatures, one_curvature
-from .descent import descend
+from .descent import slide_to_support
 from .design_surface import design_surface
 from .judgement import Judgement, judge
 from .landing import land
 from .setting import Bounds, first_state, make_setting
 
-TRIALS = ((1.0, False), (1.0, True), (1.3, True), (0.7, True))
+SEARCHES = ((1.0, False), (1.0, True), (1.3, True), (0.7, True))
 """Common curvatures that are tried, relative to the best, and whether flatness is a condition:
 the next where none is found or beams tilt."""
 
@@ -110,7 +112,8 @@ def find_exact_support(mesh: Mesh, bounds: Bounds, *, one_radius: bool = False) 
     Notes
     -----
     Where the best common curvature leads to beams that tilt, or to no net, larger and smaller
-    ones are tried: near a curvature of the surface the net is badly determined.
+    ones are tried: near a curvature of the surface the net is badly determined. Meshes
+    whose beams could not stand on node axes anyway (`judge_support`) get one trial.
     """
     _check_bounds(bounds)
     _refuse_triangles(mesh)
@@ -120,12 +123,14 @@ def find_exact_support(mesh: Mesh, bounds: Bounds, *, one_radius: bool = False) 
     surface = design_surface(design)
     curvatures = (one_curvature if one_radius else common_curvatures)(design)
     attempts: list[Attempt] = []
-    for factor, is_flat in TRIALS:
+    # Where even with fixed vertices no axes please the beams, sliding hardly ever helps.
+    is_hopeless = judge_support(face_planes(design)).verdict == "no"
+    for factor, is_flat in SEARCHES[:1] if is_hopeless else SEARCHES:
         setting = make_setting(
             design, surface, _searched(bounds), factor * curvatures,
             has_one_radius=one_radius, is_flat=is_flat,
         )  # fmt: skip
-        found, is_landed = land(setting, descend(setting, first_state(setting)))
+        found, is_landed = land(setting, slide_to_support(setting, first_state(setting)))
         judgement = judge(design, surface, found)
         attempts.append(
             Attempt(found, factor, setting.curvatures, is_landed, judgement, bounds)

@@ -19,7 +19,7 @@ from .curvatures import spheres_of_curvature
 from .design_surface import DesignSurface
 
 
-class Group(IntEnum):
+class Unknown(IntEnum):
     """Groups of unknowns."""
 
     ROW = 0
@@ -27,9 +27,9 @@ class Group(IntEnum):
     POLE = 2
 
 
-WIDTHS = (5, 3, 3)
+UNKNOWN_WIDTHS = (5, 3, 3)
 
-SHORT_EDGE = 1e-3
+VANISHING_EDGE = 1e-3
 """Edges shorter than this, in mean edges, may vanish."""
 
 
@@ -48,7 +48,7 @@ class Bounds:
 
 
 @dataclass(frozen=True)
-class NetState:
+class SlidState:
     """Values of the unknowns.
 
     Attributes
@@ -68,7 +68,7 @@ class NetState:
 
 
 @dataclass(frozen=True)
-class Setting:
+class SlideSetting:
     """What stays fixed.
 
     Attributes
@@ -120,7 +120,9 @@ class Setting:
     @property
     def layout(self) -> Layout:
         """Layout of the unknowns in a vector."""
-        return Layout((self.mesh.n_faces, self.mesh.n_vertices, len(self.nodes)), WIDTHS)
+        return Layout(
+            (self.mesh.n_faces, self.mesh.n_vertices, len(self.nodes)), UNKNOWN_WIDTHS
+        )
 
 
 def make_setting(
@@ -131,7 +133,7 @@ def make_setting(
     *,
     has_one_radius: bool = False,
     is_flat: bool = False,
-) -> Setting:
+) -> SlideSetting:
     """Measure a mesh for a search; curvatures (F,) per mean edge."""
     topology = mesh.topology
     nodes = np.flatnonzero(np.bincount(mesh.corners, minlength=mesh.n_vertices))
@@ -148,7 +150,7 @@ def make_setting(
     scales = np.maximum(np.abs(curvatures), FLATTEST) / 2
     at = node_of[mesh.corners[spokes]]
     counts = np.bincount(at, minlength=len(nodes))
-    return Setting(
+    return SlideSetting(
         mesh=mesh,
         surface=surface,
         bounds=bounds,
@@ -160,7 +162,7 @@ def make_setting(
         beam_nodes=beams,
         beam_edges=along,
         edges=np.stack([tails, tips], axis=1),
-        edge_slopes=along / np.maximum(dot(along, along), SHORT_EDGE**2)[:, None],
+        edge_slopes=along / np.maximum(dot(along, along), VANISHING_EDGE**2)[:, None],
         curvatures=curvatures,
         scales=scales,
         node_scales=sum_by(at, scales[topology.corner_faces[spokes]], len(nodes)) / counts,
@@ -169,14 +171,14 @@ def make_setting(
     )
 
 
-def first_state(setting: Setting) -> NetState:
+def first_state(setting: SlideSetting) -> SlidState:
     """Spheres of the curvatures through the faces' circles, upright axes, no shifts."""
     mesh = setting.mesh
     spheres = spheres_of_curvature(mesh, setting.curvatures).local_spheres
     return upright_state(setting, rescale(spheres, 1 / mean_edge_length(mesh)))
 
 
-def upright_state(setting: Setting, rows: FloatArray) -> NetState:
+def upright_state(setting: SlideSetting, rows: FloatArray) -> SlidState:
     """Spheres (F, 5), axes along the mean normals of their nodes, no shifts."""
     mesh = setting.mesh
     faces = mesh.topology.corner_faces[setting.spokes]
@@ -185,16 +187,16 @@ def upright_state(setting: Setting, rows: FloatArray) -> NetState:
     upward = unit(sum_by(setting.spoke_nodes, arrows, count))
     sizes = sum_by(setting.spoke_nodes, rows[faces, 0], count)
     sizes /= np.bincount(setting.spoke_nodes, minlength=count)
-    return NetState(rows, np.zeros((mesh.n_vertices, 3)), sizes[:, None] * upward)
+    return SlidState(rows, np.zeros((mesh.n_vertices, 3)), sizes[:, None] * upward)
 
 
-def move(setting: Setting, state: NetState, step: FloatArray) -> NetState:
+def slid_by(setting: SlideSetting, state: SlidState, step: FloatArray) -> SlidState:
     """The state after a step, a flat vector."""
     rows, shifts, poles = setting.layout.split(step)
-    return NetState(state.rows + rows, state.shifts + shifts, state.poles + poles)
+    return SlidState(state.rows + rows, state.shifts + shifts, state.poles + poles)
 
 
-def assembled(setting: Setting, state: NetState) -> SphereMesh:
+def assembled(setting: SlideSetting, state: SlidState) -> SphereMesh:
     """The sphere mesh of a state, in model units."""
     mesh = setting.mesh
     size = mean_edge_length(mesh)

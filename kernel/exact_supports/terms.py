@@ -7,11 +7,11 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..solvers.blocks import Block
-from .setting import NetState, Setting
+from .setting import SlideSetting, SlidState
 
 
 @dataclass(frozen=True)
-class Term:
+class SlideTerm:
     """One term: residuals (m,) that shall be 0, each in units of what is tolerable.
 
     Attributes
@@ -19,23 +19,23 @@ class Term:
     blocks : callable
         Setting to what each residual depends on.
     residuals : callable
-        Setting and state to (m,) residuals.
+        SlideSetting and state to (m,) residuals.
     jacobian : callable
-        Setting and state to one (m, width) table of derivatives per block.
+        SlideSetting and state to one (m, width) table of derivatives per block.
     """
 
     name: str
-    blocks: Callable[[Setting], tuple[Block, ...]]
-    residuals: Callable[[Setting, NetState], FloatArray]
-    jacobian: Callable[[Setting, NetState], tuple[FloatArray, ...]]
+    blocks: Callable[[SlideSetting], tuple[Block, ...]]
+    residuals: Callable[[SlideSetting, SlidState], FloatArray]
+    jacobian: Callable[[SlideSetting, SlidState], tuple[FloatArray, ...]]
 
 
-def rows_at(setting: Setting, state: NetState, corners: IntArray) -> FloatArray:
+def rows_at(setting: SlideSetting, state: SlidState, corners: IntArray) -> FloatArray:
     """Rows (m, 5) of the faces of corners."""
     return state.rows[setting.mesh.topology.corner_faces[corners]]
 
 
-def points_at(setting: Setting, state: NetState, corners: IntArray) -> FloatArray:
+def points_at(setting: SlideSetting, state: SlidState, corners: IntArray) -> FloatArray:
     """Points (m, 3) of corners, local to their face."""
     return setting.corners[corners] + state.shifts[setting.mesh.corners[corners]]
 

@@ -11,8 +11,8 @@ from ..arrays import FloatArray, dot, norm
 from ..solvers.blocks import Block
 from ..spheres.incidence import normals
 from .design_surface import across_rim, heights, slides
-from .setting import Group, NetState, Setting
-from .terms import Term, points_at, rows_at
+from .setting import SlideSetting, SlidState, Unknown
+from .terms import SlideTerm, points_at, rows_at
 
 HEIGHT, SLIDE = 1 / 3, 3 / 7
 """Tolerable shares of the bounds of a move: 0.02 and 0.3 edges for 0.06 and 0.7."""
@@ -23,74 +23,74 @@ RIM = 0.05
 ANGLE = 0.10
 """Tolerable angle between neighbours at a vertex."""
 
-AXIS_LEAN = 0.15
+TOLERABLE_LEAN = 0.15
 """Tolerable lean of an axis, as a tangent."""
 
 LEAST_AXIS = 0.2
 """Poles shorter than this, in their unit, do not lean more for it."""
 
-ALIKE = 0.02
+ALIKE_CURVATURE = 0.02
 """Tolerable difference of A between neighbours."""
 
 HOLD = 0.2
 """Tolerable share by which curvatures leave the one that suits the surface."""
 
-KEPT_EDGE, EDGE_WIDTH = 0.6, 0.05
+KEPT_LENGTH, EDGE_WIDTH = 0.6, 0.05
 """Share of its length that an edge keeps along itself, and within which a wall rises."""
 
 WALL, WALL_WIDTH = 0.9, 0.05
 """Share of a bound at which its wall begins, and within which it rises by a unit."""
 
 
-def _vertices(setting: Setting) -> tuple[Block, ...]:
-    return (Block(Group.SHIFT, np.arange(setting.mesh.n_vertices)),)
+def _vertices(setting: SlideSetting) -> tuple[Block, ...]:
+    return (Block(Unknown.SHIFT, np.arange(setting.mesh.n_vertices)),)
 
 
-def _vertices_twice(setting: Setting) -> tuple[Block, ...]:
-    return (Block(Group.SHIFT, np.tile(np.arange(setting.mesh.n_vertices), 2)),)
+def _vertices_twice(setting: SlideSetting) -> tuple[Block, ...]:
+    return (Block(Unknown.SHIFT, np.tile(np.arange(setting.mesh.n_vertices), 2)),)
 
 
-def _height(setting: Setting, state: NetState) -> FloatArray:
+def _height(setting: SlideSetting, state: SlidState) -> FloatArray:
     return heights(setting.surface, state.shifts)[0] / (HEIGHT * setting.bounds.height)
 
 
-def _height_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray, ...]:
+def _height_jacobian(setting: SlideSetting, state: SlidState) -> tuple[FloatArray, ...]:
     slopes = heights(setting.surface, state.shifts)[1]
     return (slopes / (HEIGHT * setting.bounds.height),)
 
 
-def _height_wall(setting: Setting, state: NetState) -> FloatArray:
+def _height_wall(setting: SlideSetting, state: SlidState) -> FloatArray:
     share = heights(setting.surface, state.shifts)[0] / setting.bounds.height
     return np.copysign(np.maximum(np.abs(share) - WALL, 0) / WALL_WIDTH, share)
 
 
-def _height_wall_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray, ...]:
+def _height_wall_jacobian(setting: SlideSetting, state: SlidState) -> tuple[FloatArray, ...]:
     lengths, slopes = heights(setting.surface, state.shifts)
     bound = setting.bounds.height
     is_beyond = np.abs(lengths) > WALL * bound
     return (slopes * (is_beyond / (WALL_WIDTH * bound))[:, None],)
 
 
-def _slide_bounds(setting: Setting) -> FloatArray:
+def _slide_bounds(setting: SlideSetting) -> FloatArray:
     return setting.bounds.slide * setting.surface.reach
 
 
-def _slide(setting: Setting, state: NetState) -> FloatArray:
+def _slide(setting: SlideSetting, state: SlidState) -> FloatArray:
     shares = slides(setting.surface, state.shifts) / _slide_bounds(setting)[:, None]
     return (shares / SLIDE).T.ravel()
 
 
-def _slide_jacobian(setting: Setting, _: NetState) -> tuple[FloatArray, ...]:
+def _slide_jacobian(setting: SlideSetting, _: SlidState) -> tuple[FloatArray, ...]:
     tangents = setting.surface.frames[:, :2] / _slide_bounds(setting)[:, None, None]
     return (np.concatenate([tangents[:, 0], tangents[:, 1]]) / SLIDE,)
 
 
-def _slide_wall(setting: Setting, state: NetState) -> FloatArray:
+def _slide_wall(setting: SlideSetting, state: SlidState) -> FloatArray:
     shares = norm(slides(setting.surface, state.shifts)) / _slide_bounds(setting)
     return np.maximum(shares - WALL, 0) / WALL_WIDTH
 
 
-def _slide_wall_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray, ...]:
+def _slide_wall_jacobian(setting: SlideSetting, state: SlidState) -> tuple[FloatArray, ...]:
     along, bounds = slides(setting.surface, state.shifts), _slide_bounds(setting)
     lengths = norm(along)
     is_beyond = lengths > WALL * bounds
@@ -101,49 +101,49 @@ def _slide_wall_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray,
     return (factors[:, None] * slopes,)
 
 
-def _edges(setting: Setting) -> tuple[Block, ...]:
-    return Block(Group.SHIFT, setting.edges[:, 0]), Block(Group.SHIFT, setting.edges[:, 1])
+def _edges(setting: SlideSetting) -> tuple[Block, ...]:
+    return Block(Unknown.SHIFT, setting.edges[:, 0]), Block(Unknown.SHIFT, setting.edges[:, 1])
 
 
-def _edge_wall(setting: Setting, state: NetState) -> FloatArray:
-    return np.maximum(KEPT_EDGE - _kept(setting, state), 0) / EDGE_WIDTH
+def _edge_wall(setting: SlideSetting, state: SlidState) -> FloatArray:
+    return np.maximum(KEPT_LENGTH - _kept(setting, state), 0) / EDGE_WIDTH
 
 
-def _kept(setting: Setting, state: NetState) -> FloatArray:
+def _kept(setting: SlideSetting, state: SlidState) -> FloatArray:
     """Share of its length that each edge has along its old direction."""
     tails, heads = setting.edges.T
     return 1 + dot(state.shifts[heads] - state.shifts[tails], setting.edge_slopes)
 
 
-def _edge_wall_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray, ...]:
-    is_beyond = _kept(setting, state) < KEPT_EDGE
+def _edge_wall_jacobian(setting: SlideSetting, state: SlidState) -> tuple[FloatArray, ...]:
+    is_beyond = _kept(setting, state) < KEPT_LENGTH
     slopes = setting.edge_slopes * (is_beyond / EDGE_WIDTH)[:, None]
     return slopes, -slopes
 
 
-def _rim_blocks(setting: Setting) -> tuple[Block, ...]:
-    return (Block(Group.SHIFT, np.repeat(setting.surface.rim, 3)),)
+def _rim_blocks(setting: SlideSetting) -> tuple[Block, ...]:
+    return (Block(Unknown.SHIFT, np.repeat(setting.surface.rim, 3)),)
 
 
-def _rim(setting: Setting, state: NetState) -> FloatArray:
+def _rim(setting: SlideSetting, state: SlidState) -> FloatArray:
     return across_rim(setting.surface, state.shifts)[0].ravel() / RIM
 
 
-def _rim_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray, ...]:
+def _rim_jacobian(setting: SlideSetting, state: SlidState) -> tuple[FloatArray, ...]:
     return (across_rim(setting.surface, state.shifts)[1].reshape(-1, 3) / RIM,)
 
 
-def _angle_blocks(setting: Setting) -> tuple[Block, ...]:
+def _angle_blocks(setting: SlideSetting) -> tuple[Block, ...]:
     mesh, (first, second) = setting.mesh, np.repeat(setting.pairs, 3, axis=0).T
     faces = mesh.topology.corner_faces
     return (
-        Block(Group.ROW, faces[first]),
-        Block(Group.ROW, faces[second]),
-        Block(Group.SHIFT, mesh.corners[first]),
+        Block(Unknown.ROW, faces[first]),
+        Block(Unknown.ROW, faces[second]),
+        Block(Unknown.SHIFT, mesh.corners[first]),
     )
 
 
-def _angle(setting: Setting, state: NetState) -> FloatArray:
+def _angle(setting: SlideSetting, state: SlidState) -> FloatArray:
     left, right = (
         normals(rows_at(setting, state, c), points_at(setting, state, c))
         for c in setting.pairs.T
@@ -152,7 +152,7 @@ def _angle(setting: Setting, state: NetState) -> FloatArray:
     return (left - right).ravel() / (ANGLE * np.sqrt(2))
 
 
-def _angle_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray, ...]:
+def _angle_jacobian(setting: SlideSetting, state: SlidState) -> tuple[FloatArray, ...]:
     count, unit = len(setting.pairs), ANGLE * np.sqrt(2)
     by_rows: list[FloatArray] = []
     for corners, sign in zip(setting.pairs.T, (1, -1), strict=True):
@@ -166,11 +166,11 @@ def _angle_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray, ...]
     return by_rows[0], by_rows[1], by_shift
 
 
-def _lean_blocks(setting: Setting) -> tuple[Block, ...]:
-    return (Block(Group.POLE, np.tile(np.arange(len(setting.nodes)), 2)),)
+def _lean_blocks(setting: SlideSetting) -> tuple[Block, ...]:
+    return (Block(Unknown.POLE, np.tile(np.arange(len(setting.nodes)), 2)),)
 
 
-def _axis_heights(setting: Setting, state: NetState) -> tuple[FloatArray, FloatArray]:
+def _axis_heights(setting: SlideSetting, state: SlidState) -> tuple[FloatArray, FloatArray]:
     """Heights (N,) of the poles, not less than the least, and their derivatives (N, 3)."""
     upward = setting.surface.frames[setting.nodes, 2]
     signed, least = dot(state.poles, upward), LEAST_AXIS * setting.node_scales
@@ -179,67 +179,67 @@ def _axis_heights(setting: Setting, state: NetState) -> tuple[FloatArray, FloatA
     return np.where(is_high, np.abs(signed), least), slopes
 
 
-def _lean(setting: Setting, state: NetState) -> FloatArray:
+def _lean(setting: SlideSetting, state: SlidState) -> FloatArray:
     tangents = setting.surface.frames[setting.nodes, :2]
     rise, _ = _axis_heights(setting, state)
-    return (np.einsum("nij,nj->in", tangents, state.poles) / (AXIS_LEAN * rise)).ravel()
+    return (np.einsum("nij,nj->in", tangents, state.poles) / (TOLERABLE_LEAN * rise)).ravel()
 
 
-def _lean_jacobian(setting: Setting, state: NetState) -> tuple[FloatArray, ...]:
+def _lean_jacobian(setting: SlideSetting, state: SlidState) -> tuple[FloatArray, ...]:
     tangents = setting.surface.frames[setting.nodes, :2]
     rise, slopes = _axis_heights(setting, state)
     along = np.einsum("nij,nj->in", tangents, state.poles)
-    unit = AXIS_LEAN * rise[:, None]
+    unit = TOLERABLE_LEAN * rise[:, None]
     tables = [
-        tangents[:, i] / unit - (along[i] / (AXIS_LEAN * rise**2))[:, None] * slopes
+        tangents[:, i] / unit - (along[i] / (TOLERABLE_LEAN * rise**2))[:, None] * slopes
         for i in (0, 1)
     ]
     return (np.concatenate(tables),)
 
 
-def _alike_blocks(setting: Setting) -> tuple[Block, ...]:
+def _alike_blocks(setting: SlideSetting) -> tuple[Block, ...]:
     left, right = setting.mesh.topology.edge_faces.T
-    return Block(Group.ROW, left), Block(Group.ROW, right)
+    return Block(Unknown.ROW, left), Block(Unknown.ROW, right)
 
 
-def _alike(setting: Setting, state: NetState) -> FloatArray:
+def _alike(setting: SlideSetting, state: SlidState) -> FloatArray:
     left, right = setting.mesh.topology.edge_faces.T
-    return (state.rows[left, 0] - state.rows[right, 0]) / ALIKE
+    return (state.rows[left, 0] - state.rows[right, 0]) / ALIKE_CURVATURE
 
 
-def _alike_jacobian(setting: Setting, _: NetState) -> tuple[FloatArray, ...]:
+def _alike_jacobian(setting: SlideSetting, _: SlidState) -> tuple[FloatArray, ...]:
     table = np.zeros((len(setting.mesh.topology.edge_faces), 5))
-    table[:, 0] = 1 / ALIKE
+    table[:, 0] = 1 / ALIKE_CURVATURE
     return table, -table
 
 
-def _faces(setting: Setting) -> tuple[Block, ...]:
-    return (Block(Group.ROW, np.arange(setting.mesh.n_faces)),)
+def _faces(setting: SlideSetting) -> tuple[Block, ...]:
+    return (Block(Unknown.ROW, np.arange(setting.mesh.n_faces)),)
 
 
-def _hold(setting: Setting, state: NetState) -> FloatArray:
+def _hold(setting: SlideSetting, state: SlidState) -> FloatArray:
     return (state.rows[:, 0] - setting.curvatures / 2) / (HOLD * setting.scales)
 
 
-def _hold_jacobian(setting: Setting, _: NetState) -> tuple[FloatArray, ...]:
+def _hold_jacobian(setting: SlideSetting, _: SlidState) -> tuple[FloatArray, ...]:
     table = np.zeros((setting.mesh.n_faces, 5))
     table[:, 0] = 1 / (HOLD * setting.scales)
     return (table,)
 
 
-LEAN = Term("lean", _lean_blocks, _lean, _lean_jacobian)
+LEAN = SlideTerm("lean", _lean_blocks, _lean, _lean_jacobian)
 """Axes are upright."""
 
 WISHES = (
-    Term("height", _vertices, _height, _height_jacobian),
-    Term("height_wall", _vertices, _height_wall, _height_wall_jacobian),
-    Term("slide", _vertices_twice, _slide, _slide_jacobian),
-    Term("slide_wall", _vertices, _slide_wall, _slide_wall_jacobian),
-    Term("edge_wall", _edges, _edge_wall, _edge_wall_jacobian),
-    Term("rim", _rim_blocks, _rim, _rim_jacobian),
-    Term("angle", _angle_blocks, _angle, _angle_jacobian),
+    SlideTerm("height", _vertices, _height, _height_jacobian),
+    SlideTerm("height_wall", _vertices, _height_wall, _height_wall_jacobian),
+    SlideTerm("slide", _vertices_twice, _slide, _slide_jacobian),
+    SlideTerm("slide_wall", _vertices, _slide_wall, _slide_wall_jacobian),
+    SlideTerm("edge_wall", _edges, _edge_wall, _edge_wall_jacobian),
+    SlideTerm("rim", _rim_blocks, _rim, _rim_jacobian),
+    SlideTerm("angle", _angle_blocks, _angle, _angle_jacobian),
     LEAN,
-    Term("alike", _alike_blocks, _alike, _alike_jacobian),
-    Term("hold", _faces, _hold, _hold_jacobian),
+    SlideTerm("alike", _alike_blocks, _alike, _alike_jacobian),
+    SlideTerm("hold", _faces, _hold, _hold_jacobian),
 )
 """Terms of the objective."""

@@ -11,7 +11,8 @@ from .mesh import Mesh, face_normals
 
 def edge_turns(mesh: Mesh) -> FloatArray:
     """Angle between the planes of the two faces of each interior edge, (E,), in radians."""
-    left, right = face_normals(mesh)[mesh.topology.edge_faces].transpose(1, 0, 2)
+    sides = face_normals(mesh)[mesh.topology.edge_faces]
+    left, right = sides[:, 0], sides[:, 1]
     return np.arctan2(norm(np.cross(left, right)), dot(left, right))
 
 

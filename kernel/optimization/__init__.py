@@ -9,12 +9,13 @@ stage 2 the paper's ``Σ (g² - 1)²`` from there. Both are Newton iterations on
 one entry per edge. The start is the smoother of the given spheres and the face planes, so any
 start gives the same result. Another density is a function of g with two derivatives.
 
-A target angle has many optima, and saddles between them. Four starts of structure (two colours
-of the faces either way, continuation from either side) end at optima of second order: at rest
-the signs of the pivots of the Hessian are looked at, and a descent leaves a saddle along the
-lowest eigenvector. Of each part the lowest end counts, and of equal ones the one that bulges
-more, so the numbering decides nothing. Creases weigh nothing, the openings of caps are bounded
-(projected Newton), and no part is handed over rougher than its planes.
+A target angle has many optima, and saddles between them. Six starts of structure (two colours
+of the faces, about smooth contact and about the planes, and continuation, each either way) end
+at optima of second order: at rest the signs of the pivots of the Hessian are looked at, and a
+descent leaves a saddle along the lowest eigenvector. Of each part the lowest end counts, and of
+equal ones the one that bulges more, so the numbering decides nothing. Creases weigh nothing,
+the openings of caps are bounded (projected Newton), and no part is handed over rougher than
+its planes.
 
 Everything else, moving vertices, upright planes and nodes with axes, is `whole_energy`, by the
 Newton method in `descent` on the terms in `energies`.

@@ -224,16 +224,14 @@ def _never_rougher(
         cosines = np.clip(edge_products(coupling, angles).value, -1, 1)
         return _part_sums(coupling, parts, np.arccos(cosines))
 
-    planes = np.zeros_like(descents[0].angles)
-    flat = _roughness(planes)
-    result, is_open = planes, np.ones(len(flat), bool)
-    for number, descent in enumerate(descents):
+    result = np.zeros_like(descents[0].angles)
+    flat = _roughness(result)
+    is_open, first = np.ones(len(flat), bool), descents[0].angles
+    for descent in descents:
         is_good = is_open & (_roughness(descent.angles) <= flat * (1 + SAME_ENERGY))
         result = np.where(is_good[parts], descent.angles, result)
         is_open &= ~is_good
-        if number == 0:
-            taken_back = is_open[parts] & (np.abs(descent.angles) > SAME_TURN)
-    return result, taken_back
+    return result, np.abs(result - first) > SAME_TURN
 
 
 def _lowest_of_parts(

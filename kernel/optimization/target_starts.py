@@ -2,8 +2,9 @@
 
 At smooth contact the energy of another target is stationary. Half of the angle is given to
 either neighbour, with signs that differ across as many edges as can be (two colours of the
-faces), or the target is raised step by step, all faces bulging more, or less. Where a single
-face does better elsewhere, it is put there. Random starts almost never reach as low.
+faces), about smooth contact and about the planes; or the target is raised step by step, all
+faces bulging more, or less. Where a single face does better elsewhere, it is put there. Random
+starts almost never reach as low.
 """
 
 import numpy as np
@@ -76,7 +77,9 @@ def target_descents(
     used = problem.coupling.weights > 0
     colors = two_colors(problem.coupling.faces[used], len(smooth))
     descents = [
-        minimize_in_pencils(problem, smooth + side * colors * target / 2) for side in (1, -1)
+        minimize_in_pencils(problem, middle + side * colors * target / 2)
+        for middle in (smooth, np.zeros_like(smooth))
+        for side in (1, -1)
     ]
     descents += [_continued(problem, smooth, target, side) for side in (1, -1)]
     return [_better_places(problem, descent) for descent in descents]

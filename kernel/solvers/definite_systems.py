@@ -6,7 +6,7 @@ of inertia): a matrix that is not definite is not taken for one.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -110,10 +110,12 @@ def lowest_mode(matrix: GraphMatrix) -> tuple[float, FloatArray]:
         values, vectors = np.linalg.eigh(rows.toarray())
         return float(values[0]), np.asarray(vectors[:, 0], np.float64)
     try:
-        found: Any = eigsh(rows, k=1, which="SA", v0=irregular(size), tol=1e-6, maxiter=size)
+        values, vectors = cast("Any", eigsh)(
+            rows, k=1, which="SA", v0=irregular(size), tol=1e-6, maxiter=size
+        )
     except ArpackNoConvergence:
         return 0.0, np.zeros(size)
-    return float(found[0][0]), np.asarray(found[1][:, 0], np.float64)
+    return float(values[0]), np.asarray(vectors[:, 0], np.float64)
 
 
 def irregular(size: int) -> FloatArray:
@@ -162,7 +164,7 @@ def _definite_factors(matrix: GraphMatrix, shift: float) -> Solver | None:
     from scipy.sparse.linalg import splu
 
     try:
-        factors: Any = splu(
+        factors = cast("Any", splu)(
             _compressed(matrix, shift).tocsc(),
             permc_spec="MMD_AT_PLUS_A",
             diag_pivot_thresh=0.0,

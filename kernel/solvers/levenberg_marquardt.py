@@ -12,6 +12,7 @@ from typing import Generic, Literal, NamedTuple, TypeVar
 import numpy as np
 
 from ..arrays import FloatArray
+from ..progress import tell_progress
 from ..tolerances import DAMPING, ENERGY_ROUNDING
 
 State = TypeVar("State")
@@ -112,6 +113,7 @@ def levenberg_marquardt(
         return Descent(state, "converged", np.array(history), 0)
     solve: Callable[[float], DampedStep] | None = None
     for iteration in range(1, max_iterations + 1):
+        tell_progress(iteration - 1, max_iterations)
         solve = linearize(state) if solve is None else solve
         energy = float(history[-1].sum())
         trial = solve(damping)

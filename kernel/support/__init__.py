@@ -9,8 +9,8 @@ beam_axes             Node axes between which beams are flat: the axis problem.
 beam_supports         Supports whose beams stand in the walls of the panels: on node axes, or
                       upright.
 beam_tilt             Tilt of the beams that lie in the planes where neighbouring spheres meet.
-clear_joints          Joints of panels on upright beams: wide enough that panels clear each
-                      other at the nodes.
+clear_joints          Joints of panels on beams: wide enough that panels clear each other at
+                      the nodes.
 feasibility           Whether a mesh can have beams on node axes, found before anything is
                       optimised.
 node_axes             Support structures: the axes of nodes, and whether the beams that meet

@@ -16,9 +16,9 @@ from ..meshes.mesh import Mesh, mean_edge_length
 from ..panels.cutting import cutting_planes, flatten_nearly_plane, gaps_along_edges
 from ..panels.edge_axes import EdgeMode, outward_axes
 from ..sphere_meshes.fit import fit_spheres
-from ..sphere_meshes.planarity_circularity import circularity
+from ..sphere_meshes.planarity_circularity import planarity
 from ..sphere_meshes.sphere_mesh import SphereMesh, vertex_error
-from ..tolerances import BEAM_TILT, CIRCULAR, COMMON_VERTEX, NODE_TORSION, UPRIGHT_BEAMS
+from ..tolerances import BEAM_TILT, COMMON_VERTEX, NODE_TORSION, UPRIGHT_BEAMS
 from .annulus_construction import AnnuliReport, AnnulusSupport, annulus_report
 from .beam_axes import (
     LEAN_WEIGHT,
@@ -28,6 +28,9 @@ from .beam_axes import (
     upright_directions,
 )
 from .node_axes import support_structure
+
+TOLD_BULGE: Final = 1e-5
+"""Faces whose corners lie farther off their plane, in mean edges, tell their own sphere."""
 
 MOSTLY_TOLD: Final = 0.9
 """Share of the faces that have to tell their own sphere for a mesh to have spheres."""
@@ -100,10 +103,10 @@ def exact_directions(sphere_mesh: SphereMesh) -> FloatArray | None:
 def own_spheres(mesh: Mesh) -> SphereMesh | None:
     """The spheres that a mesh has already, if their nodes are exact; None if not.
 
-    Its faces have to tell them: nearly all of their corners lie on a sphere, and on no circle,
-    on which any sphere would do.
+    Its faces have to tell them: nearly all of them bulge, where plane ones would leave the
+    sphere open or be planes already.
     """
-    is_told = circularity(mesh) > CIRCULAR * mean_edge_length(mesh)
+    is_told = planarity(mesh) > TOLD_BULGE * mean_edge_length(mesh)
     if is_told.mean() < MOSTLY_TOLD:
         return None
     spheres = fit_spheres(mesh, 0)
@@ -153,8 +156,8 @@ def bisector_axes(sphere_mesh: SphereMesh) -> FloatArray:
     system = across @ (gram + LEAN_WEIGHT**2 * np.eye(3)) @ across
     is_used = norm(upright)[:, None, None] > 0
     system = np.where(is_used, system + upright[:, :, None] * upright[:, None], np.eye(3))
-    leans: FloatArray = np.linalg.solve(system, pull[..., None])[..., 0]
-    return axis_points(mesh, -unit(upright - leans))
+    leans = np.asarray(np.linalg.solve(system, pull[..., None]), np.float64)
+    return axis_points(mesh, -unit(upright - leans.reshape(-1, 3)))
 
 
 def wall_planes(

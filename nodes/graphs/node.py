@@ -203,7 +203,7 @@ def load_library() -> None:
 
 def _category(module: str) -> str:
     """Chapter of the library in which a module stands; of other modules the last name."""
-    library = f"{__package__.rpartition('.')[0]}.library."
+    library = f"{__name__.rpartition('.graphs.')[0]}.library."
     if module.startswith(library):
         return module.removeprefix(library).partition(".")[0]
     return module.rpartition(".")[2]

@@ -1,14 +1,14 @@
 """Keys of steps and of items of lists: all that a result depends on, as a fingerprint."""
 
 import os
-from collections.abc import Callable, Iterable
-from typing import Any, Final
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Final, cast
 
 import xxhash
 
 from ..annotations import Value
 from ..node import Node
-from ..specification.wires import Each, Param, Wire
+from ..specification.wires import Each, Param, Wire, sources
 from ..stores.digests import digest
 
 _SCALARS: Final = frozenset((int, float, bool, str, type(None)))
@@ -54,17 +54,10 @@ def given_part(
     if isinstance(given, Each):
         inner = given_part(given.items, key, value)
         return key_of([b"each", inner, given.axis.encode(), given.match.encode()])
-    if isinstance(given, list | tuple) and _holds_sources(given):
-        return key_of([b"list", *(given_part(item, key, value) for item in given)])
+    if isinstance(given, list | tuple) and any(sources(cast("Value", given))):
+        items = cast("Sequence[Value]", given)
+        return key_of([b"list", *(given_part(item, key, value) for item in items)])
     return value_part(given)
-
-
-def _holds_sources(values: Iterable[Value]) -> bool:
-    return any(
-        isinstance(x, Wire | Param | Each)
-        or (isinstance(x, list | tuple) and _holds_sources(x))
-        for x in values
-    )
 
 
 def absolute(path: str) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Any, Final, cast
 
 from ..annotations import Value
 from ..errors import GraphError, nearest
@@ -78,7 +78,9 @@ def with_draft(
     check_name(name, "step")
     if not fault:
         try:
-            return with_step(before, name, _meant(node), inputs, extra)
+            node = _meant(node)
+            version = node.version
+            return with_step(before, name, node, inputs, extra)
         except GraphError as error:
             fault = str(error)
     loose = {port: _loose(before, given) for port, given in inputs.items()}
@@ -120,7 +122,7 @@ def renamed_step(before: Specification, old: str, new: str) -> Specification:
     def _new(name: str) -> str:
         return new if name == old else name
 
-    entries = [(n, replace(s, name=_new(n))) for n, s in before.steps.items()]
+    entries = [(n, replace(s, name=new) if n == old else s) for n, s in before.steps.items()]
     after = replace(
         before,
         groups=frozen({g: tuple(map(_new, s)) for g, s in before.groups.items()}),
@@ -324,4 +326,6 @@ def _again(before: Specification, step: Step, done: Mapping[str, Step]) -> Step:
 def _has_gone(given: Value) -> bool:
     if isinstance(given, Each):
         return _has_gone(given.items)
-    return given is _GONE or (type(given) is list and any(map(_has_gone, given)))
+    if isinstance(given, list):
+        return any(map(_has_gone, cast("list[Any]", given)))
+    return given is _GONE

@@ -5,7 +5,7 @@ import os
 import stat
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from ....fabrication.files import replacing
 from ..annotations import Value
@@ -96,9 +96,10 @@ def _is_of_second_version(content: Mapping[str, Any]) -> bool:
 
 def _has_rules(value: Value) -> bool:
     if isinstance(value, dict):
-        is_each = "each" in value and len(value) > 1
-        return is_each or any(map(_has_rules, value.values()))
-    return isinstance(value, list) and any(map(_has_rules, value))
+        tagged = cast("dict[str, Any]", value)
+        is_each = "each" in tagged and len(tagged) > 1
+        return is_each or any(map(_has_rules, tagged.values()))
+    return isinstance(value, list) and any(map(_has_rules, cast("list[Any]", value)))
 
 
 def _encode_param(param: Param, value: Value, contents: Contents) -> dict[str, Value]:

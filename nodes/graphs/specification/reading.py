@@ -94,7 +94,8 @@ def _checked_content(content: dict[str, Any]) -> dict[str, Any]:
         if "graph" in step:
             step["graph"] = _inner_content(step, where)
     for name, members in _entry(content, "groups", dict, "").items():
-        if not isinstance(members, list) or not all(isinstance(x, str) for x in members):
+        several = cast("list[Any]", members if isinstance(members, list) else [None])
+        if not all(isinstance(member, str) for member in several):
             raise GraphError(f"groups.{name} must be a list of names of steps")
     for name, text in _entry(content, "comments", dict, "").items():
         _checked(text, str, f"comments.{name}")

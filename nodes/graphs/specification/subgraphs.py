@@ -1,10 +1,9 @@
 """Graphs as nodes of other graphs: sliders are the inputs, chosen outputs the outputs."""
 
 import re
-from collections import namedtuple
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import xxhash
 
@@ -71,10 +70,15 @@ def graph_node(
     }
     kinds = [port.type for port in ports.values()]
     title = specification.title or name
-    kind: Any = namedtuple(name, ports) if len(ports) > 1 else kinds[0]
+    fields = [(port, Any) for port in ports]
+    kind: Any = NamedTuple(name, fields) if len(fields) > 1 else kinds[0]
+
+    def _function(**inputs: Value) -> Value:
+        return call(inner, kind, inputs)
+
     return Node(
         name=name,
-        function=lambda **inputs: call(inner, kind, inputs),
+        function=_function,
         version=_digest(specification, outputs),
         category="graphs",
         summary=title,
@@ -125,9 +129,8 @@ def _input(specification: Specification, slider: str) -> Port:
             if isinstance(given, Param) and given.name == slider:
                 fed = step.node.inputs[name]
                 limits = {
-                    limit: fed_limit if (own := getattr(port, limit)) in (None, ()) else own
-                    for limit in ("min", "max", "choices")
-                    if (fed_limit := getattr(fed, limit)) is not None
+                    name: getattr(fed if getattr(port, name) in (None, ()) else port, name)
+                    for name in ("min", "max", "choices")
                 }
                 return replace(fed, name=slider, default=value, **limits)
             if isinstance(given, Each) and any(

@@ -195,6 +195,8 @@ def output_wire(step: Step, port: str) -> Wire:
     outputs = step.node.outputs
     if not step.node.is_known:
         return Wire(step, Port(name=port))
+    if not port and len(outputs) == 1:
+        return step.wires[0]
     if port not in outputs:
         raise UnknownPortError(
             f"step {step.name!r} (node {step.node.name}) has no output {port!r}; "

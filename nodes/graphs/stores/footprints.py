@@ -14,6 +14,7 @@ from ..annotations import Value
 _SCALARS: Final = frozenset((int, float, bool, complex, type(None)))
 _SCALAR_BYTES: Final = 32
 _OBJECT_BYTES: Final = 64
+_BUFFERS: Final = (np.ndarray, bytes, bytearray, memoryview)
 
 
 def footprint(value: Value) -> dict[int, int]:
@@ -48,10 +49,7 @@ def footprint(value: Value) -> dict[int, int]:
 def _buffer(array: NDArray[Any]) -> Value:
     """What holds the numbers of an array, which may be a view of a small part."""
     base: Any = array
-    while isinstance(base, np.ndarray) and base.base is not None:
-        inner = base.base
-        if not isinstance(inner, np.ndarray | bytes | bytearray | memoryview):
-            break
+    while isinstance(inner := getattr(base, "base", None), _BUFFERS):
         base = cast("Any", inner)
     return base
 

@@ -78,7 +78,8 @@ def _pack_other(value: Value, kind: type[Any], blocks: Blocks) -> Value:
     if kind is np.ndarray:
         packed = _pack_array(cast("NDArray[Any]", value), blocks)
     elif isinstance(value, np.generic):
-        packed = ["scalar", *_pack_array(np.asarray(value), blocks)[1:]]
+        scalar: NDArray[Any] = np.asarray(cast("Any", value))
+        packed = ["scalar", *_pack_array(scalar, blocks)[1:]]
     elif isinstance(value, Path):
         packed = ["path", str(value)]
     elif isinstance(value, tuple) and hasattr(kind, "_fields"):
@@ -211,7 +212,7 @@ def _class(module: str, name: str, is_kind: Callable[[type[Any]], bool]) -> Any:
 
 
 def _is_named(kind: type[Any]) -> bool:
-    return issubclass(kind, tuple) and hasattr(kind, "_fields")
+    return hasattr(kind, "_fields") and tuple in kind.__mro__
 
 
 _UNPACKERS: dict[str, Callable[[list[Any], _Block], Value]] = {

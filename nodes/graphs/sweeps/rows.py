@@ -216,7 +216,8 @@ def _chosen(
 
 
 def _is_field(name: str, field: str) -> bool:
-    return name == field or name.endswith(f".{field}") or name.startswith(f"{field}.")
+    """Whether a field is a part of a name, from dot to dot."""
+    return f".{field}." in f".{name}."
 
 
 def _flatten(value: Value, name: str, target: str, found: dict[str, Any]) -> None:
@@ -224,7 +225,7 @@ def _flatten(value: Value, name: str, target: str, found: dict[str, Any]) -> Non
     if hasattr(value, "_asdict"):
         value = value._asdict()
     if isinstance(value, np.generic):
-        value = value.item()
+        value = cast("Any", value).item()
     if isinstance(value, Mapping):
         for key, item in cast("Mapping[str, Any]", value).items():
             _flatten(item, f"{name}.{key}" if name else str(key), target, found)

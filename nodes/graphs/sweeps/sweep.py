@@ -80,6 +80,47 @@ def sweep(
     >>> sweep(graph, cube, a=[2, 3])
     [({'a': 2}, 8), ({'a': 3}, 27)]
     """
+    result = run_sweep(
+        graph, targets, params, executor=executor, workers=workers, write_to=write_to,
+        cache=cache, on_row=on_row,
+    )  # fmt: skip
+    if result.failures:
+        first = result.failures[0]
+        at = ", ".join(f"{name} = {value}" for name, value in first.point.items())
+        warnings.warn(
+            f"{len(result.failures)} of {len(result)} points failed; at {at}: {first.error}",
+            NodeWarning,
+            stacklevel=2,
+        )
+    return result
+
+
+def run_sweep(
+    graph: Graph,
+    targets: Sequence[Target],
+    params: Mapping[str, Iterable[Any]],
+    *,
+    executor: Any = None,  # noqa: ANN401, an Executor, or a client of Dask
+    workers: int | None = None,
+    write_to: str | os.PathLike[str] | None = None,
+    cache: str | os.PathLike[str] | None = None,
+    on_row: OnRow | None = None,
+) -> Sweep:
+    """`sweep` for sliders of any name; failures are in the rows alone.
+
+    Parameters
+    ----------
+    graph : Graph
+    targets : sequence of Step, Wire or str
+    params : mapping of str to iterable
+    executor, workers, write_to, cache, on_row : object
+        As for `sweep`.
+
+    Returns
+    -------
+    Sweep
+        Rows in the order of the points.
+    """
     points = combined(graph, params)
     names = tuple(_name(graph, target) for target in targets)
     if not names:
@@ -95,16 +136,7 @@ def sweep(
         else:
             outcomes = run(_study(graph, names, shared), tasks)
         rows = _collected(outcomes, points, folders, on_row)
-    result = Sweep(rows, names)
-    if result.failures:
-        first = result.failures[0]
-        at = ", ".join(f"{name} = {value}" for name, value in first.point.items())
-        warnings.warn(
-            f"{len(result.failures)} of {len(result)} points failed; at {at}: {first.error}",
-            NodeWarning,
-            stacklevel=2,
-        )
-    return result
+    return Sweep(rows, names)
 
 
 def _collected(

@@ -9,7 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
+from uuid import uuid4
 
 from ....fabrication.files import replacing
 from ....fabrication.output_folder import OutputFolder
@@ -39,6 +40,8 @@ class Study:
         Folder of the relative paths that are read.
     cache : str
         Folder of the store; empty for one in memory.
+    name : str
+        Of this sweep alone.
     """
 
     text: str
@@ -46,6 +49,7 @@ class Study:
     modules: tuple[str, ...]
     read_from: str
     cache: str = ""
+    name: str = field(default_factory=lambda: uuid4().hex)
 
 
 @dataclass(frozen=True)
@@ -76,11 +80,17 @@ class _Count:
         self.run += state == "running"
 
 
-def run_task(study: Study, point: Mapping[str, Any], folder: str) -> Outcome:
+DIED: Final = "the process that ran it died: out of memory, killed, or a library at fault"
+_MOST_STARTS: Final = 2
+
+
+def run_task(study: Study, number: int, point: Mapping[str, Any], folder: str) -> Outcome:
     """Run a point in a process of its own.
 
     Parameters
     ----------
+    number : int
+        Of the point.
     folder : str
         Where its files go; empty for none.
 
@@ -89,6 +99,32 @@ def run_task(study: Study, point: Mapping[str, Any], folder: str) -> Outcome:
     Outcome
         Failures are outcomes too.
     """
+    starts = Path(study.cache, "locks", f"{study.name}-{number}") if study.cache else None
+    if starts is not None and not _may_start(starts):
+        return Outcome(error=DIED)
+    try:
+        return _run_anew(study, point, folder)
+    finally:
+        if starts is not None:
+            with contextlib.suppress(OSError):
+                starts.unlink()
+
+
+def _may_start(starts: Path) -> bool:
+    """Whether a point has not killed too many processes already: each start adds a byte.
+
+    A scheduler tries again what died, and would lose worker after worker.
+    """
+    try:
+        starts.parent.mkdir(parents=True, exist_ok=True)
+        with starts.open("ab") as file:
+            file.write(b".")
+        return starts.stat().st_size <= _MOST_STARTS
+    except OSError:
+        return True
+
+
+def _run_anew(study: Study, point: Mapping[str, Any], folder: str) -> Outcome:
     try:
         for module in study.modules:
             importlib.import_module(module)

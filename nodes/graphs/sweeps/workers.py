@@ -5,6 +5,7 @@ takes nothing with it but the point it was at, and that one only if it dies agai
 """
 
 import multiprocessing
+import time
 from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -20,16 +21,18 @@ from importlib import import_module
 from typing import Any, Final
 
 from ..errors import GraphError
-from .tasks import Outcome, Study, run_task
+from .tasks import DIED, Outcome, Study, run_task
 
 Task = tuple[int, Mapping[str, Any], str]
 """Number, values and folder of a point."""
 Outcomes = Generator[tuple[int, Outcome]]
 
 _RETRIES: Final = 2
+_MOST_ABANDONED: Final = 600.0
+"""Seconds without any worker after which a cluster is given up."""
+_NO_WORKERS: Final = "the cluster has no workers any more"
 _LOOK_AGAIN: Final = 5.0
 """Seconds after which results that were announced are asked for again."""
-_DIED: Final = "the process that ran it died: out of memory, killed, or a library at fault"
 
 
 def on_executor(executor: Executor, study: Study, tasks: Sequence[Task]) -> Outcomes:
@@ -46,7 +49,7 @@ def on_executor(executor: Executor, study: Study, tasks: Sequence[Task]) -> Outc
     try:
         for task in tasks:
             try:
-                futures[executor.submit(run_task, study, *task[1:])] = task
+                futures[executor.submit(run_task, study, *task)] = task
             except BrokenExecutor:
                 left.append(task)
         for future in as_completed(futures):
@@ -80,7 +83,7 @@ def in_processes(workers: int, study: Study, tasks: Sequence[Task]) -> Outcomes:
         for task in lost:
             deaths[task[0]] = deaths.get(task[0], 0) + (queue is suspects)
             if deaths[task[0]] > _RETRIES - 1:
-                yield task[0], Outcome(error=_DIED)
+                yield task[0], Outcome(error=DIED)
             else:
                 suspects.append(task)
 
@@ -100,7 +103,7 @@ def _until_death(
         while queue and len(running) < width:
             task = queue.pop()
             try:
-                running[pool.submit(run_task, study, *task[1:])] = task
+                running[pool.submit(run_task, study, *task)] = task
             except BrokenExecutor:
                 return [task, *running.values()]
         done, _ = wait(running, return_when=FIRST_COMPLETED)
@@ -127,30 +130,42 @@ def on_dask(client: Any, study: Study, tasks: Sequence[Task]) -> Outcomes:  # no
     shared = client.submit(_same, study, pure=False)
 
     def _submitted(tasks: Sequence[Task]) -> dict[Any, Task]:
-        return {client.submit(run_task, shared, *task[1:], pure=False): task for task in tasks}
+        return {client.submit(run_task, shared, *task, pure=False): task for task in tasks}
 
     suspects: list[Task] = []
-    for task, outcome in _finished(_submitted(tasks)):
+    for task, outcome in _finished(client, _submitted(tasks)):
         if outcome is None:
             suspects.append(task)  # or another point on the same worker did it
         else:
             yield task[0], outcome
     for suspect in suspects:
-        for task, outcome in _finished(_submitted([suspect])):
-            yield task[0], outcome or Outcome(error=_DIED)
+        for task, outcome in _finished(client, _submitted([suspect])):
+            yield task[0], outcome or Outcome(error=DIED)
 
 
-def _finished(futures: dict[Any, Task]) -> Generator[tuple[Task, Outcome | None]]:
+def _finished(
+    client: Any,  # noqa: ANN401
+    futures: dict[Any, Task],
+) -> Generator[tuple[Task, Outcome | None]]:
     """Tasks and their outcomes as they are done; None where workers died of one.
 
     Results may be lost with a worker after they were announced: the scheduler makes them again,
     and they are waited for again.
     """
     wait_for_any = import_module("distributed").wait
+    abandoned = 0.0
     try:
         while futures:
+            began = time.monotonic()
             with suppress(TimeoutError):
                 wait_for_any(list(futures), timeout=_LOOK_AGAIN, return_when="FIRST_COMPLETED")
+            if client.scheduler_info()["workers"]:
+                abandoned = 0.0
+            else:
+                abandoned += time.monotonic() - began
+            if abandoned > _MOST_ABANDONED:
+                yield from ((task, Outcome(error=_NO_WORKERS)) for task in futures.values())
+                return
             for future in [each for each in futures if each.done()]:
                 with suppress(TimeoutError):
                     outcome = _dask_outcome(future)

@@ -1,6 +1,6 @@
 """Upright beams for any mesh: their planes bisect the faces, cylinders take up the torsion."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated, Final, Literal, NamedTuple
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from ...graphs.node import node, warn
 from ...graphs.ports import Length, Port
 from ..arrays import VertexAxes
 from .rejected import warn_of_rejected
+
+WORTH_SAYING: Final = 1e-3
+"""Joints wider than this, in mean edges, that nobody asked for are said."""
 
 
 class BisectorSupport(NamedTuple):
@@ -132,18 +135,21 @@ def least_joint(
     axes: VertexAxes,
     thickness: Length = 0.0,
     joint_gap: Length = 0.0,
+    edges: Literal["bisector", "axis"] = "bisector",
 ) -> float:
-    """Find the least joint at which panels on upright beams clear each other at the nodes.
+    """Find the least joint at which panels on beams clear each other at the nodes.
 
     Parameters
     ----------
     sphere_mesh : SphereMesh
     axes : (V, 2, 3) float array
-        Two points of each node axis, as `bisector_support` gives them.
+        Two points of each node axis, as `bisector_support` or `axis_support` gives them.
     thickness : float
         Thickness of the panels, in model units; surfaces need no joint.
     joint_gap : float
         Width that is asked for: the result is at least that.
+    edges : {"bisector", "axis"}
+        How the panels will be cut.
 
     Returns
     -------
@@ -159,11 +165,12 @@ def least_joint(
     >>> bool(0 < least_joint(spheres, axes, thickness=0.02) < 0.02)
     True
     """
-    width = clear_joints.least_joint(sphere_mesh, axes, thickness)
+    width = clear_joints.least_joint(sphere_mesh, edges, axes, thickness)
     if width <= joint_gap:
         return joint_gap
-    warn(
-        f"joints are {width:.3g} wide, so that panels which are no neighbours clear each other "
-        "at nodes with torsion"
-    )
+    if width > WORTH_SAYING * mean_edge_length(sphere_mesh.mesh):
+        warn(
+            f"joints are {width:.3g} wide, so that panels which are no neighbours clear each "
+            "other at nodes with torsion"
+        )
     return width

@@ -17,7 +17,7 @@ from ....kernel.support.beam_supports import axis_points
 from ...graphs.node import node, warn
 from ...graphs.ports import Port
 from ..arrays import VertexAxes
-from ..optimise import OptimumReport
+from ..optimise.outcomes import OptimumReport
 
 Verdict = Literal["feasible", "doubtful", "no"]
 

@@ -6,7 +6,15 @@ from ...graphs.node import warn
 
 
 def warn_of_rejected(rejected: tuple[RejectedPart, ...], what: str) -> None:
-    """Warn of edges whose `what` cannot be made, with the reason of the first."""
+    """Warn of edges whose beams cannot be made, with the reason of the first.
+
+    Parameters
+    ----------
+    rejected : tuple of RejectedPart
+        The beams; without any nothing is said.
+    what : str
+        What they are called.
+    """
     if rejected:
         warn(
             f"{len(rejected)} {what} cannot be made: edges "

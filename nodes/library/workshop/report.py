@@ -20,7 +20,7 @@ from ...graphs.node import node, warn
 from ...graphs.ports import Units
 from ..cluster import BlanksReport, MouldsReport
 from ..fabricate import CutReport
-from ..outcomes import OptimumReport
+from ..optimise.outcomes import OptimumReport
 from ..support.beams import BeamsReport
 from ..support.exact import ExactSupportReport
 from ..support.structure import LandingReport

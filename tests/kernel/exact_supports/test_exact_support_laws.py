@@ -58,7 +58,7 @@ def test_beams_and_panels_meet_to_rounding(dome: Mesh, found: Attempt) -> None:
     assert found.sphere_mesh.mesh.n_faces == dome.n_faces
 
 
-def test_spheres_of_a_node_share_a_second_point(found: Attempt) -> None:
+def test_law_e3_spheres_of_a_node_share_a_second_point(found: Attempt) -> None:
     mesh = found.sphere_mesh.mesh
     size = mean_edge_length(mesh)
     axes = common_axes(found.sphere_mesh)
@@ -211,7 +211,7 @@ def test_bounds_are_kept() -> None:
 
 
 def test_bounds_that_are_too_tight_lead_to_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(search, "TRIALS", search.TRIALS[:2])
+    monkeypatch.setattr(search, "SEARCHES", search.SEARCHES[:2])
     tight = find_exact_support(sheared_dome(3, 3), Bounds(0.0, 0.001))
     assert not tight.is_exact
     assert len(tight.tried) == 2

@@ -15,13 +15,13 @@ from spheremesh.kernel.exact_supports.design_surface import (
 )
 from spheremesh.kernel.exact_supports.setting import (
     Bounds,
-    NetState,
-    Setting,
+    SlideSetting,
+    SlidState,
     first_state,
     make_setting,
-    move,
+    slid_by,
 )
-from spheremesh.kernel.exact_supports.terms import Term
+from spheremesh.kernel.exact_supports.terms import SlideTerm
 from spheremesh.kernel.exact_supports.wishes import WISHES
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.solvers.blocks import jacobian_matrix, jacobian_pattern
@@ -31,23 +31,23 @@ TERMS = (*CONDITIONS, FLATNESS, *WISHES)
 
 
 @pytest.fixture(scope="module")
-def setting() -> Setting:
+def setting() -> SlideSetting:
     mesh = roof_net(4, 5, 6.0)
     curvatures = np.full(mesh.n_faces, 0.2)
     return make_setting(mesh, design_surface(mesh), Bounds(0.06, 0.7), curvatures)
 
 
 @pytest.fixture(scope="module")
-def state(setting: Setting) -> NetState:
+def state(setting: SlideSetting) -> SlidState:
     """Somewhere off, beyond the walls at some vertices."""
     rng = np.random.default_rng(3)
     step = 0.25 * rng.normal(size=int(setting.layout.starts[-1]))
-    return move(setting, first_state(setting), step)
+    return slid_by(setting, first_state(setting), step)
 
 
 @pytest.mark.parametrize("term", TERMS, ids=lambda term: term.name)
-def test_derivatives_are_those_of_differences(
-    setting: Setting, state: NetState, term: Term
+def test_law_d9_derivatives_are_those_of_differences(
+    setting: SlideSetting, state: SlidState, term: SlideTerm
 ) -> None:
     layout = setting.layout
     pattern = jacobian_pattern(layout, [term.blocks(setting)])
@@ -55,14 +55,14 @@ def test_derivatives_are_those_of_differences(
     rng = np.random.default_rng(4)
     for _ in range(4):
         step = rng.normal(size=int(layout.starts[-1]))
-        ahead = term.residuals(setting, move(setting, state, 1e-6 * step))
-        behind = term.residuals(setting, move(setting, state, -1e-6 * step))
+        ahead = term.residuals(setting, slid_by(setting, state, 1e-6 * step))
+        behind = term.residuals(setting, slid_by(setting, state, -1e-6 * step))
         expected = (ahead - behind) / 2e-6
         size = np.abs(expected).max()
         np.testing.assert_allclose(jacobian @ step, expected, rtol=1e-6, atol=1e-7 * size)
 
 
-def test_walls_are_met(setting: Setting, state: NetState) -> None:
+def test_walls_are_met(setting: SlideSetting, state: SlidState) -> None:
     """Else their derivatives would be those of nothing."""
     for term in TERMS:
         assert np.abs(term.residuals(setting, state)).max() > 0, term.name

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from spheremesh import Mesh, SphereMesh
-from spheremesh.kernel.arrays import FloatArray, IntArray
+from spheremesh.kernel.arrays import BoolArray, FloatArray, IntArray
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.creases import crease_edges
 from spheremesh.kernel.optimization.angle_minimization import minimize_angles, pencil_angles
@@ -25,7 +25,7 @@ def cube(per_side: int = 1) -> Mesh:
     """A cube of squares, six sides of per_side² faces."""
     side = np.linspace(-1, 1, per_side + 1)
     u, v = np.meshgrid(side, side, indexing="ij")
-    points, faces = [], []
+    points, faces = list[FloatArray](), list[IntArray]()
     frames = [(0, 1, 2, 1), (1, 0, 2, -1), (2, 0, 1, 1)]
     for axis, a, b, turn in frames:
         for end in (-1, 1):
@@ -58,7 +58,7 @@ def openings(sphere_mesh: SphereMesh) -> FloatArray:
     return np.abs(pencil_angles(sphere_mesh, face_circles(sphere_mesh.mesh)[0]))
 
 
-def means(sphere_mesh: SphereMesh, is_counted: FloatArray) -> tuple[float, float]:
+def means(sphere_mesh: SphereMesh, is_counted: BoolArray) -> tuple[float, float]:
     """Mean angle of planes and of spheres over some edges, in degrees."""
     planes = np.degrees(intersection_angles(face_planes(sphere_mesh.mesh)))[is_counted]
     return planes.mean(), np.degrees(intersection_angles(sphere_mesh))[is_counted].mean()

@@ -38,7 +38,7 @@ def graph() -> sm.Graph:
         side=side,
     )  # fmt: skip
     blanks = graph.add("mould_blanks", "blanks", panels=made.panels)
-    found = graph.add("audit", "audit", panels=made.panels, cut=made.report)
+    found = graph.add("audit", "audit", panels=made.panels, cut=made.report, max_step=20.0)
     graph.add("identical_panels", "same", panels=made.panels)
     graph.add(
         "panel_report", "report", sphere_mesh=few.sphere_mesh, optimum=best.report,
@@ -59,6 +59,7 @@ def test_the_report_is_plain_and_agrees_with_its_parts(graph: sm.Graph) -> None:
     assert report["moulds"]["blanks"] == blanks["blanks"]
     assert report["thickness"]["max"] == pytest.approx(0.1, rel=1e-12)
     assert report["audit"]["errors"] == []
+    assert report["buildable"]
     counts = [row["count"] for row in blanks["blanks"]]
     assert counts == report["moulds"]["panels_per_mould"]
     assert sum(row["shapes"] for row in blanks["blanks"]) == same["shapes"] == 3

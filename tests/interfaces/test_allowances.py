@@ -1,0 +1,59 @@
+"""What the workshop allows, on the command line: errors, the last line, exit codes."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+
+from spheremesh import Mesh
+from spheremesh.fabrication.mesh_files.writer import write_mesh
+from spheremesh.interfaces.cli import GATE_FAILED, main
+from spheremesh.kernel.surfaces.circular_nets import torus_net
+
+
+@pytest.fixture(scope="module")
+def skew(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A torus of about half a metre an edge, whose nodes are off by a centimetre."""
+    net = torus_net(8, 6, 1.0, 0.4)
+    random = np.random.default_rng(1)
+    points = net.vertices + 0.01 * random.standard_normal(net.vertices.shape)
+    path = tmp_path_factory.mktemp("skew") / "skew.obj"
+    write_mesh(Mesh(points, net.faces), path)
+    return path
+
+
+def panel(mesh: Path, out: Path, *options: str) -> Result:
+    return CliRunner().invoke(main, ["panel", str(mesh), "-o", str(out), *options])
+
+
+def test_what_is_not_allowed_is_the_last_line(skew: Path, tmp_path: Path) -> None:
+    result = panel(skew, tmp_path / "a", "--support", "--thickness", "0.02", "--strict")
+    assert result.exit_code == GATE_FAILED
+    last = result.stdout.strip().splitlines()[-1]
+    assert last.startswith("NOT BUILDABLE: P201 (")
+    assert "a step of" in last
+    report = json.loads((tmp_path / "a" / "report.json").read_text("utf-8"))
+    assert not report["buildable"]
+    codes = [found["code"] for found in report["audit"]["errors"]]
+    shown = [line for line in result.stderr.splitlines() if line.startswith("error P201")]
+    assert len(shown) == 6
+    assert shown[-1].endswith(f"{codes.count('P201') - 5} more, in report.json")
+
+
+def test_what_is_allowed_can_be_built(skew: Path, tmp_path: Path) -> None:
+    options = ["--support", "--thickness", "0.02", "--bearing", "0.004", "--strict"]
+    allowed = ["--allow-step", "80", "--allow-gap", "80", "--allow-torsion", "3"]
+    result = panel(skew, tmp_path / "a", *options, *allowed, "--json")
+    assert result.exit_code == 0, result.stderr
+    report = json.loads(result.stdout)
+    assert report["buildable"]
+    assert report["audit"]["errors"] == []
+    assert "NOT BUILDABLE" not in result.stderr
+
+
+def test_a_bearing_needs_beams(skew: Path, tmp_path: Path) -> None:
+    result = panel(skew, tmp_path / "a", "--bearing", "0.004")
+    assert "without --support there are no beams: --bearing unused" in result.stderr
+    assert panel(skew, tmp_path / "b", "--allow-step", "-1").exit_code == 2
