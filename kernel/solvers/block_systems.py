@@ -271,7 +271,8 @@ def _reduction(
         filled[:, : values.shape[1]] = values
         tables.append(filled)
     couplings = np.concatenate(tables)
-    return Reduction(elimination, np.linalg.inv(own), couplings)
+    inverses = np.asarray(np.linalg.inv(own), np.float64)
+    return Reduction(elimination, inverses, couplings)
 
 
 def _eliminate(reduction: Reduction, diagonal: FloatArray, mixed: FloatArray) -> None:

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from .dissection import dissect
 
 
@@ -65,7 +65,7 @@ class FrontalPattern:
 
     width: int
     order: IntArray
-    is_upper: FloatArray
+    is_upper: BoolArray
     fronts: tuple[Front, ...]
 
     @property
@@ -114,7 +114,8 @@ def frontal_pattern(points: FloatArray, pairs: IntArray, width: int) -> FrontalP
     }
     tree = np.array(sorted(own, key=lambda node: own[node][0]), np.int64)
     numbers = {int(node): number for number, node in enumerate(tree)}
-    by_front = np.searchsorted(np.array([own[int(node)][0] for node in tree]), earlier, "right")
+    firsts = np.array([own[int(node)][0] for node in tree], np.int64)
+    by_front: IntArray = np.searchsorted(firsts, earlier, side="right")
     sorted_pairs = np.argsort(by_front, kind="stable")
     bounds = np.searchsorted(by_front[sorted_pairs], np.arange(1, len(tree) + 2))
     fronts: list[Front] = []

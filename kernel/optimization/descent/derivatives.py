@@ -9,6 +9,7 @@ from ...solvers.block_patterns import PairKind, add_up
 from ...solvers.block_systems import Blocks, factorize_system
 from ...solvers.newton import Factorize, Model
 from ...spheres.minkowski import minkowski_gradient
+from ..energies.second_derivatives import SecondDerivatives
 from ..energies.setting import Group, Unknowns
 from .freedom import Tangents, row_multipliers, tangents
 from .problem import UPRIGHT, EnergyProblem, bound, weighted_residuals
@@ -68,7 +69,9 @@ def _derivatives(
         ):
             if sums is not None:
                 gradients[block.group] += add_up(sums, forces[:, None] * table)
-        bent = term.second_derivatives(setting, unknowns, forces) if is_exact else {}
+        bent: SecondDerivatives = {}
+        if is_exact:
+            bent = term.second_derivatives(setting, unknowns, forces)
         for (i, j), addition in pattern.additions[number].items():
             first = curvatures[:, None] * tables[i]
             table = first[:, :, None] * tables[j][:, None, :]
