@@ -70,7 +70,7 @@ def _reach(normals: FloatArray, points: FloatArray, edges: IntArray) -> FloatArr
     starts, middles, ends = (points[row, edges[..., k]] for k in range(3))
     along = norm(ends - starts)[:, None]
     rises = middles - (starts + ends) / 2
-    columns: IntArray = np.arange(values.shape[1])
+    columns = np.arange(int(normals.shape[1]), dtype=np.int64)
     before, middle, after = (
         values[row[..., None], columns[None, :, None], edges[:, None, :, k]] for k in range(3)
     )

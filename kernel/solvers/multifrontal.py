@@ -115,7 +115,7 @@ def frontal_pattern(points: FloatArray, pairs: IntArray, width: int) -> FrontalP
     tree = np.array(sorted(own, key=lambda node: own[node][0]), np.int64)
     numbers = {int(node): number for number, node in enumerate(tree)}
     firsts = np.array([own[int(node)][0] for node in tree], np.int64)
-    by_front: IntArray = np.searchsorted(firsts, earlier, side="right")
+    by_front = np.asarray(np.searchsorted(firsts, earlier, side="right"), np.int64)
     sorted_pairs = np.argsort(by_front, kind="stable")
     bounds = np.searchsorted(by_front[sorted_pairs], np.arange(1, len(tree) + 2))
     fronts: list[Front] = []
