@@ -170,7 +170,7 @@ def main() -> None:
     words = [*sys.argv[1:], *("50", "10")[len(sys.argv) - 1 :]]
     kills, exports = int(words[0]), int(words[1])
     mesh = nodes.roof_mesh(12, 15) if kills > 10 else nodes.roof_mesh(6, 8)
-    panels = nodes.panels(nodes.fit_spheres(mesh), thickness=0.02).panels
+    panels = nodes.panels(nodes.fit_spheres(mesh), thickness=0.02, crease=180).panels
     is_good = True
     for name, write in (("model.3dm", rhino.write_3dm), ("panels.step", step.write_step)):
         with tempfile.TemporaryDirectory() as folder:

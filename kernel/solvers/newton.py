@@ -16,6 +16,7 @@ from typing import Generic, NamedTuple
 import numpy as np
 
 from ..arrays import FloatArray, dot
+from ..progress import tell_progress
 from ..tolerances import (
     ENERGY_ROUNDING,
     LEAST_DECREMENT,
@@ -179,6 +180,7 @@ def newton(
     shifts = _Shifts(LEAST_SHIFT, LEAST_SHIFT)
     model, escapes, lowest, is_refused = None, 0, -np.inf, False
     for iteration in range(1, max_iterations + 1):
+        tell_progress(iteration - 1, max_iterations)
         model = problem.model(state) if model is None else model
         energy = float(history[-1].sum())
         rest = tolerance * energy + LEAST_DECREMENT

@@ -12,9 +12,10 @@ from spheremesh.nodes import Event, RunCancelledError, node
 def _library(own_registry: None) -> None:
     del own_registry
     from spheremesh.nodes.library import input as nets
-    from spheremesh.nodes.library import optimise, spheres
+    from spheremesh.nodes.library import spheres
+    from spheremesh.nodes.library.optimise import energy
 
-    for module in (nets, optimise, spheres):
+    for module in (nets, energy, spheres):
         for name in ("roof_mesh", "fit_spheres", "optimize_spheres"):
             if hasattr(module, name):
                 node(getattr(module, name))
