@@ -94,7 +94,7 @@ def other_graphs() -> list[Graph]:
 
 def seeds() -> list[bytes]:
     """Texts of eight graph files; the last takes seconds to run."""
-    roof = panel_graph(PanelOptions(moulds=3, support=True, thickness=0.02))
+    roof = panel_graph(PanelOptions(moulds=3, support="axis", thickness=0.02))
     roof = Graph.from_json(
         roof.to_json().replace('"inputs": {}', '"inputs": {"n_span": 4, "n_length": 6}')
     )

@@ -125,7 +125,7 @@ def write_folder(folder: Path) -> None:
     vertices = [f"v {x!r} {y!r} {z!r}\n" for x, y, z in mesh.vertices.tolist()]
     faces = ["f " + " ".join(str(i + 1) for i in face) + "\n" for face in mesh.faces]
     source.write_text("".join(vertices + faces), encoding="ascii")
-    options = PanelOptions(mesh=source, thickness=0.02, support=True, depth=0.25)
+    options = PanelOptions(mesh=source, thickness=0.02, support="axis", depth=0.25)
     run_job(panel_graph(options), folder, lambda *_: None, overwrite=True)
 
 

@@ -67,7 +67,7 @@ def job(name: str, folder: Path) -> tuple[SphereMesh, Panels, Beams]:
         vertices = [f"v {x!r} {y!r} {z!r}\n" for x, y, z in mesh.vertices.tolist()]
         faces = ["f " + " ".join(str(i + 1) for i in face) + "\n" for face in mesh.faces]
         path.write_text("".join(vertices + faces), encoding="ascii")
-    graph = panel_graph(PanelOptions(mesh=path, support=True, thickness=0.02, depth=0.25))
+    graph = panel_graph(PanelOptions(mesh=path, support="axis", thickness=0.02, depth=0.25))
     for step in ("panels", "annuli", "beams"):
         found = graph.run(f"{step}.report")
         made = found.get("written", found.get("made"))

@@ -34,7 +34,7 @@ def fabricated(mesh: Mesh, job: str, units: str, folder: Path) -> dict[str, Floa
     if job == "moulds":
         options = replace(options, moulds=8)
     elif job == "support":
-        options = replace(options, support=True, depth=0.25 * scale)
+        options = replace(options, support="axis", depth=0.25 * scale)
     graph = panel_graph(options)
     panels = graph.run("panels.panels")
     result = {
