@@ -10,13 +10,16 @@ from click.testing import CliRunner, Result
 from spheremesh import Mesh
 from spheremesh.fabrication.mesh_files.writer import write_mesh
 from spheremesh.interfaces.cli import GATE_FAILED, main
-from spheremesh.kernel.surfaces.circular_nets import torus_net
+from spheremesh.kernel.surfaces.circular_nets import roof_net
 
 
 @pytest.fixture(scope="module")
 def skew(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A torus of about half a metre an edge, whose nodes are off by a centimetre."""
-    net = torus_net(8, 6, 1.0, 0.4)
+    """A roof without creases, of a third of a metre an edge, its nodes off by a centimetre.
+
+    Its panels step by up to 17 mm, and its beams twist by up to 0.01 degrees.
+    """
+    net = roof_net(6, 5, 3.0)
     random = np.random.default_rng(1)
     points = net.vertices + 0.01 * random.standard_normal(net.vertices.shape)
     path = tmp_path_factory.mktemp("skew") / "skew.obj"
@@ -29,7 +32,8 @@ def panel(mesh: Path, out: Path, *options: str) -> Result:
 
 
 def test_what_is_not_allowed_is_the_last_line(skew: Path, tmp_path: Path) -> None:
-    result = panel(skew, tmp_path / "a", "--support", "--thickness", "0.02", "--strict")
+    options = ["--support", "--thickness", "0.02", "--allow-torsion", "0.005", "--strict"]
+    result = panel(skew, tmp_path / "a", *options)
     assert result.exit_code == GATE_FAILED
     last = result.stdout.strip().splitlines()[-1]
     assert last.startswith("NOT BUILDABLE: P201 (")
@@ -38,13 +42,14 @@ def test_what_is_not_allowed_is_the_last_line(skew: Path, tmp_path: Path) -> Non
     assert not report["buildable"]
     codes = [found["code"] for found in report["audit"]["errors"]]
     shown = [line for line in result.stderr.splitlines() if line.startswith("error P201")]
+    assert set(codes) == {"P201", "B202"}
     assert len(shown) == 6
     assert shown[-1].endswith(f"{codes.count('P201') - 5} more, in report.json")
 
 
 def test_what_is_allowed_can_be_built(skew: Path, tmp_path: Path) -> None:
     options = ["--support", "--thickness", "0.02", "--bearing", "0.004", "--strict"]
-    allowed = ["--allow-step", "80", "--allow-gap", "80", "--allow-torsion", "3"]
+    allowed = ["--allow-step", "18", "--allow-gap", "18", "--allow-torsion", "0.02"]
     result = panel(skew, tmp_path / "a", *options, *allowed, "--json")
     assert result.exit_code == 0, result.stderr
     report = json.loads(result.stdout)

@@ -35,7 +35,8 @@ def vase(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def panelled(vase: Path, tmp_path_factory: pytest.TempPathFactory) -> Panelled:
     out = tmp_path_factory.mktemp("panelled") / "out"
     arguments = ["panel", str(vase), "-o", str(out), "--moulds", "4", "--thickness", "0.01"]
-    result = CliRunner().invoke(main, [*arguments, "--json"])
+    # Four radii on so coarse a vase leave steps of up to 30 mm.
+    result = CliRunner().invoke(main, [*arguments, "--allow-step", "31", "--json"])
     return result, out
 
 
@@ -58,7 +59,7 @@ def test_json_is_the_report_alone(panelled: Panelled) -> None:
     assert 0 < report["edge_gap"]["relative_to_edge"] < 0.1
     assert set(report["seconds"]) == {"total", "optimize", "step"}
     assert report["audit"]["errors"] == []
-    assert set(report["audit"]["counts"]) <= {"P201"}
+    assert report["audit"]["counts"] == {}
     blanks = report["moulds"]["blanks"]
     assert [blank["count"] for blank in blanks] == report["moulds"]["panels_per_mould"]
     assert report["thickness"] == {"min": 0.01, "mean": 0.01, "max": 0.01}

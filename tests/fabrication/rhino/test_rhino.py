@@ -8,7 +8,7 @@ import time
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -343,10 +343,16 @@ def test_groups_and_views(model: Any, panels: Panels) -> None:  # noqa: ANN401
         assert frame["far"] > -z.min()
 
 
-def torus_panels() -> Panels:
-    """Every kind of panel occurs once in each quarter turn and half."""
-    optimum = nodes.minimize_angles(nodes.fit_spheres(nodes.torus_mesh(8, 6)))
-    return nodes.panels(optimum.sphere_mesh, thickness=0.02).panels
+def torus_panels(
+    edges: Literal["bisector", "intersection"] = "bisector", thickness: float = 0.02
+) -> Panels:
+    """Every kind of panel occurs once in each quarter turn and half.
+
+    Neighbours of this coarse torus fold by more than 40 degrees; at 180 none is a crease.
+    """
+    spheres = nodes.fit_spheres(nodes.torus_mesh(8, 6))
+    optimum = nodes.minimize_angles(spheres, crease=180.0)
+    return nodes.panels(optimum.sphere_mesh, edges, thickness, crease=180.0).panels
 
 
 def test_identical_panels_are_instances(tmp_path: Path) -> None:
@@ -485,8 +491,7 @@ def test_a_mould_that_is_not_exact_is_named(
 
 
 def test_shell_joins_what_meets(tmp_path: Path) -> None:
-    optimum = nodes.minimize_angles(nodes.fit_spheres(nodes.torus_mesh(8, 6)))
-    panels = nodes.panels(optimum.sphere_mesh, edges="intersection").panels
+    panels = torus_panels("intersection", thickness=0.0)
     shell = RhinoOptions("shell", ())
     for given, n_edges, n_vertices in (
         (panels, 96, 48),
@@ -517,8 +522,7 @@ def test_shell_refuses_panels_with_joints(panels: Panels, tmp_path: Path) -> Non
 
 
 def test_shell_leaves_wide_edges_open(tmp_path: Path) -> None:
-    optimum = nodes.minimize_angles(nodes.fit_spheres(nodes.torus_mesh(8, 6)))
-    panels = nodes.panels(optimum.sphere_mesh, edges="intersection").panels
+    panels = torus_panels("intersection", thickness=0.0)
     moved = panels.origins.copy()
     moved[7] += (0.0, 0.0, 0.01)
     apart = replace(panels, origins=moved)

@@ -193,7 +193,8 @@ def test_unknown_sides_and_layers_are_named(octahedron: Mesh) -> None:
         cut_panels(found, side="up")  # pyright: ignore[reportArgumentType]
     with pytest.raises(InputError, match="layer must be offset or power, not 'thick'"):
         cut_panels(found, layer="thick")  # pyright: ignore[reportArgumentType]
-    with pytest.raises(InputError, match="edges must be bisector or intersection"):
+    message = "edges must be bisector, intersection or axis, not 'sharp'"
+    with pytest.raises(InputError, match=message):
         cut_panels(found, "sharp")  # pyright: ignore[reportArgumentType]
 
 
