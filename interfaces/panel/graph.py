@@ -186,9 +186,6 @@ def _optimum(
         target["target_angle"] = options.target_angle
     if not moves:
         allowed = {} if options.tolerance is None else {"max_miss": options.tolerance}
-        if options.target_angle and options.edges == "intersection":
-            # Of spheres that curve to both sides, the planes of the arcs lean over the faces.
-            target["sides"] = "one"
         return graph.add("minimize_angles", "optimum", sphere_mesh=start, **target, **allowed)
     angles = graph.add("minimize_angles", "angles", sphere_mesh=start, **target)
     return graph.add(
