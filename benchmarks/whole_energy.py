@@ -93,7 +93,7 @@ def targets() -> None:
     points = [[0, 0, 0], [1, 0, 0], [1, 1, 0.3], [0, 1, 0.3], [0, 2, 0], [1, 2, 0]]
     pair = fit_spheres(Mesh(points, [[0, 1, 2, 3], [3, 2, 5, 4]]))
     for found in (
-        minimize_angles(pair, target_angle=60),
+        minimize_angles(pair, target_angle=60, sides="both"),
         optimize_spheres(pair, target_angle=60),
     ):
         off = np.abs(intersection_angles(found.sphere_mesh) - 60).max()

@@ -18,6 +18,7 @@ from spheremesh.nodes import (
     write_step,
 )
 
+# Cushions bulge to one side: then the planes of their arcs stand, and panels are cut in them.
 start = fit_spheres(catenoid_mesh(n_around=36, n_across=13))
 for target in (0.0, 30.0, 60.0):
     facade = minimize_angles(start, target_angle=target).sphere_mesh

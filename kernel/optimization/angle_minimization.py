@@ -6,11 +6,13 @@ nothing: across them a surface is not meant to be smooth.
 
 For smooth contact, stage 1 minimises the signed energy ``sum (1 - g)`` with ``g = <<S, S'>>``,
 stage 2 the paper's ``sum (g² - 1)²`` from there. Another target angle has many optima: of those
-found from starts of structure, the lowest is taken.
+found from starts of structure, the lowest is taken. It mostly curves to both sides in turn, and
+the planes of its arcs then lean over the faces: panels cut there ask for spheres of one side.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -34,7 +36,9 @@ from .pencil_energy import (
     signed_density,
 )
 from .pencil_newton import PencilDescent, PencilProblem, minimize_in_pencils
-from .target_starts import target_descents
+from .target_starts import one_sided_descents, target_descents
+
+BulgeSides = Literal["both", "one"]
 
 
 @dataclass(frozen=True)
@@ -80,6 +84,7 @@ def minimize_angles(
     edge_weights: ArrayLike | None = None,
     crease: float = np.pi,
     max_opening: float = np.pi,
+    sides: BulgeSides = "both",
 ) -> tuple[SphereMesh, AngleReport]:
     """Spheres through the faces' circles that meet their neighbours most smoothly.
 
@@ -98,6 +103,8 @@ def minimize_angles(
         weight is 0. At π there are none.
     max_opening : float
         Largest half opening of the caps, in radians; π for no bound.
+    sides : {"both", "one"}
+        Whether the spheres of a part that meet at a target angle may curve to both sides.
 
     Returns
     -------
@@ -132,7 +139,7 @@ def minimize_angles(
     curvatures = mean_edge_length(mesh) / np.sqrt(circles.radii_squared)
 
     def _problem(density: EdgeEnergy) -> PencilProblem:
-        return PencilProblem(coupling, density, bound, curvatures)
+        return PencilProblem(coupling, density, (-bound, bound), curvatures)
 
     given = np.clip(pencil_angles(sphere_mesh, circles), -bound, bound)
     planes = np.zeros_like(given)
@@ -148,7 +155,12 @@ def minimize_angles(
         energies += second.energies
     else:
         angles, descents = _lowest_of_parts(
-            _problem(density), parts, second.angles, given, target_angle, face_centroids(mesh)
+            _problem(density),
+            parts,
+            second.angles,
+            None if sides == "one" else given,
+            target_angle,
+            face_centroids(mesh),
         )
         converged = all(descent.converged for descent in descents)
         last = max(descents, key=lambda each: len(each.energies), default=second)
@@ -160,14 +172,9 @@ def minimize_angles(
     if taken_back.any() or target_angle > 0:
         energies.append(angle_energy(coupling, density, angles))
     report = AngleReport(
-        converged,
-        iterations,
-        tuple(energies),
-        last.step,
-        float(miss.max()) / mean_edge_length(mesh),
-        is_crease,
-        taken_back,
-    )
+        converged, iterations, tuple(energies), last.step,
+        float(miss.max()) / mean_edge_length(mesh), is_crease, taken_back,
+    )  # fmt: skip
     spheres = pencil_spheres(*circle_pencils(circles), angles)
     return SphereMesh.from_local(mesh, spheres), report
 
@@ -235,7 +242,7 @@ def _never_rougher(
 
 
 def _lowest_of_parts(
-    problem: PencilProblem, parts: IntArray, smooth: FloatArray, given: FloatArray,
+    problem: PencilProblem, parts: IntArray, smooth: FloatArray, given: FloatArray | None,
     target: float, places: FloatArray,
 ) -> tuple[FloatArray, tuple[PencilDescent, ...]]:  # fmt: skip
     """Lowest optimum of each part by itself: unknowns (F,), and the descents of the parts."""
@@ -254,27 +261,33 @@ def _lowest_of_parts(
                 coupling.weights[edges],
             ),
             problem.density,
-            problem.bound,
+            problem.bounds,
             problem.curvatures[faces],
         )
-        found = _lowest(own, smooth[faces], given[faces], target, places[faces])
+        own_given = None if given is None else given[faces]
+        found = _lowest(own, smooth[faces], own_given, target, places[faces])
         angles[faces] = found.angles
         descents.append(found)
     return angles, tuple(descents)
 
 
 def _lowest(
-    problem: PencilProblem, smooth: FloatArray, given: FloatArray, target: float,
+    problem: PencilProblem, smooth: FloatArray, given: FloatArray | None, target: float,
     places: FloatArray,
 ) -> PencilDescent:  # fmt: skip
-    """The lowest of several descents; of equal ones that which bulges more."""
-    descents = target_descents(problem, smooth, target)
+    """The lowest of several descents; of equal ones that which bulges more.
+
+    Without given spheres those that curve to one side.
+    """
+    find = one_sided_descents if given is None else target_descents
+    descents = find(problem, smooth, target)
     lowest = min(descent.energies[-1] for descent in descents)
     zero = LEAST_ENERGY * float(problem.coupling.weights.sum())
-    start = angle_energy(problem.coupling, problem.density, given)
-    if start < lowest * (1 - SAME_ENERGY) - zero:
-        descents.append(minimize_in_pencils(problem, given))
-        lowest = min(lowest, descents[-1].energies[-1])
+    if given is not None:
+        start = angle_energy(problem.coupling, problem.density, given)
+        if start < lowest * (1 - SAME_ENERGY) - zero:
+            descents.append(minimize_in_pencils(problem, given))
+            lowest = min(lowest, descents[-1].energies[-1])
     equal = [
         each for each in descents if each.energies[-1] <= lowest * (1 + SAME_ENERGY) + zero
     ]

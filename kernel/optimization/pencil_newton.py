@@ -1,4 +1,4 @@
-"""Least energies in the pencils of the faces' circles, under a bound on every opening.
+"""Least energies in the pencils of the faces' circles, under bounds on every opening.
 
 Newton's method on one unknown per face. Where the Hessian shows negative curvature, the step is
 that of its convex part, edge by edge. At rest the Hessian is checked: from a saddle the descent
@@ -53,15 +53,15 @@ class PencilProblem:
     ----------
     coupling : PencilCoupling
     density : EdgeEnergy
-    bound : float
-        Largest size of an unknown, in radians.
+    bounds : tuple of float
+        Least and largest value of an unknown, in radians.
     curvatures : (F,) float array
         Inverse radii of the circles, of any scale: they decide ties.
     """
 
     coupling: PencilCoupling
     density: EdgeEnergy
-    bound: float
+    bounds: tuple[float, float]
     curvatures: FloatArray
 
 
@@ -88,10 +88,10 @@ class PencilDescent:
 
 
 def minimize_in_pencils(problem: PencilProblem, start: FloatArray) -> PencilDescent:
-    """Descend from unknowns (F,), clipped to the bound, to an optimum of second order."""
-    coupling, density, bound = problem.coupling, problem.density, problem.bound
+    """Descend from unknowns (F,), clipped to the bounds, to an optimum of second order."""
+    coupling, density = problem.coupling, problem.density
     pattern = graph_pattern(coupling.faces, len(start))
-    angles = np.clip(start, -bound, bound)
+    angles = np.clip(start, *problem.bounds)
     energies = [angle_energy(coupling, density, angles)]
     largest, escapes = LONGEST_STEP, 0
     zero = LEAST_ENERGY * float(coupling.weights.sum())
@@ -103,7 +103,7 @@ def minimize_in_pencils(problem: PencilProblem, start: FloatArray) -> PencilDesc
         found = energy_derivatives(coupling, density, angles)
         step, held = _newton_step(problem, pattern, angles, found, largest**2)
         before, largest = largest, float(np.abs(step).max(initial=0.0))
-        moved = np.clip(angles + step, -bound, bound)
+        moved = np.clip(angles + step, *problem.bounds)
         # Steps shrink to nothing, or to what rounding makes of them.
         is_lost = -float(dot(found.gradient, step)) <= found.noise
         is_resting = largest <= ANGLE_STEP or (is_lost and largest > before / 2)
@@ -129,10 +129,10 @@ def _newton_step(
     found: PencilDerivatives,
     residual: float,
 ) -> tuple[FloatArray, BoolArray]:
-    """Step (F,) of the unknowns, and which of them the bound holds."""
+    """Step (F,) of the unknowns, and which of them the bounds hold."""
     residual = min(max(residual, LINEAR_SOLVE**2), ROUGH_SOLVE)
-    gradient, bound = found.gradient, problem.bound
-    held = ((angles >= bound) & (gradient < 0)) | ((angles <= -bound) & (gradient > 0))
+    gradient, (least, largest) = found.gradient, problem.bounds
+    held = ((angles >= largest) & (gradient < 0)) | ((angles <= least) & (gradient > 0))
     right = np.where(held, 0.0, -gradient)
     if not right.any():
         return right, held
@@ -175,7 +175,7 @@ def _line_search(
 ) -> FloatArray | None:
     """The step, or the longest half of a half of it that goes down; None if there is none."""
     for halves in range(40):
-        moved = np.clip(angles + step * 0.5**halves, -problem.bound, problem.bound)
+        moved = np.clip(angles + step * 0.5**halves, *problem.bounds)
         promised = min(float(dot(found.gradient, moved - angles)), 0.0)
         reached = angle_energy(problem.coupling, problem.density, moved)
         if reached <= energy + found.noise + 1e-4 * promised:
@@ -210,7 +210,7 @@ def _escape(
     for side in (1, -1):
         for length in ESCAPES:
             moved = angles + side * length * mode
-            moved = np.clip(moved, -problem.bound, problem.bound)
+            moved = np.clip(moved, *problem.bounds)
             reached = angle_energy(problem.coupling, problem.density, moved)
             if reached < lowest - SAME_ENERGY * energy:
                 best, lowest = moved, reached

@@ -128,9 +128,11 @@ def cluster_radii(
 def _one_mould(curvatures: FloatArray) -> RadiusClusters:
     """The mould of panels that have one radius already."""
     count = len(curvatures)
+    with np.errstate(divide="ignore"):
+        radius = 1 / curvatures.mean()
     return RadiusClusters(
         np.zeros(count, np.int64),
-        np.array([1 / curvatures.mean()]),
+        np.array([radius]),
         np.array([count]),
         np.zeros(count, bool),
     )

@@ -7,6 +7,8 @@ faces bulging more, or less. Where a single face does better elsewhere, it is pu
 starts almost never reach as low.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, sum_by
@@ -85,6 +87,24 @@ def target_descents(
     return [_better_places(problem, descent) for descent in descents]
 
 
+def one_sided_descents(
+    problem: PencilProblem, smooth: FloatArray, target: float
+) -> list[PencilDescent]:
+    """Descents with all spheres curved to one side, from even bulges about the smoothest.
+
+    Those that press no sphere against its plane, if there are any: all panels bulge alike, and
+    the planes of their arcs stand between them.
+    """
+    reach = problem.bounds[1]
+    descents = [
+        minimize_in_pencils(replace(problem, bounds=bounds), middle + side * target / 2)
+        for side, bounds in ((1, (0.0, reach)), (-1, (-reach, 0.0)))
+        for middle in (smooth, np.zeros_like(smooth))
+    ]
+    even = [each for each in descents if each.angles.all()]
+    return even or descents
+
+
 def _continued(
     problem: PencilProblem, smooth: FloatArray, target: float, side: int
 ) -> PencilDescent:
@@ -93,7 +113,7 @@ def _continued(
     angles = smooth
     for step in range(1, CONTINUATION_STEPS):
         on_the_way = PencilProblem(
-            problem.coupling, angle_density(step * share), problem.bound, problem.curvatures
+            problem.coupling, angle_density(step * share), problem.bounds, problem.curvatures
         )
         angles = minimize_in_pencils(on_the_way, angles + side * share / 2).angles
     return minimize_in_pencils(problem, angles + side * share / 2)
@@ -109,8 +129,8 @@ def _better_places(problem: PencilProblem, descent: PencilDescent) -> PencilDesc
     for _ in range(MAX_ROUNDS):
         now = _energies_alone(problem, descent.angles, descent.angles)
         lowest, places = now.copy(), descent.angles.copy()
-        reach = min(problem.bound, np.pi)
-        for place in np.linspace(-reach, reach, PLACES + 1)[1:]:
+        least, largest = max(problem.bounds[0], -np.pi), min(problem.bounds[1], np.pi)
+        for place in np.linspace(least, largest, PLACES + 1)[1:]:
             found = _energies_alone(problem, descent.angles, np.full(count, place))
             is_lower = found < lowest
             lowest, places = (

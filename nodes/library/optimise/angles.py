@@ -1,7 +1,7 @@
 """Spheres that meet their neighbours smoothly, or at a given angle."""
 
 from dataclasses import dataclass
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -65,7 +65,7 @@ class AnglesOptimum(NamedTuple):
     report: AnglesReport
 
 
-@node(version="2")
+@node(version="3")
 def minimize_angles(
     sphere_mesh: SphereMesh,
     target_angle: Annotated[float, Port(unit="deg", min=0, max=90)] = 0.0,
@@ -73,6 +73,7 @@ def minimize_angles(
     max_miss: Annotated[float | None, Port(min=0)] = None,
     crease: CreaseAngle = 40.0,
     max_opening: Annotated[float | None, Port(unit="deg", min=0, max=180)] = None,
+    sides: Literal["both", "one"] = "one",
 ) -> AnglesOptimum:
     """Choose the spheres through the faces' circles that meet their neighbours most smoothly.
 
@@ -94,6 +95,10 @@ def minimize_angles(
     max_opening : float, optional
         Largest half opening of the caps, 180 for no bound. By default 60; with a target angle
         there is none, because the target says how far panels bulge.
+    sides : {"both", "one"}
+        Whether panels that meet at a target angle bulge to one side, as cushions do, or may
+        bulge to both, which comes nearest to it. To both, the planes of their arcs lean over
+        the faces, and cut by bisectors they leave steps: few such panels can be built.
 
     Returns
     -------
@@ -114,11 +119,7 @@ def minimize_angles(
     if max_opening is not None:
         opening = float(np.radians(max_opening))
     result, run = angle_minimization.minimize_angles(
-        sphere_mesh,
-        np.radians(target_angle),
-        edge_weights,
-        np.radians(crease),
-        opening,
+        sphere_mesh, np.radians(target_angle), edge_weights, np.radians(crease), opening, sides
     )
     if not run.converged:
         raise ConvergenceError(

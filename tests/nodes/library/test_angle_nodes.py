@@ -12,6 +12,7 @@ import pytest
 from spheremesh import Mesh
 from spheremesh.kernel.optimization import angle_minimization
 from spheremesh.nodes import (
+    catenoid_mesh,
     cluster_radii,
     enneper_mesh,
     face_planes,
@@ -96,13 +97,48 @@ def test_creases_reach_panels_files_and_reports(tmp_path: Path) -> None:
 
 @pytest.mark.filterwarnings("ignore")
 def test_the_whole_energy_keeps_creases() -> None:
+    """Creases count nothing: as with weights of 0, and sharper than if they counted."""
     mesh = house()
-    start = minimize_angles(fit_spheres(mesh))
-    found = optimize_spheres(start.sphere_mesh, angle=1.0)
-    assert found.report["creases"]["count"] == 8
-    assert found.report["creases"]["max_deg"] > 40
+    start = fit_spheres(mesh)
+    found = optimize_spheres(start, angle=1.0)
+    creases = found.report["creases"]
+    assert found.report["kept"] == "optimum"
+    assert creases["count"] == 8
+    assert creases["max_deg"] > 40
     planar, spherical = (found.report["angles_deg"][k] for k in ("planar", "spherical"))
-    assert spherical["mean"] <= planar["mean"] * 1.001
+    assert spherical["mean"] < planar["mean"] / 2
+    weights = np.ones(len(mesh.topology.edge_corners))
+    weights[creases["edges"]] = 0.0
+    same = optimize_spheres(start, angle=1.0, edge_weights=weights, crease=180)
+    np.testing.assert_array_equal(same.sphere_mesh.spheres, found.sphere_mesh.spheres)
+    rounded = optimize_spheres(start, angle=1.0, crease=180).sphere_mesh
+    angles = intersection_angles(rounded)
+    assert angles[creases["edges"]].max() < 20
+    assert angles[weights > 0].mean() > 1.5 * spherical["mean"]
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_smoother_start_is_kept_with_its_creases() -> None:
+    start = minimize_angles(fit_spheres(house())).sphere_mesh
+    found = optimize_spheres(start, angle=1.0)
+    assert found.report["kept"] == "start"
+    np.testing.assert_array_equal(found.sphere_mesh.spheres, start.spheres)
+
+
+def test_cushions_of_one_side_are_cut_by_their_arcs() -> None:
+    """What is nearest to a target bulges to both sides: its arcs lean over the faces."""
+    start = fit_spheres(catenoid_mesh(18, 7))
+    nearest = minimize_angles(start, target_angle=60, sides="both")
+    cushions = minimize_angles(start, target_angle=60)
+    assert panels(nearest.sphere_mesh, thickness=0.01).report["written"] == 126
+    with pytest.warns(UserWarning, match="cut it by bisectors"):
+        panels(nearest.sphere_mesh, edges="intersection", thickness=0.01)
+    bulges = cushions.sphere_mesh.spheres[:, 0]
+    assert (bulges > 0).all() or (bulges < 0).all()
+    cut = panels(cushions.sphere_mesh, edges="intersection", thickness=0.01)
+    assert cut.report["written"] == 126
+    reached = [each.report["angles_deg"]["spherical"]["mean"] for each in (nearest, cushions)]
+    np.testing.assert_allclose(reached, 60, atol=5)
 
 
 def test_messages_about_strips_speak_of_their_edges() -> None:
