@@ -21,7 +21,7 @@ from spheremesh.nodes import (
 # Cushions bulge to one side: then the planes of their arcs stand, and panels are cut in them.
 start = fit_spheres(catenoid_mesh(n_around=36, n_across=13))
 for target in (0.0, 30.0, 60.0):
-    facade = minimize_angles(start, target_angle=target).sphere_mesh
+    facade = minimize_angles(start, target_angle=target, sides="one").sphere_mesh
     angles = intersection_angles(facade)
     print(
         f"{target:.0f} degrees asked for: {np.median(angles):.1f} in the middle, all between "

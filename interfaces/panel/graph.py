@@ -185,7 +185,11 @@ def _optimum(
     if options.target_angle:
         target["target_angle"] = options.target_angle
     if not moves:
-        allowed = {} if options.tolerance is None else {"max_miss": options.tolerance}
+        allowed: dict[str, Any] = {}
+        if options.tolerance is not None:
+            allowed["max_miss"] = options.tolerance
+        if options.target_angle:
+            allowed["sides"] = "one"  # cushions to both sides can hardly be built
         return graph.add("minimize_angles", "optimum", sphere_mesh=start, **target, **allowed)
     angles = graph.add("minimize_angles", "angles", sphere_mesh=start, **target)
     return graph.add(

@@ -140,7 +140,8 @@ def _mesh_reports(graph: Graph, run: Callable[..., Any]) -> dict[str, Any]:
 
 
 def _refuse_unfinished(optimum: Mapping[str, Any]) -> None:
-    if not optimum["converged"]:
+    """An optimum that is not reached can be built all the same if all that has to hold does."""
+    if not (optimum["converged"] or optimum.get("held", False)):
         stage = optimum["stages"][-1]
         raise ConvergenceError(
             f"the optimisation did not converge in {stage['iterations']} iterations of "

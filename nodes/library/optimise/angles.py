@@ -73,7 +73,7 @@ def minimize_angles(
     max_miss: Annotated[float | None, Port(min=0)] = None,
     crease: CreaseAngle = 40.0,
     max_opening: Annotated[float | None, Port(unit="deg", min=0, max=180)] = None,
-    sides: Literal["both", "one"] = "one",
+    sides: Literal["both", "one"] = "both",
 ) -> AnglesOptimum:
     """Choose the spheres through the faces' circles that meet their neighbours most smoothly.
 
@@ -96,9 +96,9 @@ def minimize_angles(
         Largest half opening of the caps, 180 for no bound. By default 60; with a target angle
         there is none, because the target says how far panels bulge.
     sides : {"both", "one"}
-        Whether panels that meet at a target angle bulge to one side, as cushions do, or may
-        bulge to both, which comes nearest to it. To both, the planes of their arcs lean over
-        the faces, and cut by bisectors they leave steps: few such panels can be built.
+        Whether panels that meet at a target angle may bulge to both sides, which comes nearest
+        to it, or to one, as cushions do. To both, the planes of their arcs lean over the faces,
+        and cut by bisectors they leave steps: few such panels can be built.
 
     Returns
     -------
