@@ -207,8 +207,10 @@ def _called(step: Step, arguments: Mapping[str, Any]) -> Value:
     inputs: dict[str, Any] = {}
     for name, value in arguments.items():
         port = node.inputs[name]
-        # What comes by wire was checked as a type; only small values are looked at again.
-        if value is None or isinstance(value, bool | int | float | str):
+        # What comes by wire was checked as a type; items of lists were not, and small values
+        # are looked at again.
+        is_listed = isinstance(step.inputs.get(name), Each | list | tuple)
+        if is_listed or value is None or isinstance(value, bool | int | float | str):
             check_value(port, value, f"{step.name}.{name}")
         inputs[name] = _converted(port, value, f"{step.name}.{name}")
     value = node.function(**inputs)

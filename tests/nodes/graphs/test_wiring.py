@@ -219,3 +219,18 @@ def test_a_list_of_wires_that_is_no_array_is_refused_by_name() -> None:
     g.add(shape_of, numbers=[1.0, g.add(pair)])
     with pytest.raises(NodeError, match=r"shape_of\.numbers = .*: must be float64 array"):
         g.run("shape_of")
+
+
+def test_an_item_that_an_input_does_not_accept_is_refused_by_name() -> None:
+    @node
+    def rows() -> NDArray[np.float64]:
+        return np.eye(3)
+
+    @node
+    def twice(number: float) -> float:
+        return 2 * number
+
+    g = sm.Graph()
+    g.add(twice, number=sm.each(g.add(rows)))
+    with pytest.raises(NodeError, match=r"twice\.number = .*: must be float"):
+        g.run("twice")
