@@ -35,6 +35,9 @@ from .pencil_energy import (
     has_convex_blocks,
 )
 
+SLOWEST_FALL = 0.8
+"""Steps to a contact fall to two thirds: the energy is quartic there. Slower is rounding."""
+
 MAX_NEWTON_STEPS = 400
 MAX_ESCAPES = 20
 LONGEST_STEP = 0.5
@@ -106,7 +109,7 @@ def minimize_in_pencils(problem: PencilProblem, start: FloatArray) -> PencilDesc
         moved = np.clip(angles + step, *problem.bounds)
         # Steps shrink to nothing, or to what rounding makes of them.
         is_lost = -float(dot(found.gradient, step)) <= found.noise
-        is_resting = largest <= ANGLE_STEP or (is_lost and largest > before / 2)
+        is_resting = largest <= ANGLE_STEP or (is_lost and largest > SLOWEST_FALL * before)
         # Below zero nothing can fall: there the second derivatives are rounding.
         if is_resting and (energies[-1] <= zero or _is_minimum(problem, pattern, found, held)):
             return _descent(moved if largest <= before else angles, converged=True)

@@ -50,7 +50,8 @@ def test_law_e10_optimum_does_not_depend_on_the_start(
     starts = [face_planes(mesh), SphereMesh.from_local(mesh, pencil_spheres(*pencils, turns))]
     for start in starts:
         again, _ = minimize_angles(start)
-        np.testing.assert_allclose(again.spheres, best.spheres, atol=1e-7)
+        # A contact is a minimum of fourth order: rounding leaves 1e-8 of its angle.
+        np.testing.assert_allclose(again.spheres, best.spheres, rtol=1e-6, atol=1e-6)
 
 
 @pytest.mark.parametrize("name", NAMES)
