@@ -58,8 +58,8 @@ def keep_spheres(sphere_mesh: SphereMesh, crease: CreaseAngle = 40.0) -> KeptSph
 
     Examples
     --------
-    >>> from spheremesh.nodes import ellipsoid_mesh, keep_spheres, model_change
-    >>> kept = keep_spheres(model_change(ellipsoid_mesh(12, 6), radius=4.0), crease=180)
+    >>> from spheremesh.nodes import fit_spheres, keep_spheres, vase_mesh
+    >>> kept = keep_spheres(fit_spheres(vase_mesh(12, 6)))
     >>> kept.report["vertex_error"]["max"] < 1e-9
     True
     """
