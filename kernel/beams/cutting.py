@@ -5,10 +5,11 @@ neighbour around the axis. What cannot be cut is listed with its reason.
 """
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, dot, sum_by, unit
+from ..arrays import BoolArray, FloatArray, IntArray, dot, sum_by, unit
 from ..errors import InputError
 from ..parts.records import RejectedPart, reject_parts
 from ..support.annuli import Annuli
@@ -123,6 +124,36 @@ def neighbor_angles(annuli: Annuli) -> FloatArray:
     At both ends, to the lower and to the upper side of the plane, in radians; half a turn for a
     single beam.
     """
+    ends = node_rings(annuli)
+    before = np.empty(len(ends.angles))
+    before[ends.following] = ends.angles
+    normals = np.repeat(annuli.frames[:, 2], 2, axis=0)
+    is_upper = (dot(ends.left, normals) > 0)[:, None]
+    sides = np.stack([ends.angles, before], 1)
+    half = np.where(is_upper, sides[:, ::-1], sides)
+    return half.reshape(-1, 2, 2) / 2
+
+
+class BeamEnds(NamedTuple):
+    """The ends (2B) of beams, seen along their node axes.
+
+    Attributes
+    ----------
+    left : (2B, 3) float array
+        Unit directions to their left.
+    following : (2B,) int array
+        The end that follows there around the node.
+    angles : (2B,) float array
+        The angle to it, in radians; a whole turn for a single beam.
+    """
+
+    left: FloatArray
+    following: IntArray
+    angles: FloatArray
+
+
+def node_rings(annuli: Annuli) -> BeamEnds:
+    """The ends of beams in their order around the nodes."""
     axes = annuli.node_axes.reshape(-1, 3)
     away = inward_directions(annuli).reshape(-1, 3)
     away = unit(away - dot(away, axes)[:, None] * axes)
@@ -132,19 +163,14 @@ def neighbor_angles(annuli: Annuli) -> FloatArray:
     zero = away[first][groups]
     turns = np.arctan2(dot(away, np.cross(axes, zero)), dot(away, zero))
     order = np.lexsort((turns, groups))
-    starts = np.flatnonzero(np.diff(groups[order], prepend=-1))
-    ends = np.flatnonzero(np.diff(groups[order], append=-1))
-    following = np.arange(1, len(order) + 1)
-    following[ends] = starts
-    gaps = turns[order][following] - turns[order]
-    gaps[ends] += 2 * np.pi
-    after, before = np.empty(len(order)), np.empty(len(order))
-    after[order] = gaps
-    before[order[following]] = gaps
-    normals = np.repeat(annuli.frames[:, 2], 2, axis=0)
-    is_upper = dot(np.cross(axes, away), normals) > 0
-    half = np.stack([np.where(is_upper, before, after), np.where(is_upper, after, before)], 1)
-    return half.reshape(-1, 2, 2) / 2
+    last = np.flatnonzero(np.diff(groups[order], append=-1))
+    ahead = np.arange(1, len(order) + 1)
+    ahead[last] = np.flatnonzero(np.diff(groups[order], prepend=-1))
+    gaps = turns[order][ahead] - turns[order]
+    gaps[last] += 2 * np.pi
+    following, angles = np.empty(len(order), np.int64), np.empty(len(order))
+    following[order], angles[order] = order[ahead], gaps
+    return BeamEnds(np.cross(axes, away), following, angles)
 
 
 def node_points(annuli: Annuli) -> FloatArray:

@@ -1,13 +1,13 @@
 """Least radius of node cylinders, before which beams end clear of each other."""
 
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray, dot, norm, unit
+from ..arrays import FloatArray, IntArray, dot, norm
 from ..support.annuli import Annuli
-from .beams import cut_corners, inward_directions
-from .cutting import node_points
+from .beams import cut_corners
+from .cutting import BeamEnds, node_points, node_rings
 
 ROOM: Final = 3.0
 """Length of a beam, in radii of its node cylinders, that leaves a third of it between them."""
@@ -35,7 +35,7 @@ def least_node_radius(annuli: Annuli, thickness: float, node_gap: float = 0.0) -
     """
     if annuli.n_annuli == 0:
         return 0.0
-    ends, nodes = _around_nodes(annuli), annuli.edge_vertices.ravel()
+    ends, nodes = node_rings(annuli), annuli.edge_vertices.ravel()
     half = thickness / 2 * np.abs(dot(np.repeat(annuli.frames[:, 2], 2, axis=0), ends.left))
     corners, axes = annuli.corners.reshape(-1, 2, 3), node_points(annuli).reshape(-1, 1, 3)
     before = need = _needs(ends, nodes, corners - axes, half)
@@ -53,19 +53,7 @@ def least_node_radius(annuli: Annuli, thickness: float, node_gap: float = 0.0) -
     return max(float(least) - node_gap, 0.0)
 
 
-class _Ends(NamedTuple):
-    """The ends (2B) of beams, seen along their node axes.
-
-    Unit directions (2B, 3) to their left; the end that follows there around the node, and the
-    angle to it: a whole turn for a single beam.
-    """
-
-    left: FloatArray
-    following: IntArray
-    angles: FloatArray
-
-
-def _needs(ends: _Ends, nodes: IntArray, shifts: FloatArray, half: FloatArray) -> FloatArray:
+def _needs(ends: BeamEnds, nodes: IntArray, shifts: FloatArray, half: FloatArray) -> FloatArray:
     """Radii that nodes need, by vertex: of corners (2B, 2, 3) seen from the axes."""
     aside = dot(shifts, ends.left[:, None])
     to_right, to_left = half[:, None] - aside, half[:, None] + aside
@@ -77,23 +65,3 @@ def _needs(ends: _Ends, nodes: IntArray, shifts: FloatArray, half: FloatArray) -
     apart = np.minimum(own, other) + np.maximum(own, other) * np.cos(angles)
     np.maximum.at(result, nodes[is_sharp], (apart / np.sin(angles)).max(axis=1))
     return result
-
-
-def _around_nodes(annuli: Annuli) -> _Ends:
-    axes = annuli.node_axes.reshape(-1, 3)
-    away = inward_directions(annuli).reshape(-1, 3)
-    away = unit(away - dot(away, axes)[:, None] * axes)
-    _, first, groups = np.unique(
-        annuli.edge_vertices.ravel(), return_index=True, return_inverse=True
-    )
-    zero = away[first][groups]
-    turns = np.arctan2(dot(away, np.cross(axes, zero)), dot(away, zero))
-    order = np.lexsort((turns, groups))
-    last = np.flatnonzero(np.diff(groups[order], append=-1))
-    ahead = np.arange(1, len(order) + 1)
-    ahead[last] = np.flatnonzero(np.diff(groups[order], prepend=-1))
-    gaps = turns[order][ahead] - turns[order]
-    gaps[last] += 2 * np.pi
-    following, angles = np.empty(len(order), np.int64), np.empty(len(order))
-    following[order], angles[order] = order[ahead], gaps
-    return _Ends(np.cross(axes, away), following, angles)

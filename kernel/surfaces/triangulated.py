@@ -99,7 +99,10 @@ def grid_counts(shape: ParametricShape, edge_length: float) -> tuple[int, int]:
     patch = shape.patch(*np.meshgrid(*axes, indexing="ij"))
     spans = np.subtract(shape.high, shape.low)
     lengths = norm(patch.along_u).mean() * spans[0], norm(patch.along_v).mean() * spans[1]
-    if 2 * lengths[0] * lengths[1] > MAX_TRIANGLES * edge_length**2:
+    if (
+        2 * (float(lengths[0]) / edge_length) * (float(lengths[1]) / edge_length)
+        > MAX_TRIANGLES
+    ):
         raise InputError(
             f"edges of {edge_length:g} would make more than {MAX_TRIANGLES} triangles: choose "
             "longer ones"

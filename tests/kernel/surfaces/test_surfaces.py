@@ -223,3 +223,8 @@ def test_unusable_sizes_are_refused(
 def test_a_sample_surface_of_too_many_triangles_is_refused(edge_length: float) -> None:
     with pytest.raises(InputError, match="more than 2000000 triangles"):
         triangulated_surface("bump", edge_length)
+
+
+def test_a_sample_surface_of_boundless_edges_is_refused() -> None:
+    with pytest.raises(InputError, match="too large"):
+        triangulated_surface("bump", 1e308)
