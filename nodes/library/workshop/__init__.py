@@ -4,4 +4,5 @@ audit      Findings before files go out.
 congruent  Panels of one shape.
 report     The report of a panelling.
 solids     Panels and beams as solids for CadQuery.
+view       A page on which a model turns, shines and answers.
 """
