@@ -51,7 +51,7 @@ def panel_columns(panels: Panels | None, units: str) -> dict[str, Column]:
         "area_m2": _rounded(panel_areas(panels) * scale**2 / SQUARE_METER),
         "thickness_mm": _rounded(panels.thicknesses * scale),
         "size_mm": [_rounded(size) for size in bounding_sizes(panels) * scale],
-        "planarity_mm": _rounded(corner_misses(panels) * scale, 3),
+        "planarity_mm": np.round(corner_misses(panels) * scale, 3).tolist(),
         "edge_lengths_mm": _by_panel(panels, _rounded(arc_lengths(arcs) * scale)),
         "sagittas_mm": _by_panel(panels, _rounded(arcs.sagittas * scale, 3)),
         "angles_deg": _by_panel(panels, _rounded(np.degrees(edge_angles(panels)), 3)),
@@ -89,10 +89,10 @@ def _by_panel(panels: Panels, values: Column) -> list[Column]:
 
 
 def _rounded(values: FloatArray, digits: int = 4) -> Column:
-    """Numbers with so many significant digits; None where they are not finite."""
+    """Numbers with so many significant digits, six decimals; None where they are not finite."""
     finite = np.isfinite(values)
     safe = np.where(finite, values, 0.0)
     powers = 10.0 ** (digits - 1 - np.floor(np.log10(np.maximum(np.abs(safe), 1e-9))))
-    numbers: list[float] = (np.round(safe * powers) / powers).tolist()
+    numbers: list[float] = np.round(np.round(safe * powers) / powers, 6).tolist()
     known: list[bool] = finite.tolist()
     return [value if is_known else None for value, is_known in zip(numbers, known, strict=True)]

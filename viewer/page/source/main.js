@@ -27,7 +27,7 @@ class Page {
     } catch {
       this.view = null;
     }
-    this.list = new PartList($("table"), this.model, (part) => this.select(part));
+    this.list = new PartList($("table"), this.model, (part) => this.choose(part));
   }
 
   get mode() { return this.modes.find((mode) => mode.key === this.state.color); }
@@ -47,7 +47,10 @@ class Page {
     this.view?.resize();
     this.readAddress();
     this.refresh();
-    if (this.view && !this.placed) this.view.fit(this.home);
+    if (this.view && !this.placed) {
+      this.view.fit(this.home);
+      if (this.state.part >= 0) this.view.reveal(this.state.part);
+    }
   }
 
   summary() {
@@ -180,7 +183,7 @@ class Page {
   cardClick(event) {
     const part = event.target.closest("[data-part]"), mould = event.target.closest("[data-mould]");
     if (event.target.closest(".close")) this.select(-1);
-    else if (part) this.select(Number(part.dataset.part));
+    else if (part) this.choose(Number(part.dataset.part));
     else if (mould) {
       this.state.color = "mould";
       this.filter = { kinds: new Set([mould.dataset.mould]) };
@@ -212,7 +215,7 @@ class Page {
     if (!left.length) return;
     const after = left.findIndex((i) => i > this.state.part), place = left.indexOf(this.state.part);
     const start = place >= 0 ? place + by : by > 0 ? (after < 0 ? 0 : after) : (after < 0 ? left.length : after) - 1;
-    this.select(left[(start + left.length) % left.length]);
+    this.choose(left[(start + left.length) % left.length]);
   }
 
   left() {
@@ -227,7 +230,7 @@ class Page {
     if (!input.value.trim()) return;
     const part = findPart(this.model, input.value);
     input.classList.toggle("unknown", part < 0);
-    if (part >= 0) this.select(part);
+    if (part >= 0) this.choose(part);
     else $("spoken").textContent = `There is no part ${input.value}.`;
   }
 
@@ -235,6 +238,12 @@ class Page {
     Object.assign(this.state, changes);
     if (clear) this.filter = null;
     this.refresh();
+  }
+
+  /** Select a part by its name, and turn the model until it is seen. */
+  choose(part) {
+    this.view?.reveal(part);
+    this.select(part);
   }
 
   select(part) {

@@ -51,7 +51,7 @@ function lineGeometry(lines) {
 
 /** Displacement of each part where the model is drawn apart, for an amount of 1. */
 function shiftRows(shapes) {
-  return shapes.centers.map((c, i) => [...add(scale(c, 0.8), shapes.lifts[i], 0.12), 0]);
+  return shapes.centers.map((c, i) => [...add(scale(c, 0.4), shapes.lifts[i], 0.07), 0]);
 }
 
 export class View {
@@ -178,6 +178,22 @@ export class View {
     away.set(Math.cos(turn) * Math.cos(rise), Math.sin(turn) * Math.cos(rise), Math.sin(rise));
     this.camera.position.copy(this.controls.target).addScaledVector(away, r);
     this.controls.update();
+    this.draw();
+  }
+
+  /** Turn until a part faces the viewer, if it does not yet. */
+  reveal(part) {
+    const c = this.shapes.centers[part], [x, y] = this.project(c), { camera, controls } = this;
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    const eye = camera.position.toArray(), n = this.shapes.lifts[part];
+    const inside = x > 0 && x < width && y > 0 && y < height;
+    const seen = inside && this.pick(x, y) === part;
+    if (seen) return;
+    const r = Math.hypot(...sub(eye, controls.target.toArray()));
+    const away = unit(add(length(n) ? n : unit(sub(eye, c)), [0, 0, 0.35]));
+    controls.target.set(...scale(c, inside ? 0.6 : 1));
+    camera.position.set(...add(controls.target.toArray(), away, r));
+    controls.update();
     this.draw();
   }
 
