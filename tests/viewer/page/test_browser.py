@@ -138,7 +138,8 @@ def test_picking_finds_the_part_that_is_seen(page: Page) -> None:
     assert len(facing) > 15
     for part, (x, y) in facing[::3] + facing[-2:]:
         assert page.evaluate(f"window.spheremesh.view.pick({x}, {y})") == part
-    for part, (x, y) in facing[:3]:
+    under = "([x, y]) => document.elementFromPoint(x, y).id === 'canvas'"
+    for part, (x, y) in [each for each in facing if page.evaluate(under, each[1])][:3]:
         page.mouse.click(x, y)
         assert selected(page) == ids[part]
     page.mouse.click(8, 300)
