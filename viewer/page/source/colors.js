@@ -41,7 +41,7 @@ export function colorModes(model) {
     if (values.some((v) => v !== null)) modes.push({ key, name, values, unit, logarithmic });
   }
   modes.push({ key: "finding", name: "Findings", kinds: findingKinds(model) });
-  modes.push({ key: "none", name: "Nothing", kinds: [] });
+  modes.push({ key: "none", name: "One colour", kinds: [] });
   return modes;
 }
 
@@ -139,7 +139,7 @@ function histogramMarkup(mode, filter) {
     const dim = middle < from || middle > to ? 0.25 : 1;
     return `<rect x="${(k * 288) / BINS}" y="${64 - h}" width="${288 / BINS - 1}" height="${h}" fill="${css(pathColor(middle))}" opacity="${dim}"/>`;
   }).join("");
-  const ends = [from, to].map((s) => `${number(scale.back(s))} ${mode.unit}`);
+  const ends = [from, to].map((s) => `${number(scale.back(s))}${mode.unit === "°" ? "" : "\u00a0"}${mode.unit}`);
   const low = Math.round(from * 288), high = Math.round(to * 288);
   return `<svg class="histogram" viewBox="0 0 288 68" role="img" aria-label="Histogram: drag over a range to filter">`
     + `${bars}<rect x="0" y="65" width="288" height="3" fill="#e3e5e8"/>`

@@ -5,7 +5,7 @@ import { escapeText, number } from "./text.js";
 const PAGE = 200;
 
 const COLUMNS = [
-  ["Part", (m, i) => m.ids[i], (v) => escapeText(v)],
+  ["Part", (m, i) => i, (v, m) => escapeText(m.ids[v])],
   ["Mould", (m, i) => of(m, i, "mould"), number],
   ["Radius mm", (m, i) => of(m, i, "radius_mm"), number],
   ["Area m²", (m, i) => of(m, i, "area_m2"), number],
@@ -99,7 +99,7 @@ export class PartList {
     }).join("");
     const lines = parts.slice(first, first + PAGE).map((i) => {
       const cells = COLUMNS.map(([, value, write], k) => {
-        const text = write(value(model, i));
+        const text = write(value(model, i), model);
         return k ? `<td>${text}</td>` : `<th scope="row">${text}</th>`;
       }).join("");
       const worst = model.worst[i] === 2 ? "error" : model.worst[i] === 1 ? "note" : "";

@@ -350,6 +350,7 @@ class Page {
       view.controls.target.set(...eye.slice(3));
       view.controls.update();
       this.placed = true;
+      view.fitted = null;
     }
     this.refresh();
     this.select(words.has("part") ? findPart(this.model, words.get("part")) : -1);

@@ -10,12 +10,19 @@ export function paint(canvas, shapes, colors, home) {
   if (!context) return;
   const back = unit(home), right = unit(cross([0, 0, 1], back)), up = cross(back, right);
   const sun = unit(add(unit([back[0] - 1.1 * right[0], back[1] - 1.1 * right[1], 0]), [0, 0, 1.15]));
-  const spread = 1.75, eye = scale(back, 4);
-  const project = (p) => {
+  const eye = scale(back, 4);
+  const flat = (p) => {
     const d = sub(p, eye), z = -dot(d, back);
-    const k = (spread * Math.min(canvas.width, canvas.height)) / z * 1.6;
-    return [canvas.width / 2 + k * dot(d, right), canvas.height / 2 - k * dot(d, up)];
+    return [dot(d, right) / z, -dot(d, up) / z];
   };
+  const all = shapes.corners.flat().map(flat), ends = [0, 1].map((k) => {
+    const values = all.map((p) => p[k]);
+    return [values.reduce((a, b) => Math.min(a, b), Infinity), values.reduce((a, b) => Math.max(a, b), -Infinity)];
+  });
+  // Title and message stand above.
+  const head = Math.min(130 * ratio, 0.3 * canvas.height), size = [canvas.width, canvas.height - head];
+  const k = 0.88 * Math.min(...size.map((s, i) => s / (ends[i][1] - ends[i][0] || 1)));
+  const project = (p) => flat(p).map((v, i) => i * head + size[i] / 2 + k * (v - (ends[i][0] + ends[i][1]) / 2));
   const order = shapes.corners.map((_, i) => i).sort((i, j) => dot(shapes.centers[i], back) - dot(shapes.centers[j], back));
   context.lineWidth = ratio * 0.6;
   context.strokeStyle = "rgba(34,38,43,.45)";

@@ -13,7 +13,7 @@ import {
 import { Lines } from "./shapes.js";
 import { add, cross, dot, length, scale, sub, unit } from "./vectors.js";
 
-const FIELD = 24, MARGIN = 0.06;
+const FIELD = 24;
 export const NAMED_VIEWS = {
   home: null, top: [0, -0.001, 1], front: [0, -1, 0.12], side: [1, 0, 0.12], below: [0.5, -0.7, -0.6],
 };
@@ -69,6 +69,8 @@ export class View {
     this.controls.minDistance = 0.02;
     this.controls.maxDistance = 20;
     this.controls.addEventListener("change", () => this.draw());
+    this.fitted = null;
+    this.controls.addEventListener("start", () => { this.fitted = null; });
     this.flat = "off";
     this.swipe = 0.5;
     this.visible = { panels: true, edges: true, beams: true, nodes: true, missing: true };
@@ -139,13 +141,18 @@ export class View {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / Math.max(1, height);
     this.camera.updateProjectionMatrix();
+    // What was made to fit fits again; who has turned the model keeps the view.
+    if (this.fitted) this.fit(this.fitted);
     this.draw();
   }
 
   /** The nearest camera from a direction whose pyramid holds the model: `frame_scene`. */
   fit(direction) {
+    this.fitted = direction;
     const axes = viewAxes(direction);
-    const up = (0.5 - MARGIN) * 2 * Math.tan((FIELD * Math.PI) / 360), across = up * this.camera.aspect;
+    const t = Math.tan((FIELD * Math.PI) / 360), sides = this.freeSides();
+    // Of each pair of sides the slopes: left and right, below and above.
+    const slopes = [[sides.left, sides.right].map((m) => t * this.camera.aspect * m), [sides.below, sides.above].map((m) => t * m)];
     const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
     let near = -Infinity, far = Infinity;
     const points = this.shapes.corners.length ? this.shapes.corners.flat() : this.shapes.centers;
@@ -153,15 +160,14 @@ export class View {
       const z = dot(axes[2], p);
       near = Math.max(near, z);
       far = Math.min(far, z);
-      [across, up].forEach((slope, k) => {
+      slopes.forEach(([s, r], k) => {
         const x = dot(axes[k], p);
-        low[k] = Math.min(low[k], x - slope * z);
-        high[k] = Math.max(high[k], x + slope * z);
+        low[k] = Math.min(low[k], x - s * z);
+        high[k] = Math.max(high[k], x + r * z);
       });
     }
-    const slopes = [across, up];
-    const distance = Math.max(...slopes.map((s, k) => (high[k] - low[k]) / (2 * s)));
-    const middle = slopes.map((s, k) => (low[k] + s * distance + high[k] - s * distance) / 2);
+    const distance = Math.max(...slopes.map(([s, r], k) => (high[k] - low[k]) / (s + r)));
+    const middle = slopes.map(([s, r], k) => (low[k] + s * distance + high[k] - r * distance) / 2);
     const eye = [0, 1, 2].map((k) => axes[0][k] * middle[0] + axes[1][k] * middle[1] + axes[2][k] * distance);
     const target = add(eye, axes[2], (near + far) / 2 - distance);
     this.camera.position.set(...eye);
@@ -170,8 +176,17 @@ export class View {
     this.draw();
   }
 
+  /** What share of each half of the canvas is left free by title and tools. */
+  freeSides() {
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    const share = (pixels, side, most) => 1 - 2 * Math.min(most, pixels / Math.max(1, side));
+    const across = share(34, width, 0.06);
+    return { left: across, right: across, below: share(84, height, 0.17), above: share(92, height, 0.19) };
+  }
+
   /** Turn about what is looked at, by angles to the left and upwards. */
   orbit(left, upward) {
+    this.fitted = null;
     const away = this.camera.position.clone().sub(this.controls.target), r = away.length();
     const turn = Math.atan2(away.y, away.x) - left;
     const rise = Math.max(-1.55, Math.min(1.55, Math.asin(away.z / r) + upward));
@@ -183,18 +198,14 @@ export class View {
 
   /** Turn until a part faces the viewer, if it does not yet. */
   reveal(part) {
-    const c = this.shapes.centers[part], [x, y] = this.project(c), { camera, controls } = this;
+    const c = this.shapes.centers[part], [x, y] = this.project(c), { camera } = this;
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     const eye = camera.position.toArray(), n = this.shapes.lifts[part];
     const inside = x > 0 && x < width && y > 0 && y < height;
     const seen = inside && this.pick(x, y) === part;
     if (seen) return;
-    const r = Math.hypot(...sub(eye, controls.target.toArray()));
-    const away = unit(add(length(n) ? n : unit(sub(eye, c)), [0, 0, 0.35]));
-    controls.target.set(...scale(c, inside ? 0.6 : 1));
-    camera.position.set(...add(controls.target.toArray(), away, r));
-    controls.update();
-    this.draw();
+    const outwards = length(n) ? n : unit(sub(eye, c));
+    this.fit(add(outwards, [0, 0, Math.max(0.35, 0.25 - outwards[2])]));
   }
 
   draw() {
