@@ -22,6 +22,8 @@ DAMPING: Final = 1e-12
 """Least damping of a Newton step; its inverse is the largest before a descent is given up."""
 ENERGY_ROUNDING: Final = 1e-13
 """Relative rounding of a sum of energies: a rise below it is no rise."""
+RESIDUAL_ROUNDING: Final = 1e-15
+"""Rounding of residuals, in mean edges: it moves an energy by so much of its root."""
 PARALLEL_PLANES: Final = 1e-6
 """Cutting planes that meet at a smaller angle (radians) are in line."""
 SAME_CURVATURE: Final = 1e-9
