@@ -48,7 +48,7 @@ def roof(kind: str) -> Mesh:
     if kind == "wave":
         z = 0.25 * np.sin(0.55 * x) + 0.15 * np.cos(0.5 * y + 0.1 * x)
     else:
-        z = 0.05 * x * (10 - x) * (1 - 0.02 * (y - 2.2) ** 2) + 0.004 * x * y
+        z = 0.03 * x * (10 - x) - 0.05 * (y - 2.2) ** 2 + 0.002 * x * y
         x = x + 0.04 * np.sin(3 * y)
     ids = np.arange(66).reshape(11, 6)
     faces = np.stack([ids[:-1, :-1], ids[1:, :-1], ids[1:, 1:], ids[:-1, 1:]], -1)
