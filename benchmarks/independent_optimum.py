@@ -167,10 +167,8 @@ def main() -> None:
         compare(kind)
     start, _ = minimize_angles(fit_spheres(strips()))
     _, report = optimize_spheres(start)
-    kept = report.figures["optimum"].mean, report.figures["planes"].mean
-    print(
-        f"1:20, vertices fixed: {np.degrees(kept[0]):.6f} degrees, planes {np.degrees(kept[1]):.6f}"
-    )
+    optimum, planes = (np.degrees(report.figures[each].mean) for each in ("optimum", "planes"))
+    print(f"1:20, vertices fixed: {optimum:.6f} degrees, planes {planes:.6f}")
 
 
 if __name__ == "__main__":
