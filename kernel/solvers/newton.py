@@ -239,6 +239,8 @@ def newton(
             trust, found = trust.renewed(found), None
             continue
         if taken is None and leaves_saddles:
+            if not found.is_exact:
+                found = _exact_step(model, LEAST_SHIFT, LARGEST_SHIFT) or found
             lowest, vector = _lowest(model, found)
             if lowest < -LOWEST_EIGENVALUE and escapes < MOST_ESCAPES and vector.any():
                 taken, escapes = _escape(problem, state, vector, energy), escapes + 1
