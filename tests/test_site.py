@@ -21,6 +21,7 @@ class Site(NamedTuple):
 
     build: ModuleType
     links: ModuleType
+    pictures: ModuleType
     reference: ModuleType
 
 
@@ -29,7 +30,7 @@ def site(monkeypatch: pytest.MonkeyPatch) -> Site:
     monkeypatch.syspath_prepend(ROOT / "docs" / "site")
     import build  # pyright: ignore[reportMissingImports]
 
-    found = Site(build, sys.modules["links"], sys.modules["reference"])
+    found = Site(build, *(sys.modules[name] for name in Site._fields[1:]))
     for module in found:
         monkeypatch.delitem(sys.modules, module.__name__)
     return found
@@ -76,8 +77,17 @@ def test_text_of_docstrings_is_no_markup(site: Site) -> None:
     assert text == r"a \* b\_c \< `d_e` \[f\] [`panels`](fabricate.md#panels) `g`"
 
 
+def test_what_a_node_makes_in_its_example_is_drawn(site: Site) -> None:
+    image = site.pictures.picture(find_node("fit_spheres"))
+    assert image.size == site.pictures.SIZE
+    assert len(image.getcolors(image.width * image.height)) > 1000
+    assert site.pictures.picture(find_node("sphere_rows")) is None
+    picture = site.reference.reference_pages({"fit_spheres": "fit.png"})["spheres"]
+    assert picture.count("](fit.png)") == 1
+
+
 def test_every_page_has_its_place(site: Site, tmp_path: Path) -> None:
-    site.build.gather(tmp_path)
+    site.build.gather(tmp_path, with_pictures=False)
     pages = {path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*.md")}
     listed = [name for names in site.build.chapters(tmp_path).values() for name in names]
     assert sorted([*listed, "index"]) == sorted(page.removesuffix(".md") for page in pages)

@@ -12,7 +12,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from links import broken_links
-from reference import reference_pages
+from pictures import write_pictures
+from reference import library_nodes, reference_pages
 
 SITE = Path(__file__).resolve().parent
 ROOT = SITE.parents[1]
@@ -42,7 +43,7 @@ def chapters(source: Path) -> dict[str, list[str]]:
     }
 
 
-def gather(source: Path) -> None:
+def gather(source: Path, *, with_pictures: bool = True) -> None:
     """Put all that the site shows into a folder, laid out as in the repository."""
     shutil.copytree(ROOT / "docs", source / "docs", ignore=shutil.ignore_patterns("site"))
     shutil.copytree(ROOT / "examples", source / "examples")
@@ -50,7 +51,9 @@ def gather(source: Path) -> None:
         shutil.copy(ROOT / f"{name}.md", source)
     nodes = source / "docs" / "nodes"
     nodes.mkdir()
-    for name, text in reference_pages().items():
+    every = [node for several in library_nodes().values() for node in several]
+    pictures = write_pictures(every, nodes) if with_pictures else {}
+    for name, text in reference_pages(pictures).items():
         (nodes / f"{name}.md").write_text(text, encoding="utf-8")
     front = [(ROOT / "README.md").read_text(encoding="utf-8")]
     for title, pages in chapters(source).items():
