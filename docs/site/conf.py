@@ -11,6 +11,7 @@ source_suffix = {".md": "markdown"}
 root_doc = "index"
 highlight_language = "text"
 nitpicky = True
+smartquotes = False
 
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
