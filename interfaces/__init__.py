@@ -5,6 +5,7 @@ cli            The commands; their docstrings are their help.
 console        How commands end and what they say meanwhile: errors, exit codes, progress.
 option_values  Values of options that are more than a number or a word.
 panel          The main job.
+panel_command  The command panel: the main job, option by option.
 node_help      The help of a node on the command line.
 sweep_command  The command sweep: a graph for many values of its sliders.
 """
