@@ -26,6 +26,7 @@ from .option_values import (
     setting,
     spell_support,
 )
+from .serve_command import serve
 from .sweep_command import sweep
 
 if TYPE_CHECKING:
@@ -351,4 +352,5 @@ def graph(graph_file: Path) -> None:  # numpydoc ignore=PR01
         click.echo(Graph.load(graph_file).mermaid())
 
 
+main.add_command(serve)
 main.add_command(sweep)
