@@ -159,7 +159,9 @@ def _post(service: Service, environ: Environ) -> Answer:
             key, lambda watcher: _solved(service, listed, request, watcher)
         )
     except (SpheremeshError, GraphError, OSError) as error:
-        raise RefusedError(500, str(error)) from error
+        # There are no options here.
+        text = str(error).replace("another folder, or --overwrite", "another name")
+        raise RefusedError(500, text) from error
     except StillRunningError as error:
         return error_answer(500, f"{pointer}: {error}", is_solve=True, running=True)
     except (BusyError, RunCancelledError) as error:
