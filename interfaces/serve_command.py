@@ -70,11 +70,11 @@ def serve(  # numpydoc ignore=PR01
             from .hops.server import make_server
 
             server = make_server(service, host, port)
-        except OSError as error:
+        except (OSError, ValueError) as error:
             from ..kernel.errors import InputError
 
             raise InputError(
-                f"cannot listen at {host}:{port}: {error.strerror or error}; another server "
+                f"cannot listen at {host}:{port}: {error}; another server "
                 "may be running, choose another --port"
             ) from error
     if host not in ("127.0.0.1", "localhost", "::1"):

@@ -107,14 +107,14 @@ class Component:
         return has_paths or any(bool(node.file_inputs) for node in _inner_nodes(self.node))
 
     @cached_property
-    def writes_files(self) -> bool:
-        """Whether it writes files."""
-        return self.node.is_writer or any(node.is_writer for node in _inner_nodes(self.node))
-
-    @cached_property
     def gives_handles(self) -> bool:
         """Whether an answer holds handles, which are good as long as the store holds them."""
         return any(each.encode is encoder(CODED) for each in self.outputs)
+
+
+def writes_files(node: Node) -> bool:
+    """Whether a node, or one within it, writes files."""
+    return node.is_writer or any(each.is_writer for each in _inner_nodes(node))
 
 
 def _inner_nodes(node: Node) -> Iterator[Node]:
@@ -192,13 +192,14 @@ def _default(port: Port) -> bool | int | float | str | None:
 
 
 def _outputs(node: Node) -> Iterator[Output]:
-    found = [each for port in node.outputs.values() for each in _port_outputs(node, port)]
-    times = Counter(each.name for each in found)
-    for each in found:
-        # Names of ports stand; what is shown besides gives way.
-        is_free = times[each.name] == 1 or not each.kinds
-        name = each.name if is_free else f"{_port_name(node, each.port)}_{each.name}"
-        yield replace(each, name=name)
+    by_port = {name: list(_port_outputs(node, port)) for name, port in node.outputs.items()}
+    times = Counter(each.name for several in by_port.values() for each in several)
+    for several in by_port.values():
+        own = several[0].name
+        for each in several:
+            # Names of ports stand; what is shown besides gives way.
+            is_free = times[each.name] == 1 or not each.kinds
+            yield each if is_free else replace(each, name=f"{own}_{each.name}")
 
 
 def _port_outputs(node: Node, port: Port) -> Iterator[Output]:
@@ -207,7 +208,7 @@ def _port_outputs(node: Node, port: Port) -> Iterator[Output]:
         kind, nesting = element_type(several[0].hint), nesting + 1
     options = [member for member in members(kind) if member.kind is not NoneType]
     form = CODED if len(options) > 1 else forms_of(options[0])[0]
-    name = _port_name(node, port)
+    name = _port_name(node, port, options)
     yield Output(name, form.param_type, port, nesting, form.is_list, (), encoder(form))
     shown: dict[Shape, list[type]] = {}
     for shape, shown_kind in _shapes(options):
@@ -236,26 +237,21 @@ def _shapes(options: list[Member]) -> Iterator[tuple[Shape, type]]:
                 yield shape, kind
 
 
-def _port_name(node: Node, port: Port) -> str:
-    """The name of an output; the only one of a function has that of what it is."""
+def _port_name(node: Node, port: Port, options: list[Member]) -> str:
+    """The name of an output; the only one of a node has that of what it is."""
     if port.name != "result":
         return port.name
-    options = [member for member in members(port.type) if member.kind is not NoneType]
     if len(options) > 1:
         return next(iter(node.inputs), "result")  # the same in another place
-    member = options[0]
-    if member.facts is not None:
-        return member.facts.holds.replace(",", " ").split()[0]
-    if node.is_writer:
+    kind, facts = options[0].kind, options[0].facts
+    if facts is not None:
+        return facts.holds.replace(",", " ").split()[0]
+    if kind is str and writes_files(node):
         return "path"
-    if is_subclass(member.kind, Report, undecided=False):
+    if is_subclass(kind, Report, undecided=False):
         return "report"
-    return (
-        _NAMES.get(member.kind)
-        or re.sub(
-            r"(?<=[a-z])(?=[A-Z])", "_", getattr(member.kind, "__name__", "result")
-        ).lower()
-    )
+    words = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", getattr(kind, "__name__", "result"))
+    return _NAMES.get(kind) or words.lower()
 
 
 _NAMES: Final[dict[Any, str]] = {

@@ -62,7 +62,7 @@ class StillRunningError(Exception):
 
 
 class BusyError(Exception):
-    """So many wait that another one is not let in."""
+    """No run is begun: too many wait, or the server ends."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +94,7 @@ class Jobs:
         self._places = Semaphore(most_waiting)
         self._jobs: OrderedDict[bytes, _Job] = OrderedDict()
         self._lock = Lock()
+        self._is_closed = False
 
     def answer(self, key: bytes, work: Work) -> Answer:
         """The answer of a run that is under way for the key, or is begun.
@@ -122,6 +123,7 @@ class Jobs:
     def close(self) -> None:
         """Call off what runs, and let nothing begin."""
         with self._lock:
+            self._is_closed = True
             for job in self._jobs.values():
                 job.watcher.cancel.set()
         self._pool.shutdown(wait=False, cancel_futures=True)
@@ -130,6 +132,8 @@ class Jobs:
         with self._lock:
             job = self._jobs.get(key)
             if job is None:
+                if self._is_closed:
+                    raise BusyError("the server ends")
                 watcher = Watcher()
                 job = _Job(self._pool.submit(_timed, work, watcher), watcher)
                 self._jobs[key] = job

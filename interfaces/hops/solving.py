@@ -22,7 +22,7 @@ from ...nodes.graphs.errors import GraphError, NodeError, nearest
 from ...nodes.graphs.graph import Graph
 from ...nodes.graphs.ports import REQUIRED
 from ...nodes.graphs.running.files import paths_of
-from .components import ANY_NUMBER, Component, Input, Output
+from .components import ANY_NUMBER, Component, Input, Output, writes_files
 from .guard import check_paths
 from .handles import Handles
 from .jobs import Watcher
@@ -270,7 +270,7 @@ def _of_port(run: _Run, output: Output, result: Value) -> Value:
 @contextmanager
 def _folder(solver: Solver, component: Component) -> Generator[OutputFolder | None]:
     """Where files are written: one request at a time, all of its files or none."""
-    if solver.files is None or not component.writes_files:
+    if solver.files is None or not writes_files(component.node):
         yield None
         return
     with solver.writing, output_folder(solver.files) as folder:

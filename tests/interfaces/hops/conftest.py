@@ -11,6 +11,7 @@ import threading
 import urllib.error
 import urllib.request
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -74,7 +75,7 @@ class Grasshopper:
         assert all(len(set(several)) == len(several) for several in names)
         return found
 
-    def solve(self, name: str, units: str = "Meters", **trees: Value) -> dict[str, Any]:
+    def solve(self, name: str, /, document: str = "Meters", **trees: Value) -> dict[str, Any]:
         """Values by output: a list for one branch, else lists by path."""
         found = self.describe(name)
         values = [
@@ -82,7 +83,7 @@ class Grasshopper:
             for port in found["inputs"]
         ]
         assert not trees, f"{name} has no inputs {list(trees)}"
-        return self.ask(name, values, found["outputnames"], units)
+        return self.ask(name, values, found["outputnames"], document)
 
     def tree(self, port: dict[str, Any], trees: dict[str, Any]) -> dict[str, Any]:
         """The data of an input, taken out of those given."""
@@ -278,11 +279,15 @@ def served(opened: Callable[..., Opened]) -> Iterator[Callable[..., tuple[str, O
         found = opened(**options)
         server = make_server(found.service, "127.0.0.1", 0)
         servers.append(server)
-        threading.Thread(target=server.run, daemon=True).start()
+        threading.Thread(target=run, args=(server,), daemon=True).start()
         address = f"http://127.0.0.1:{server.effective_port}"
         return address, Opened(
             found.service, Grasshopper(over_network(address)), found.files, found.graphs
         )
+
+    def run(server: Value) -> None:
+        with suppress(OSError):  # closed from outside
+            server.run()
 
     yield start
     for server in servers:
