@@ -106,30 +106,43 @@ def _pieces(several: list[Fields]) -> list[_Piece]:
 
 
 def _piece(curve: Any, number: int) -> _Piece:  # noqa: ANN401
+    """A curve, seen from its start and in its own size: Rhino's tolerances are lengths."""
     start, end = _point(curve.PointAtStart), _point(curve.PointAtEnd)
-    domain = curve.Domain
-    middle = _point(curve.PointAt((domain.T0 + domain.T1) / 2))
-    tolerance = CURVE_SHAPE * float(np.linalg.norm(np.subtract(middle, start)))
-    if curve.IsLinear(tolerance):
+    low, high = _corners(curve.GetBoundingBox())
+    size = float(np.linalg.norm(high - low))
+    if not 0 < size < np.inf:
+        raise InputError(f"curve {number} has no length; {_ADVICE}")
+    local = _moved(curve, start, size)
+    if local.IsLinear(CURVE_SHAPE):
         return _Piece(
             is_circle=False, points=[start, ((np.array(start) + end) / 2).tolist(), end]
         )
-    if curve.IsClosed and curve.IsCircle(tolerance):
-        circle = curve.TryGetCircle(tolerance)
-        plane, radius = circle.Plane, float(circle.Radius)
-        return _Piece(
-            is_circle=True,
-            points=[_point(plane.Origin), _point(plane.ZAxis), [radius, radius, radius]],
-        )
-    if curve.IsClosed or not curve.IsArc(tolerance):
+    if local.IsClosed and local.IsCircle(CURVE_SHAPE):
+        circle = local.TryGetCircle(CURVE_SHAPE)
+        plane, radius = circle.Plane, size * float(circle.Radius)
+        center = (np.array(start) + size * np.array(_point(plane.Origin))).tolist()
+        return _Piece(is_circle=True, points=[center, _point(plane.ZAxis), [radius] * 3])
+    if local.IsClosed or not local.IsArc(CURVE_SHAPE):
         raise InputError(f"curve {number} is neither an arc nor straight; {_ADVICE}")
-    return _Piece(is_circle=False, points=[start, _half_way(curve, tolerance), end])
+    # The middle by length: parameters of NURBS curves run unevenly.
+    arc = local.TryGetArc(CURVE_SHAPE)
+    half_way = _point(arc.PointAt((arc.AngleDomain.T0 + arc.AngleDomain.T1) / 2))
+    middle = (np.array(start) + size * np.array(half_way)).tolist()
+    return _Piece(is_circle=False, points=[start, middle, end])
 
 
-def _half_way(curve: Any, tolerance: float) -> list[float]:  # noqa: ANN401
-    """The middle of an arc by length: parameters of NURBS curves run unevenly."""
-    arc = curve.TryGetArc(tolerance)
-    return _point(arc.PointAt((arc.AngleDomain.T0 + arc.AngleDomain.T1) / 2))
+def _moved(curve: Any, start: list[float], size: float) -> Any:  # noqa: ANN401
+    import rhino3dm
+
+    library: Any = rhino3dm
+    local = curve.Duplicate()
+    local.Translate(library.Vector3d(*(-x for x in start)))
+    local.Scale(1 / size)
+    return local
+
+
+def _corners(box: Any) -> tuple[FloatArray, FloatArray]:  # noqa: ANN401
+    return np.array(_point(box.Min)), np.array(_point(box.Max))
 
 
 def _point(point: Any) -> list[float]:  # noqa: ANN401
