@@ -34,7 +34,8 @@ def object_stream(fields: object) -> bytes:
     InputError
         If there is none.
     """
-    held = cast("Mapping[str, object]", fields) if isinstance(fields, Mapping) else {}
+    none: Mapping[str, object] = {}
+    held = cast("Mapping[str, object]", fields) if isinstance(fields, Mapping) else none
     data = held.get("data")
     if not isinstance(data, str):
         raise InputError('it is no object of Rhino: its entry "data" is missing')

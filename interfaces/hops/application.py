@@ -18,7 +18,7 @@ from .description import describe_error, to_json
 from .guard import Limits, RefusedError, check_request, too_large
 from .jobs import Answer, BusyError, Jobs, StillRunningError, Watcher
 from .page import POLICY, components_page
-from .solving import Solver, solve
+from .solving import ChangedError, Solver, solve
 from .trees import read_trees
 
 StartResponse: TypeAlias = Callable[[str, list[tuple[str, str]]], object]
@@ -83,7 +83,14 @@ def _answer(service: Service, environ: Environ) -> Answer:
         return error_answer(500, text, is_solve=method == "POST")
 
 
-def error_answer(status: int, message: str, *, is_solve: bool, running: bool = False) -> Answer:
+def error_answer(
+    status: int,
+    message: str,
+    *,
+    is_solve: bool,
+    running: bool = False,
+    is_changed: bool = False,
+) -> Answer:
     """An error as JSON of the form that is asked for.
 
     Parameters
@@ -95,8 +102,11 @@ def error_answer(status: int, message: str, *, is_solve: bool, running: bool = F
         Whether it is the answer of a run.
     running : bool
         Whether who asks again joins the run.
+    is_changed : bool
+        Whether the component is not what the client took it for: two words make it look again.
     """
-    content: dict[str, Any] = {"values": [], "warnings": [], "errors": [message]}
+    errors = ["Bad inputs", message] if is_changed else [message]
+    content: dict[str, Any] = {"values": [], "warnings": [], "errors": errors}
     if not is_solve:
         content = describe_error(message)
     marks = {"running": True} if running else {}
@@ -158,6 +168,8 @@ def _post(service: Service, environ: Environ) -> Answer:
         return service.jobs.answer(
             key, lambda watcher: _solved(service, listed, request, watcher)
         )
+    except ChangedError as error:
+        return error_answer(500, str(error), is_solve=True, is_changed=True)
     except (SpheremeshError, GraphError, OSError) as error:
         # There are no options here.
         text = str(error).replace("another folder, or --overwrite", "another name")

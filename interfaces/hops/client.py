@@ -159,10 +159,10 @@ def _item(value: Any, kind: str) -> dict[str, str]:  # noqa: ANN401
     elif kind in _POINTS:
         name, data = _POINTS[kind], json.dumps(_axes(value))
     elif kind == "Plane":
-        names = ("Origin", "XAxis", "YAxis", "ZAxis")
-        plane = (
-            value if isinstance(value, dict) else {n: _axes(getattr(value, n)) for n in names}
-        )
+        plane: Any = value
+        if not isinstance(value, dict):
+            names = ("Origin", "XAxis", "YAxis", "ZAxis")
+            plane = {axis: _axes(getattr(value, axis)) for axis in names}
         data = json.dumps(plane)
     elif kind == "Text":
         text = value if isinstance(value, str) else json.dumps(_plain(value), allow_nan=False)

@@ -166,16 +166,21 @@ def _of_array(member: Member) -> tuple[Form, ...]:
     if facts is None:
         return (CODED,)
     shape, holds = facts.shape, facts.holds.replace(",", " ").split()[0]
-    if len(shape) == 1 and isinstance(shape[0], str):
+    first, last = shape[0], shape[-1]
+    if len(shape) == 1 and isinstance(first, str):
         kind = scalar_type(member)
         form = Form("Text") if kind is np.str_ else _of_class(_PYTHON.get(kind, float))
         return (Form(form.param_type, is_list=True),)
-    if shape[-1] == 3 and len(shape) <= 2:
-        is_vector = holds in _VECTORS or isinstance(shape[0], int)
+    if last == 3 and len(shape) <= 2:
+        is_vector = holds in _VECTORS or isinstance(first, int)
         return (Form("Vector" if is_vector else "Point", is_list=len(shape) == 2),)
-    planes = {("sphere", (5,)): Form("Plane"), ("spheres", ("N", 5)): Form("Plane", True)}  # noqa: FBT003
-    plane = planes.get((holds, shape))
+    plane = _PLANES.get((holds, first)) if last == 5 and len(shape) <= 2 else None
     return (CODED,) if plane is None else (CODED, plane)
 
 
+_PLANES: Final[dict[tuple[str, str | int], Form]] = {
+    ("sphere", 5): Form("Plane"),
+    ("spheres", "N"): Form("Plane", is_list=True),
+}
+"""Arrays of spheres that may come as planes: by what they hold, and how many there are."""
 _PYTHON: Final[dict[Hint, type]] = {np.bool_: bool, np.int64: int, np.float64: float}

@@ -52,17 +52,23 @@ class _ErrorTask(ErrorTask):
 
     def execute(self) -> None:
         """Write the answer."""
-        error: Any = self.request.error
+        request, channel, headers = _untyped(self.request, self.channel, self.response_headers)
+        error = request.error
         message = str(error.body)
         if isinstance(error, RequestEntityTooLarge):
-            message = too_large(self.channel.server.adj.max_request_body_size)
-        is_solve = getattr(self.request, "command", "") == "POST"
+            message = too_large(channel.server.adj.max_request_body_size)
+        is_solve = getattr(request, "command", "") == "POST"
         answer = error_answer(error.code, message, is_solve=is_solve)
         self.status = f"{error.code} {error.reason}"
-        self.response_headers.append(("Content-Type", answer.content_type))
+        headers.append(("Content-Type", answer.content_type))
         self.set_close_on_finish()
         self.content_length = len(answer.body)
         self.write(answer.body)
+
+
+def _untyped(*several: Any) -> tuple[Any, ...]:  # noqa: ANN401
+    """The stubs of waitress have other names for what tasks hold."""
+    return several
 
 
 class _Channel(HTTPChannel):

@@ -40,6 +40,10 @@ UNITS: Final = {
 """Units of Rhino documents."""
 
 
+class ChangedError(InputError):
+    """A request for inputs that the component does not have, or not any more."""
+
+
 @dataclass(frozen=True)
 class Solver:
     """What runs are done with.
@@ -123,9 +127,11 @@ class _Run:
 def _given(component: Component, trees: Mapping[str, Tree]) -> dict[Input, Tree]:
     """The trees of the inputs that were given something."""
     inputs = {each.name: each for each in component.inputs}
-    for name in trees:
-        if name not in inputs:
-            raise InputError(f"{component.name} has no input {name!r}; {nearest(name, inputs)}")
+    for name, tree in trees.items():
+        if tree and name not in inputs:
+            raise ChangedError(
+                f"{component.name} has no input {name!r}; {nearest(name, inputs)}"
+            )
     given = {each: trees[name] for name, each in inputs.items() if trees.get(name)}
     for port in component.node.inputs.values():
         names = [each.name for each in component.inputs if each.port is port]
@@ -247,8 +253,11 @@ def _reason(error: NodeError) -> str:
 
 
 def _units(component: Component, units: str) -> str:
+    if not units:
+        return "m"  # no document at all
     if units not in UNITS:
-        shown = f"in {units[:40]}" if units else "without units"
+        is_none = units in ("None", "Unset")
+        shown = "without units" if is_none else f"in {units[:40]}"
         raise InputError(
             f"{component.name}.units: the document is {shown}; give mm, cm, m, in or ft"
         )

@@ -37,9 +37,10 @@ def read_trees(values: object) -> dict[str, Tree]:
     if not isinstance(values, list):
         raise InputError('the request needs a list "values"')
     found: dict[str, Tree] = {}
+    none: Mapping[str, object] = {}
     for number, each in enumerate(cast("list[object]", values)):
         where = f"values[{number}]"
-        tree = cast("Mapping[str, object]", each) if isinstance(each, Mapping) else {}
+        tree = cast("Mapping[str, object]", each) if isinstance(each, Mapping) else none
         name, branches = tree.get("ParamName"), tree.get("InnerTree")
         if not isinstance(name, str) or not isinstance(branches, Mapping):
             raise InputError(f'{where}: needs a text "ParamName" and an object "InnerTree"')

@@ -10,7 +10,7 @@ import json
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, is_dataclass
+from dataclasses import dataclass, field
 from decimal import Decimal
 from typing import Any, Final, Literal, TypeAlias, cast
 
@@ -19,6 +19,7 @@ import numpy as np
 from ...fabrication.rhino_objects.curves import arc_fields, circle_fields
 from ...fabrication.rhino_objects.meshes import mesh_fields
 from ...fabrication.rhino_objects.solids import axis_lines, beam_solids, panel_breps
+from ...kernel.arrays import BoolArray
 from ...kernel.beams.beams import Beams
 from ...kernel.errors import InputError, SpheremeshError
 from ...kernel.meshes.mesh import Mesh
@@ -171,7 +172,7 @@ def _booleans(value: Value, _: Exchange, __: str) -> list[Item]:
 def _triples(kind: Literal["Point3d", "Vector3d"]) -> Encode:
     def _encode(value: Value, exchange: Exchange, where: str) -> list[Item]:
         rows = np.asarray(value, float).reshape(-1, 3)
-        is_whole = np.isfinite(rows).all(axis=1)
+        is_whole: BoolArray = np.logical_and.reduce(np.isfinite(rows), axis=1)
         if not is_whole.all():
             exchange.warn(
                 f"{where}: {int((~is_whole).sum())} of {len(rows)} are not defined; they are "
@@ -226,9 +227,10 @@ def kind_name(value: Value, where: str = "") -> str:
     where : str
         The output that gives it, for arrays.
     """
-    if isinstance(value, np.ndarray | list | tuple) and not hasattr(value, "_fields"):
+    kind: type[Any] = getattr(value, "__class__", object)
+    if issubclass(kind, np.ndarray | list | tuple) and not hasattr(kind, "_fields"):
         return re.sub(r"[^a-z0-9_]", "_", where.rpartition(".")[2].lower()) or "list"
-    name = type(value).__name__
+    name = kind.__name__
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower().strip("_")
 
 
@@ -237,8 +239,8 @@ def plain(value: Value) -> Value:
     if isinstance(value, Mapping):
         items = cast("Mapping[Any, Any]", value)
         return {str(name): plain(item) for name, item in items.items()}
-    if is_dataclass(value) and not isinstance(value, type):
-        return {name: plain(getattr(value, name)) for name in value.__dataclass_fields__}
+    if names := _field_names(value):
+        return {name: plain(getattr(value, name)) for name in names}
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, list | tuple):
@@ -252,16 +254,23 @@ def _records(value: Value, exchange: Exchange, where: str) -> list[Item]:
     """Items of a list one by one: small records as JSON, others as handles."""
     items: list[Item] = []
     for each in value:
-        if is_dataclass(each) and not isinstance(each, Report) and not _has_arrays(each):
+        if _is_small_record(each):
             items += text_items([json.dumps(plain(each), ensure_ascii=False, allow_nan=False)])
         else:
             items += _coded(each, exchange, where)
     return items
 
 
-def _has_arrays(record: Value) -> bool:
-    held = (getattr(record, name) for name in record.__dataclass_fields__)
-    return any(isinstance(each, np.ndarray) or is_dataclass(each) for each in held)
+def _is_small_record(value: Value) -> bool:
+    """Whether all that a record holds is numbers, texts and lists of them."""
+    held = [getattr(value, name) for name in _field_names(value)]
+    is_deep = any(isinstance(each, np.ndarray) or _field_names(each) for each in held)
+    return bool(held) and not is_deep and not isinstance(value, Report)
+
+
+def _field_names(value: Value) -> list[str]:
+    """The fields of a record; none for all else."""
+    return [] if isinstance(value, type) else list(getattr(value, "__dataclass_fields__", ()))
 
 
 def _sphere_breps(value: Value, exchange: Exchange, where: str) -> list[Item]:

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from spheremesh import Mesh
 from spheremesh.fabrication.opennurbs.stream_reader import BufferPlace, buffer_content
+from spheremesh.fabrication.rhino import isolation
 from spheremesh.fabrication.rhino_objects.curves import (
     arc_fields,
     circle_fields,
@@ -39,6 +40,11 @@ from spheremesh.nodes import (
 from spheremesh.nodes import beams as make_beams
 
 SIZES = st.floats(1e-6, 1e6)
+
+
+@pytest.fixture
+def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(isolation, "_can_start", lambda: False)
 
 
 def decoded(fields: dict[str, Any]) -> Any:  # noqa: ANN401
@@ -129,6 +135,7 @@ def test_arcs_come_back_from_curves_of_any_class(size: float) -> None:
     assert np.abs(back.sagittas - sagittas).max() < 1e-9 * edge
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_circles_come_back_and_imaginary_ones_do_not() -> None:
     circles = Circles(
         np.array([[1.0, 2, 3], [0, 0, 0]]), np.array([[0.0, 0, 1], [1, 0, 0]]),
@@ -139,6 +146,7 @@ def test_circles_come_back_and_imaginary_ones_do_not() -> None:
     assert np.allclose(back.radii_squared, [4.0])
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_other_curves_are_refused() -> None:
     points = [rhino3dm.Point3d(x, x**3, 0) for x in range(5)]
     curve = rhino3dm.Curve.CreateControlPointCurve(points, 3)
@@ -155,6 +163,7 @@ def test_other_curves_are_refused() -> None:
         curves_of_fields([dict(rhino3dm.Point(points[0]).Encode())])
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_surfaces_are_read_with_their_normals() -> None:
     ball = rhino3dm.Sphere(rhino3dm.Point3d(1, 0, 0), 2.0).ToBrep()
     surface = surface_of_fields([dict(ball.Encode())], GridSize(6, 6))

@@ -11,14 +11,15 @@ import threading
 import urllib.error
 import urllib.request
 from collections.abc import Callable, Iterator
-from contextlib import suppress
-from dataclasses import dataclass, field
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
 import pytest
 
+from spheremesh.fabrication.rhino import isolation
 from spheremesh.interfaces.hops.application import Service, application
 from spheremesh.interfaces.hops.server import make_server, make_service
 from spheremesh.nodes import MemoryStore
@@ -35,6 +36,10 @@ COORDINATES = {"Point3d": "XYZ", "Vector3d": "XYZ", "Line": ("From", "To")}
 
 class HopsCrash(Exception):  # noqa: N818 - what the client would do
     """The client would fail without a word."""
+
+
+class Rebuilt(Exception):  # noqa: N818 - what the client does
+    """The component is described and made anew."""
 
 
 class HopsError(Exception):
@@ -127,7 +132,8 @@ class Grasshopper:
         self.warnings = answer["warnings"]
         if answer["errors"]:
             assert self.status not in (200, 203, 401, 408), "kept, or replaced by another text"
-            assert answer["errors"][0].lower() != "bad inputs", "the component is made anew"
+            if answer["errors"][0].lower() == "bad inputs":
+                raise Rebuilt(answer["message"])
             raise HopsError(answer["errors"][0])
         assert [tree["ParamName"] for tree in answer["values"]] == outputs, "made anew"
         if self.status == 200:
@@ -246,19 +252,19 @@ class Opened:
     graphs: Path
 
 
-@pytest.fixture
-def opened(tmp_path: Path) -> Iterator[Callable[..., Opened]]:
-    """Make a service and a client that asks it without a network."""
+@contextmanager
+def opener(folder: Path) -> Iterator[Callable[..., Opened]]:
+    """Make services and clients that ask them without a network."""
     services: list[Service] = []
-    (tmp_path / "files").mkdir()
-    (tmp_path / "graphs").mkdir()
+    for name in ("files", "graphs"):
+        (folder / name).mkdir(exist_ok=True)
 
     def make(store: Value = None, **options: Value) -> Opened:
-        options = {"files": tmp_path / "files", "graphs": tmp_path / "graphs", **options}
+        options = {"files": folder / "files", "graphs": folder / "graphs", **options}
         service = make_service(MemoryStore() if store is None else store, **options)
         services.append(service)
         client = Grasshopper(in_process(service))
-        return Opened(service, client, tmp_path / "files", tmp_path / "graphs")
+        return Opened(service, client, options["files"], folder / "graphs")
 
     yield make
     for service in services:
@@ -266,32 +272,54 @@ def opened(tmp_path: Path) -> Iterator[Callable[..., Opened]]:
 
 
 @pytest.fixture
-def gh(opened: Callable[..., Opened]) -> Grasshopper:
-    return opened().gh
+def opened(tmp_path: Path) -> Iterator[Callable[..., Opened]]:
+    with opener(tmp_path) as make:
+        yield make
+
+
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Opened]:
+    """One service for all tests of a module that leave it as it is."""
+    with opener(tmp_path_factory.mktemp("shared")) as make:
+        yield make()
+
+
+@pytest.fixture
+def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What Rhino's library reads is read here: starting processes is tested elsewhere."""
+    monkeypatch.setattr(isolation, "_can_start", lambda: False)
+
+
+@pytest.fixture
+def gh(shared: Opened) -> Grasshopper:
+    return Grasshopper(shared.gh.send)
+
+
+@contextmanager
+def network(found: Opened) -> Iterator[tuple[str, Opened]]:
+    """A server: its address, and what is behind."""
+    server = make_server(found.service, "127.0.0.1", 0)
+
+    def run() -> None:
+        with suppress(OSError):  # closed from outside
+            server.run()
+
+    threading.Thread(target=run, daemon=True).start()
+    address = f"http://127.0.0.1:{server.effective_port}"
+    yield address, replace(found, gh=Grasshopper(over_network(address)))
+    server.close()
 
 
 @pytest.fixture
 def served(opened: Callable[..., Opened]) -> Iterator[Callable[..., tuple[str, Opened]]]:
-    """Start a server: its address, and the service behind."""
-    servers: list[Any] = []
+    with ExitStack() as stack:
+        yield lambda **options: stack.enter_context(network(opened(**options)))
 
-    def start(**options: Value) -> tuple[str, Opened]:
-        found = opened(**options)
-        server = make_server(found.service, "127.0.0.1", 0)
-        servers.append(server)
-        threading.Thread(target=run, args=(server,), daemon=True).start()
-        address = f"http://127.0.0.1:{server.effective_port}"
-        return address, Opened(
-            found.service, Grasshopper(over_network(address)), found.files, found.graphs
-        )
 
-    def run(server: Value) -> None:
-        with suppress(OSError):  # closed from outside
-            server.run()
-
-    yield start
-    for server in servers:
-        server.close()
+@pytest.fixture(scope="module")
+def shared_address(shared: Opened) -> Iterator[str]:
+    with network(shared) as (address, _):
+        yield address
 
 
 def over_network(address: str) -> Send:

@@ -33,24 +33,6 @@ def test_a_component_is_described_within_20_milliseconds(served: Callable[..., A
     assert sorted(seconds)[len(seconds) // 2] < 0.02
 
 
-def test_describing_imports_no_heavy_library() -> None:
-    code = (
-        "import sys; from spheremesh.interfaces.hops.server import make_service\n"
-        "from spheremesh.nodes import MemoryStore\n"
-        "from spheremesh.interfaces.hops.application import application\n"
-        "app = application(make_service(MemoryStore()))\n"
-        "for path in ('/', '/fit_spheres', '/none'):\n"
-        "    app({'REQUEST_METHOD': 'GET', 'PATH_INFO': path, 'HTTP_HOST': 'localhost'},\n"
-        "        lambda *_: None)\n"
-        "heavy = ('OCP', 'cadquery', 'rhino3dm', 'ezdxf', 'igl', 'meshio', 'rich')\n"
-        "print([name for name in heavy if name in sys.modules])"
-    )
-    found = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    )
-    assert found.stdout.strip() == "[]"
-
-
 def test_every_input_says_how_it_may_be_given(gh: Value) -> None:
     found = {each["Name"]: each for each in gh.describe("panels")["inputs"]}
     assert "'bisector' or 'intersection' or 'axis'" in found["edges"]["Description"]
@@ -152,11 +134,23 @@ def test_what_the_command_refuses(options: tuple[str, ...], code: int, text: str
     assert text in result.stderr
 
 
-def test_the_command_serves_until_it_is_ended() -> None:
-    command = [sys.executable, "-m", "spheremesh", "serve", "--port", "0", "--no-cache"]
+def test_the_command_serves_until_it_is_ended_and_describes_without_heavy_libraries() -> None:
+    code = (
+        "import signal, sys\n"
+        "from spheremesh.interfaces.cli import main\n"
+        "heavy = ('OCP', 'cadquery', 'rhino3dm', 'ezdxf', 'igl', 'meshio', 'rich')\n"
+        "def end(*_):\n"
+        "    print([name for name in heavy if name in sys.modules], flush=True)\n"
+        "    sys.exit()\n"
+        "signal.signal(signal.SIGTERM, end)\n"
+        "main(['serve', '--port', '0', '--no-cache'])"
+    )
+    command = [sys.executable, "-c", code]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         try:
-            address = process.stdout.readline().split()[0]
-            assert client.Server(address).call("vase_mesh", n_around=6)["mesh"]["data"]
+            server = client.Server(process.stdout.readline().split()[0])
+            assert len(server.names()) > 90
+            assert server.describe("fit_spheres")["Inputs"]
         finally:
             process.terminate()
+        assert process.stdout.read().strip() == "[]"

@@ -21,7 +21,14 @@ from spheremesh import Mesh
 from spheremesh.fabrication.rhino_objects.meshes import mesh_fields, mesh_of_fields
 from spheremesh.interfaces.hops.components import Component, Input
 from spheremesh.interfaces.hops.parameters import is_file
-from spheremesh.nodes import ellipsoid_mesh, model_change, roof_mesh, vase_mesh
+from spheremesh.nodes import (
+    ellipsoid_mesh,
+    face_planes,
+    model_change,
+    panels,
+    roof_mesh,
+    vase_mesh,
+)
 from spheremesh.nodes.graphs.annotations import members
 from spheremesh.nodes.graphs.kinds import accepts
 from spheremesh.nodes.graphs.node import REGISTRY, load_library
@@ -53,7 +60,8 @@ OWN_INPUTS: dict[str, Callable[[], dict[str, Value]]] = {
     # Examples that begin with what is no mesh yet, or that take long.
     "repair_mesh": lambda: {"mesh": vase_mesh(8, 4)},
     "mesh_report": lambda: {"mesh": vase_mesh(8, 4)},
-    "exact_support": lambda: {"mesh": roof_mesh(3, 3)},
+    "exact_support": lambda: {"mesh": roof_mesh(2, 2)},
+    "cadquery_solids": lambda: {"panels": panels(face_planes(vase_mesh(3, 1))).panels},
     "common_axes": lambda: {"sphere_mesh": model_change(ellipsoid_mesh(8, 4), radius=4.0)},
 }
 
@@ -64,8 +72,8 @@ NODES = sorted(
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("examples")
+def folder(shared: Value) -> Path:
+    return shared.files
 
 
 @pytest.fixture(scope="module")
@@ -115,12 +123,12 @@ def example(folder: Path) -> Iterator[Callable[[str], Call]]:
     known.clear()
 
 
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize("name", NODES)
 def test_a_component_gives_what_its_node_gives(
-    name: str, example: Callable[[str], Call], folder: Path, opened: Callable[..., Any]
+    name: str, example: Callable[[str], Call], folder: Path, shared: Value
 ) -> None:
-    call = example(name)
-    one = opened(files=folder)
+    call, one = example(name), shared
     component = one.service.catalogue.find(name).component
     handles = one.service.solver.handles
     trees = {}

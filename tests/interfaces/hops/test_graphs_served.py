@@ -62,6 +62,14 @@ def test_a_changed_file_is_another_component(opened: Callable[..., Any]) -> None
     g.rename(g.params["n"], "count")
     g.save(path)
     os.utime(path, ns=(1, 1))
+    # What Grasshopper still has of the old one makes it look again.
+    item = {"type": "System.Int32", "data": "5"}
+    values = [{"ParamName": "n", "InnerTree": {"{0}": [item]}}]
+    with pytest.raises(Exception, match="size has no input 'n'; there are count") as caught:
+        one.gh.ask("size", values, ["mesh"])
+    assert type(caught.value).__name__ == "Rebuilt"
+    values = [{"ParamName": "n", "InnerTree": {}}]
+    assert one.gh.ask("size", values, ["mesh"])["mesh"]
     assert [each["Name"] for each in one.gh.describe("size")["inputs"]] == ["count"]
     path.unlink()
     with pytest.raises(Exception, match="no component 'size'"):

@@ -63,11 +63,10 @@ def asked(
     ],
 )
 def test_a_request_is_refused_in_json(
-    served: Callable[..., Any], status: int, method: str, path: str, body: bytes | None,
+    shared_address: str, status: int, method: str, path: str, body: bytes | None,
     headers: dict[str, str], message: str,
 ) -> None:  # fmt: skip
-    address, _ = served()
-    got, content = asked(address, method, path, body, **headers)
+    got, content = asked(shared_address, method, path, body, **headers)
     assert got == status
     assert message in content["message"]
     errors = content.get("errors") or content["Errors"]
@@ -78,10 +77,9 @@ def test_a_request_is_refused_in_json(
 
 @pytest.mark.parametrize("is_chunked", [False, True])
 def test_a_body_of_200_megabytes_is_refused_in_json(
-    served: Callable[..., Any], *, is_chunked: bool
+    shared_address: str, *, is_chunked: bool
 ) -> None:
-    address, _ = served()
-    host, _, port = address.removeprefix("http://").partition(":")
+    host, _, port = shared_address.removeprefix("http://").partition(":")
     block = b" " * 2**20
     with socket.create_connection((host, int(port)), timeout=60) as line:
         length = (
@@ -103,7 +101,7 @@ def test_a_body_of_200_megabytes_is_refused_in_json(
     assert json.loads(body)["errors"] == [
         "the request is larger than 64 MB; send less, or start the server with --max-mb"
     ]
-    status, _ = asked(address, "GET", "/vase_mesh")
+    status, _ = asked(shared_address, "GET", "/vase_mesh")
     assert status == 200
 
 

@@ -159,6 +159,7 @@ def test_a_plane_is_a_sphere_without_curvature(opened: Callable[..., Any]) -> No
         one.gh.solve("reflection")
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_arcs_go_and_come_as_curves(opened: Callable[..., Any]) -> None:
     one = opened()
     sphere_mesh = fit_spheres(vase_mesh(8, 4))
@@ -174,6 +175,7 @@ def test_arcs_go_and_come_as_curves(opened: Callable[..., Any]) -> None:
     assert np.allclose(back.sagittas, np.abs(arcs.sagittas), atol=1e-12)
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_a_brep_comes_as_a_surface(gh: Value) -> None:
     ball = rhino3dm.Sphere(rhino3dm.Point3d(0, 0, 0), 2.0).ToBrep()
     found = gh.solve("surface_fields", surface_brep=ball.Encode())
@@ -201,6 +203,9 @@ def test_units_are_those_of_the_document(opened: Callable[..., Any]) -> None:
         assert json.loads(text)["radii"] == list(wanted["radii"])
     with pytest.raises(Exception, match=r"cluster_radii.units: the document is in Miles"):
         one.gh.solve("cluster_radii", "Miles", sphere_mesh=handle, k=2)
+    with pytest.raises(Exception, match=r"cluster_radii.units: the document is without units"):
+        one.gh.solve("cluster_radii", "None", sphere_mesh=handle, k=2)
+    assert one.gh.solve("cluster_radii", "", sphere_mesh=handle, k=2)
     assert one.gh.solve("cluster_radii", "Miles", sphere_mesh=handle, k=2, units="ft")
 
 
