@@ -1,6 +1,8 @@
 """The command ``serve``: nodes and graphs as components of Grasshopper."""
 
+import os
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -70,7 +72,7 @@ def serve(  # numpydoc ignore=PR01
             from .hops.server import make_server
 
             server = make_server(service, host, port)
-        except (OSError, ValueError) as error:
+        except OSError as error:
             from ..kernel.errors import InputError
 
             raise InputError(
@@ -82,12 +84,24 @@ def serve(  # numpydoc ignore=PR01
     click.echo(f"http://{_shown(host)}:{server.effective_port}  (Ctrl+C ends it)")
     sys.stdout.flush()
     try:
-        server.run()
-    except KeyboardInterrupt:
-        pass
+        _run(server)
     finally:
         service.jobs.close()
         server.close()
+        if service.jobs.are_running:
+            # Nobody waits for what runs; results and files are safe from sudden ends.
+            os._exit(0)
+
+
+def _run(server: Any) -> None:  # noqa: ANN401
+    import warnings
+
+    from ..nodes.graphs.node import NodeWarning
+
+    # What nodes warn of is said on their components.
+    warnings.simplefilter("ignore", NodeWarning)
+    with suppress(KeyboardInterrupt):
+        server.run()
 
 
 def _shown(host: str) -> str:
@@ -97,11 +111,9 @@ def _shown(host: str) -> str:
 
 
 def _service(host: str, store: "Store", options: dict[str, Any]) -> "Service":
-    import warnings
     from importlib import import_module
 
     from ..kernel.errors import InputError
-    from ..nodes.graphs.node import NodeWarning
     from .hops.server import make_service
 
     for module in options["modules"]:
@@ -109,8 +121,6 @@ def _service(host: str, store: "Store", options: dict[str, Any]) -> "Service":
             import_module(module)
         except ImportError as error:
             raise InputError(f"--import {module}: {error}") from error
-    # What nodes warn of is said on their components.
-    warnings.simplefilter("ignore", NodeWarning)
     hosts = options["allowed"] if host in ANYWHERE else (*options["allowed"], host)
     return make_service(
         store,

@@ -19,7 +19,7 @@ from ...nodes.graphs.stores.disk import DiskStore
 from ...nodes.graphs.stores.entries import Entry, Store
 from ...nodes.graphs.stores.results import own
 
-_HANDLE: Final = re.compile(r"spheremesh:([a-z0-9_]+):([0-9a-f]{32}|here-\d+)")
+_HANDLE: Final = re.compile(r"spheremesh:(\w+):(\S+)")
 _MOST_HERE: Final = 256
 _GONE: Final = (
     "this handle is no longer known here (the server was restarted, or holds too much): "
@@ -90,8 +90,9 @@ class Handles:
         if not found:
             raise InputError(f"{where}: {text[:60]!r} is no handle of spheremesh")
         name = found[2]
-        if name in self._here:
-            return self._here[name]
+        with self._lock:
+            if name in self._here:
+                return self._here[name]
         entry = self.store.get(key_of([b"handle", name.encode()]))
         if entry is None:
             raise InputError(f"{where}: {_GONE}")

@@ -128,6 +128,12 @@ class Jobs:
                 job.watcher.cancel.set()
         self._pool.shutdown(wait=False, cancel_futures=True)
 
+    @property
+    def are_running(self) -> bool:
+        """Whether some run is not over."""
+        with self._lock:
+            return any(job.future.running() for job in self._jobs.values())
+
     def _job(self, key: bytes, work: Work) -> _Job:
         with self._lock:
             job = self._jobs.get(key)

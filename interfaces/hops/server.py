@@ -4,6 +4,7 @@ What waitress refuses by itself it would say as text, which Grasshopper takes fo
 of its own; and it would close the line while the client still sends, who then never reads why.
 """
 
+import socket
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Final
@@ -132,9 +133,11 @@ def make_server(service: Service, host: str, port: int) -> Any:  # noqa: ANN401
     waitress.server.BaseWSGIServer
         ``effective_port`` is the port.
     """
+    # A name can stand for several addresses; a server listens at the first.
+    address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][4][0]
     server: Any = create_server(
         application(service),
-        host=host,
+        host=str(address),
         port=port,
         threads=THREADS,
         ident="spheremesh",

@@ -41,7 +41,7 @@ UNITS: Final = {
 
 
 class ChangedError(InputError):
-    """A request for inputs that the component does not have, or not any more."""
+    """A request for inputs that a graph does not have, or not any more."""
 
 
 @dataclass(frozen=True)
@@ -129,9 +129,8 @@ def _given(component: Component, trees: Mapping[str, Tree]) -> dict[Input, Tree]
     inputs = {each.name: each for each in component.inputs}
     for name, tree in trees.items():
         if tree and name not in inputs:
-            raise ChangedError(
-                f"{component.name} has no input {name!r}; {nearest(name, inputs)}"
-            )
+            text = f"{component.name} has no input {name!r}; {nearest(name, inputs)}"
+            raise ChangedError(text) if component.node.inner else InputError(text)
     given = {each: trees[name] for name, each in inputs.items() if trees.get(name)}
     for port in component.node.inputs.values():
         names = [each.name for each in component.inputs if each.port is port]

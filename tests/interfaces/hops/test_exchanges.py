@@ -130,3 +130,8 @@ def test_files_are_written_again_and_texts_are_read_as_they_are(
         assert one.gh.status == 203
         assert path.is_file()
         path.unlink()
+
+
+def test_any_text_of_a_handle_that_is_gone_is_told_so(gh: Value) -> None:
+    with pytest.raises(Exception, match=r"cluster_radii.sphere_mesh: this handle is no longer"):
+        gh.solve("cluster_radii", sphere_mesh="spheremesh:sphere_mesh:gone", k=12)
