@@ -238,6 +238,8 @@ STEP_RIDGE: Final = 1e-12
 
 COINCIDENT: Final = 1e-6
 """Vertices of separate meshes closer than this, in mean edges, are one (1 µm per m)."""
+CURVE_SHAPE: Final = 1e-9
+"""A curve that lies this close to an arc or a line, in chords, is one."""
 EXACT_BREP: Final = 1e-12
 """How far the parts of a Brep may lie apart, relative to the radius of its sphere."""
 ROUNDED_FILE: Final = 0.01
