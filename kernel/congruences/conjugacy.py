@@ -24,7 +24,7 @@ def conjugacy_residuals(
     """
     given = [mixed, along_u, along_v] if lift is None else [mixed, lift, along_u, along_v]
     table = np.stack(np.broadcast_arrays(*given))
-    is_finite = np.isfinite(table).all(axis=(0, -1))
+    is_finite = np.asarray(np.isfinite(table).all(axis=(0, -1)))
     mixed, *vectors = np.where(is_finite[..., None], table, 0.0)
     lengths = [norm(vector)[..., None] for vector in vectors]
     scaled = [

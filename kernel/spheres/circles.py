@@ -137,7 +137,7 @@ def sphere_through_points(points: FloatArray) -> FloatArray:
     Unit rows (..., 5); the orientation is arbitrary. NaN where the points coincide, or are not
     finite.
     """
-    is_finite = np.isfinite(points).all(axis=(-2, -1))
+    is_finite = np.asarray(np.isfinite(points).all(axis=(-2, -1)))
     points = np.where(is_finite[..., None, None], points, 0.0)
     center = points.mean(axis=-2, keepdims=True)
     size = norm(points - center).max(axis=-1)[..., None, None]

@@ -115,7 +115,8 @@ def check_range(value: object, port: Port, where: str) -> None:
         return
     if isinstance(value, int) and not -(2**63) <= value < 2**63:
         raise GraphError(f"{where}: a whole number has 64 bits at most")
-    if value and np.isfinite(value) and not 1 / LARGEST <= abs(value) <= LARGEST:
+    size = abs(float(cast("float", value)))
+    if 0 < size < np.inf and not 1 / LARGEST <= size <= LARGEST:
         raise GraphError(
             f"{where} = {value}: must be 0 or between {1 / LARGEST:g} and {LARGEST:g} in size"
         )
