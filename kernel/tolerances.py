@@ -275,3 +275,5 @@ ROUGHER: Final = 1e-3
 """Spheres whose mean angle is larger than that of planes by more, relatively, are rougher."""
 WIDER_GAP: Final = 1e-3
 """Gaps that are wider by more than this share of the mean edge are worth a warning."""
+DOWNWARD: Final = 0.25
+"""Share of the area of a mesh, seen from below, that makes it a roof turned over."""
