@@ -33,11 +33,15 @@ def chapters(source: Path) -> dict[str, list[str]]:
     guides += sorted(pages - {*GUIDES, *TABLES})
     tutorials = sorted(path.stem for path in (source / "docs" / "tutorials").glob("*.md"))
     nodes = sorted(path.stem for path in (source / "docs" / "nodes").glob("*.md"))
-    nodes.remove("index")
+    nodes = [name for name in nodes if name not in ("index", "types")]
     return {
         "Tutorials": [f"docs/tutorials/{name}" for name in tutorials],
         "Guides": [f"docs/{name}" for name in guides],
-        "Nodes": ["docs/nodes/index", *(f"docs/nodes/{name}" for name in nodes)],
+        "Nodes": [
+            "docs/nodes/index",
+            "docs/nodes/types",
+            *(f"docs/nodes/{name}" for name in nodes),
+        ],
         "Mathematics": [f"docs/{name}" for name in TABLES],
         "The project": list(PROJECT),
     }
