@@ -22,7 +22,7 @@ PARALLEL = OPENBLAS_NUM_THREADS=1 $(PYTEST) -n 2 --dist loadfile
 # bits. Haswell is what AMD processors get, Prescott the oldest. Ignored where there is no x86.
 CORETYPES := Haswell Prescott
 
-.PHONY: demo test test-kernels lint bench docs install system clean
+.PHONY: demo test test-long test-kernels lint bench docs install system clean
 
 demo: system
 	$(BIN)/spheremesh panel -o out/demo --moulds 8 --thickness 0.02
@@ -30,6 +30,9 @@ demo: system
 test: lint
 	$(PARALLEL) tests
 	$(PYTEST) -p no:cacheprovider --doctest-modules --pyargs $(addprefix spheremesh.,$(PACKAGES))
+
+test-long: system
+	$(PARALLEL) -m long tests
 
 test-kernels: system
 	@for each in $(CORETYPES); do echo "OPENBLAS_CORETYPE=$$each"; \

@@ -20,6 +20,7 @@ from .cache_option import cache_options, chosen_store
 from .console import GATE_FAILED, shown_progress, told_errors
 from .option_values import plain_value, setting
 from .panel_command import panel
+from .serve_command import serve
 from .sweep_command import sweep
 
 if TYPE_CHECKING:
@@ -137,4 +138,5 @@ def graph(graph_file: Path) -> None:  # numpydoc ignore=PR01
 
 
 main.add_command(panel)
+main.add_command(serve)
 main.add_command(sweep)

@@ -4,7 +4,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from ...kernel.arrays import BoolArray, FloatArray
+from ...kernel.arrays import BoolArray
 from ...kernel.congruences import curvature_spheres as congruence
 from ...kernel.congruences import discrete_envelopes
 from ...kernel.congruences.conjugacy import conjugacy_residuals
@@ -24,6 +24,7 @@ from .arrays import (
     Marks,
     Numbers,
     Points,
+    Vectors,
     VertexDistances,
     VertexMarks,
     VertexPoints,
@@ -202,7 +203,7 @@ def smooth_envelope(
 
 @node
 def conjugacy(
-    along_u: FloatArray, along_v: FloatArray, mixed: FloatArray, lift: FloatArray | None = None
+    along_u: Vectors, along_v: Vectors, mixed: Vectors, lift: Vectors | None = None
 ) -> Numbers:
     """How far a parametrisation or a net is from conjugate: distance of f_uv from a span.
 
@@ -218,7 +219,8 @@ def conjugacy(
     Returns
     -------
     (N,) float array
-        Distance of f_uv from the span of f_u and f_v (and f with a lift); zero is conjugate.
+        Distance of f_uv from the span of f_u and f_v (and f with a lift); zero is conjugate,
+        NaN where a number is not finite.
 
     Examples
     --------

@@ -217,8 +217,9 @@ def sphere_rows(centers: Points, radii: float | Numbers) -> Spheres:
     >>> sphere_rows(np.zeros((1, 3)), 2.0).tolist()
     [[0.25, 0.0, 0.0, 0.0, -1.0]]
     """
-    radii = np.broadcast_to(np.asarray(radii, float), np.shape(centers)[:-1])
-    return rows.normalize(rows.from_center_radius(centers, radii**2))
+    radii = np.asarray(radii, float)[..., None]
+    centers, radii = np.broadcast_arrays(np.asarray(centers, float), radii)
+    return rows.normalize(rows.from_center_radius(centers, radii[..., 0] ** 2))
 
 
 @node
@@ -374,7 +375,7 @@ def sphere_through_points(points: Quadruples) -> Spheres:
     Returns
     -------
     (N, 5) float array
-        Unit rows of either orientation.
+        Unit rows of either orientation; NaN where the points coincide.
 
     Examples
     --------

@@ -1,6 +1,7 @@
 """What the workshop allows, on the command line: errors, the last line, exit codes."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,8 @@ from spheremesh import Mesh
 from spheremesh.fabrication.mesh_files.writer import write_mesh
 from spheremesh.interfaces.cli import GATE_FAILED, main
 from spheremesh.kernel.surfaces.circular_nets import roof_net
+
+LIMITS = "--allow-step", "--allow-torsion"
 
 
 @pytest.fixture(scope="module")
@@ -38,6 +41,13 @@ def test_what_is_not_allowed_is_the_last_line(skew: Path, tmp_path: Path) -> Non
     last = result.stdout.strip().splitlines()[-1]
     assert last.startswith("NOT BUILDABLE: P201 (")
     assert "a step of" in last
+    cures = last.partition(". What would do: ")[2]
+    assert cures.startswith("vertices on their spheres, which they miss by up to ")
+    assert "(--support bisector)" in cures
+    step, twist = (float(re.search(f"{option} ([0-9.]+)", cures)[1]) for option in LIMITS)
+    allowed = ["--allow-step", str(step), "--allow-torsion", str(twist)]
+    borne = panel(skew, tmp_path / "b", "--support", "--thickness", "0.02", *allowed)
+    assert "NOT BUILDABLE" not in borne.stdout
     report = json.loads((tmp_path / "a" / "report.json").read_text("utf-8"))
     assert not report["buildable"]
     codes = [found["code"] for found in report["audit"]["errors"]]
