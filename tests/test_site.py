@@ -99,6 +99,7 @@ def test_every_page_has_its_place(site: Site, tmp_path: Path) -> None:
     front = (tmp_path / "index.md").read_text(encoding="utf-8")
     assert front.startswith((ROOT / "README.md").read_text(encoding="utf-8"))
     assert all(f"\n{name}\n" in front for name in listed)
+    assert (tmp_path / "interfaces" / "hops" / "client.py").is_file(), "a page offers it"
 
 
 def test_broken_links_are_told(site: Site, tmp_path: Path) -> None:
