@@ -35,7 +35,7 @@ from .trees import Item, Tree
 
 UNSET: Final = -1.23432101234321e308
 """What Rhino has for a number that is not set."""
-MOST_SHOWN: Final = 1000
+MOST_SHOWN: Final = 3000
 """Panels or beams that a component shows unasked; the component ``show`` gives more."""
 _LARGEST: Final = float(np.finfo(float).max)
 _MOST_INT32: Final = 2**31
