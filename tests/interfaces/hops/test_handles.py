@@ -46,6 +46,14 @@ def test_without_a_disk_an_answer_with_handles_is_not_kept(gh: Value) -> None:
     assert gh.status == 200
 
 
+def test_only_what_lasts_may_be_kept(opened: Callable[..., Any], tmp_path: Path) -> None:
+    one = opened(DiskStore(tmp_path / "cache"))
+    lasting = one.service.solver.handles
+    assert lasting.lasts(lasting.give("sphere_mesh", fit_spheres(vase_mesh(6, 4))))
+    assert not lasting.lasts(lasting.give("object", object()))
+    assert not Handles(MemoryStore()).lasts("spheremesh:sphere_mesh:0")
+
+
 def test_reports_keep_what_json_has_no_word_for(opened: Callable[..., Any]) -> None:
     one = opened()
     sphere_mesh = fit_spheres(vase_mesh(8, 4))
