@@ -5,6 +5,7 @@ job      The job run: all of its files, or none.
 options  What the job is asked to do.
 output   What the command line says of it.
 support  The beams of the job: which annuli, and what is made of them.
+verdict  Whether the model can be built; if not, why not, and what would do.
 """
 
 from .graph import feasible_panel_graph, panel_graph
