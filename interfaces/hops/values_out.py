@@ -232,10 +232,10 @@ def kind_name(value: Value, where: str = "") -> str:
     where : str
         The output that gives it, for arrays.
     """
-    kind: type[Any] = getattr(value, "__class__", object)
-    if issubclass(kind, np.ndarray | list | tuple) and not hasattr(kind, "_fields"):
+    is_named = hasattr(value, "_fields")
+    if not is_named and isinstance(value, np.ndarray | list | tuple):
         return re.sub(r"[^a-z0-9_]", "_", where.rpartition(".")[2].lower()) or "list"
-    name = kind.__name__
+    name = str(getattr(value, "__class__", object).__name__)
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower().strip("_")
 
 
