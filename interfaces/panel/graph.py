@@ -52,10 +52,10 @@ def panel_graph(
     -------
     Graph
         Its steps are named mesh, description, start, angles (before an optimum of more than
-        angles), optimum, panels, audit, report, step, rhino, table, list and picture; with a
-        number of moulds also moulds, blanks, mould_drawing and mould_picture, with a support
-        also feasibility, annuli, beams, drawing and beam_table, with either plain, the panels
-        without them.
+        angles), optimum, panels, audit, report, step, rhino, table, list, picture and view;
+        with a number of moulds also moulds, blanks, mould_drawing and mould_picture, with a
+        support also feasibility, annuli, beams, drawing and beam_table, with either plain, the
+        panels without them.
         Its writers write relative to the folder of the run.
 
     Raises
@@ -115,6 +115,10 @@ def panel_graph(
     )  # fmt: skip
     made = {"panels": panels.panels} | ({"beams": support.beams} if support else {})
     _add_writers(graph, mesh, made)
+    graph.add(
+        "write_view", "view", **made, path="view.html", findings=audit.findings,
+        cut=panels.report, reference=mesh, title=options.mesh.stem if options.mesh else "roof",
+    )  # fmt: skip
     return graph
 
 
