@@ -7,6 +7,7 @@ is known before anything is remeshed. Nets are badly conditioned along the lines
 a short list of K is tried, and each net judged as a workshop would.
 
 deviations          How far a net is from its surface, and the surface from the net.
+dual_patterns       Even triangles on a surface, and the convex hexagons dual to them.
 expected_angles     Angles between neighbours that the curvatures of a surface foretell.
 gain_report         What spheres gain in each pattern, in numbers and in a sentence.
 net_flaws           What keeps a net from being built, by face and cause.

@@ -1,13 +1,13 @@
 """What keeps a net of spheres from being built, by face and cause."""
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, sum_by, unit
 from ..beams.cutting import cut_beams
-from ..hexagons.face_shapes import CROSSING_FACE, face_shapes
+from ..hexagons.face_shapes import CONVEX, CROSSING_FACE, face_shapes
 from ..meshes.mesh import Mesh, face_vector_areas, local_corners, mean_edge_length
 from ..panels.cutting import cut_panels
 from ..panels.mould_blanks import panel_caps
@@ -88,13 +88,78 @@ class NetJudgement:
         return self.angle / self.flat_angle if self.flat_angle > 0 else 1.0
 
 
-class _Trial(NamedTuple):
-    """Panels and beams made on trial."""
+@dataclass(frozen=True)
+class FaceJudgement:
+    """Measures of the faces of a sphere mesh, lengths in mean edges, angles in radians.
 
-    flaws: list[Flaw]
+    Attributes
+    ----------
+    flaws : tuple of Flaw
+        What keeps faces from being built.
+    shortest : float
+        Shortest edge.
+    convex_share : float
+        Share of the faces that are visually convex.
+    cap : float
+        Largest half opening of a panel.
+    angle, flat_angle : float
+        Mean angle between neighbouring spheres, and between the planes of the same faces.
+    rejected_panels : int
+    """
+
+    flaws: tuple[Flaw, ...]
+    shortest: float
+    convex_share: float
     cap: float
-    n_panels: int
-    n_beams: int
+    angle: float
+    flat_angle: float
+    rejected_panels: int
+
+
+def judge_faces(
+    sphere_mesh: SphereMesh,
+    edges: Literal["bisector", "intersection"],
+    *,
+    convex: bool,
+    shortest: float = 0.0,
+) -> FaceJudgement:
+    """Judge faces by their shape, and by panels that are cut on trial.
+
+    Parameters
+    ----------
+    edges : {"bisector", "intersection"}
+        How panels are cut.
+    convex : bool
+        Whether faces that are not visually convex are flawed.
+    shortest : float
+        Least edge, in mean edges.
+
+    Returns
+    -------
+    FaceJudgement
+        What was measured, and the flaws.
+    """
+    mesh = sphere_mesh.mesh
+    shapes = face_shapes(sphere_mesh) if convex else np.full(mesh.n_faces, CONVEX)
+    sides = _shortest_sides(mesh)
+    panel_flaws, cap, n_panels = _trial_panels(sphere_mesh, edges)
+    flaws = [
+        *(
+            Flaw(face, f"its shape is {shapes[face]}, not convex")
+            for face in np.flatnonzero(shapes != CONVEX).tolist()
+        ),
+        *_short(sides, shortest),
+        *panel_flaws,
+    ]
+    return FaceJudgement(
+        tuple(flaws),
+        float(sides.min()),
+        float((shapes == CONVEX).mean()),
+        cap,
+        _mean(intersection_angles(sphere_mesh)),
+        _mean(intersection_angles(face_planes(mesh))),
+        n_panels,
+    )
 
 
 def judge_net(sphere_mesh: SphereMesh) -> NetJudgement:
@@ -104,15 +169,14 @@ def judge_net(sphere_mesh: SphereMesh) -> NetJudgement:
     leans = node_axis_angles(sphere_mesh, nodes)[nodes.is_inner]
     lean_p95, lean_max = _upper(leans)
     sides = _shortest_sides(mesh)
-    trial = _trial(sphere_mesh)
+    panel_flaws, cap, n_panels = _trial_panels(sphere_mesh, "intersection")
+    beam_flaws = _trial_beams(sphere_mesh)
     flaws = [
         *_named(_turned_over(mesh), "turned over against its neighbours"),
         *_named(face_shapes(sphere_mesh) == CROSSING_FACE, "its boundary crosses itself"),
-        *(
-            Flaw(face, f"an edge of {sides[face]:.2g} mean edges, shorter than {SHORT_EDGE:g}")
-            for face in np.flatnonzero(sides < SHORT_EDGE).tolist()
-        ),
-        *trial.flaws,
+        *_short(sides, SHORT_EDGE),
+        *panel_flaws,
+        *beam_flaws,
     ]
     planarity = float(nodes.planarity.max(initial=0.0))
     if planarity >= PLANAR_NODE:
@@ -128,11 +192,11 @@ def judge_net(sphere_mesh: SphereMesh) -> NetJudgement:
         shortest=float(sides.min()),
         lean_p95=lean_p95,
         lean_max=lean_max,
-        cap=trial.cap,
+        cap=cap,
         angle=_mean(intersection_angles(sphere_mesh)),
         flat_angle=_mean(flat),
-        rejected_panels=trial.n_panels,
-        rejected_beams=trial.n_beams,
+        rejected_panels=n_panels,
+        rejected_beams=len(beam_flaws),
     )
 
 
@@ -167,27 +231,40 @@ def _named(is_bad: BoolArray, cause: str) -> list[Flaw]:
     return [Flaw(face, cause) for face in np.flatnonzero(is_bad).tolist()]
 
 
-def _trial(sphere_mesh: SphereMesh) -> _Trial:
-    """Panels cut where spheres meet, and beams under them."""
-    mesh = sphere_mesh.mesh
-    size = mean_edge_length(mesh)
-    panels, bad_panels = cut_panels(sphere_mesh, "intersection", PLATE * size)
-    flaws = [Flaw(part.element_id, f"no panel: {part.reason}") for part in bad_panels]
+def _short(sides: FloatArray, least: float) -> list[Flaw]:
+    return [
+        Flaw(face, f"an edge of {sides[face]:.2g} mean edges, shorter than {least:g}")
+        for face in np.flatnonzero(sides < least).tolist()
+    ]
+
+
+def _trial_panels(
+    sphere_mesh: SphereMesh, edges: Literal["bisector", "intersection"]
+) -> tuple[list[Flaw], float, int]:
+    """Flaws of panels, their largest half opening, and how many are rejected."""
+    panels, rejected = cut_panels(
+        sphere_mesh, edges, PLATE * mean_edge_length(sphere_mesh.mesh)
+    )
+    flaws = [Flaw(part.element_id, f"no panel: {part.reason}") for part in rejected]
     openings = panel_caps(panels).openings / 2 if panels.n_panels else np.zeros(0)
-    wide = np.flatnonzero(openings > LARGEST_CAP)
     flaws += [
         Flaw(int(panels.face_ids[i]), f"a cap of {np.degrees(openings[i]):.0f} degrees")
-        for i in wide.tolist()
+        for i in np.flatnonzero(openings > LARGEST_CAP).tolist()
     ]
+    return flaws, float(openings.max(initial=0.0)), len(rejected)
+
+
+def _trial_beams(sphere_mesh: SphereMesh) -> list[Flaw]:
+    """Beams that are rejected."""
+    mesh = sphere_mesh.mesh
+    size = mean_edge_length(mesh)
     support = annulus_support(sphere_mesh, depth=DEPTH * size)
-    _, bad_beams = cut_beams(support.annuli, THICKNESS * size)
-    rejected = (*support.rejected, *bad_beams)
+    _, cut_away = cut_beams(support.annuli, THICKNESS * size)
     beside = _faces_beside(mesh)
-    flaws += [
+    return [
         Flaw(int(beside[part.element_id]), f"no beam {part.id}: {part.reason}")
-        for part in rejected
+        for part in (*support.rejected, *cut_away)
     ]
-    return _Trial(flaws, float(openings.max(initial=0.0)), len(bad_panels), len(rejected))
 
 
 def _faces_beside(mesh: Mesh) -> IntArray:

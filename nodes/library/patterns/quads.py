@@ -1,73 +1,19 @@
-"""From a design surface to a pattern of panels, and what spheres will gain in it."""
+"""Quads along the lines of curvature, with a support structure."""
 
 from dataclasses import dataclass
-from typing import Annotated, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...kernel.meshes.mesh import Mesh, mean_edge_length
-from ...kernel.patterns import gain_report as gains
-from ...kernel.patterns import quad_pattern as quads
-from ...kernel.patterns.deviations import deviations
-from ...kernel.patterns.gain_report import GainMap, GainReport
-from ...kernel.patterns.net_flaws import NetJudgement, flaw_counts
-from ...kernel.patterns.surface_curvatures import surface_curvatures
-from ...kernel.reports import Report
-from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
-from ...kernel.surfaces.surface import Surface
-from ..graphs.node import node, warn
-from ..graphs.ports import Port
-from .arrays import VertexAngles
-
-EdgeLength = Annotated[float, Port(min=0)]
-
-TOLD = 3
-"""Flaws that a warning names; all are in the report."""
-
-
-class SphereGain(NamedTuple):
-    """What spheres gain on a surface, and where."""
-
-    report: GainReport
-    angles: VertexAngles
-
-
-@node
-def sphere_gain(
-    mesh: Mesh | Surface, edge_length: EdgeLength, pattern: GainMap = "spheres"
-) -> SphereGain:
-    """Say before anything is made how smoothly panels will meet on a surface.
-
-    Parameters
-    ----------
-    mesh : Mesh or Surface
-        A dense mesh of any faces, whose curvature is estimated, or a surface as
-        `read_surface` gives it, with exact curvatures.
-    edge_length : float
-        Length of the edges of the panels, in model units.
-    pattern : {"spheres", "one-radius", "planes", "hexagons", "triangles"}
-        What the angles of the vertices are for: quads with spheres of smallest angles, of one
-        radius, or planes; convex hexagons; triangles with spheres of smallest angles.
-
-    Returns
-    -------
-    report : GainReport
-        Expected mean angles with planes and spheres in each pattern, and the gain.
-    angles : (V,) float array
-        Expected mean angle between neighbours around each vertex, in degrees.
-
-    Examples
-    --------
-    >>> from spheremesh.nodes import sphere_gain, torus_mesh
-    >>> report, angles = sphere_gain(torus_mesh(96, 48, 3.0, 1.0), edge_length=0.2)
-    >>> round(report["quads"]["gain"], 2), angles.shape
-    (0.18, (4608,))
-    """
-    gains.check_edge(edge_length)
-    found = surface_curvatures(mesh)
-    report = gains.gain_report(found, edge_length)
-    angles = np.degrees(gains.gain_map(found, edge_length, pattern))
-    return SphereGain(report, angles)
+from ....kernel.meshes.mesh import Mesh, mean_edge_length
+from ....kernel.patterns import quad_pattern as quads
+from ....kernel.patterns.deviations import deviations
+from ....kernel.patterns.net_flaws import NetJudgement, flaw_counts
+from ....kernel.reports import Report
+from ....kernel.sphere_meshes.sphere_mesh import SphereMesh
+from ....kernel.surfaces.surface import Surface
+from ...graphs.node import node, warn
+from .reports import EdgeLength, face_counts, first_flaws, warn_of_ribs
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,12 +120,7 @@ def quad_pattern(mesh: Mesh | Surface, edge_length: EdgeLength) -> QuadPattern:
     reason = _reason(found, best.judgement, edge_length)
     if reason:
         warn(reason)
-    if found.turn > gains.SHARP_TURN:
-        warn(
-            f"the surface turns by {np.degrees(found.turn):.0f} degrees over an edge at 5 % of "
-            "its area: panels are larger than its ribs; choose edges of "
-            f"{edge_length * gains.SHARP_TURN / found.turn:.3g} or less"
-        )
+    warn_of_ribs(found.turn, edge_length)
     report = _quad_report(found, best.net, best.judgement, surface, edge_length, reason)
     return QuadPattern(best.net, report)
 
@@ -191,15 +132,11 @@ def _reason(found: quads.QuadPattern, judgement: NetJudgement, edge_length: floa
     if found.best.status == "not planarised":
         return found.best.message
     faces = len({flaw.face for flaw in judgement.flaws if flaw.face is not None})
-    shown = "; ".join(
-        flaw.cause if flaw.face is None else f"face {flaw.face}: {flaw.cause}"
-        for flaw in judgement.flaws[:TOLD]
-    )
-    more = "; ..." if len(judgement.flaws) > TOLD else ""
     return (
         f"no net of quads is usable as it is ({len(found.tries)} tried); the best has {faces} "
-        f"faces with flaws ({shown}{more}); try edges of {0.85 * edge_length:.3g} or "
-        f"{1.15 * edge_length:.3g}, or upright beams (--support bisector)"
+        f"faces with flaws ({first_flaws(judgement.flaws)}); try edges of "
+        f"{0.85 * edge_length:.3g} or {1.15 * edge_length:.3g}, or upright beams "
+        "(--support bisector)"
     )
 
 
@@ -214,16 +151,10 @@ def _quad_report(
     best, mesh = found.best, net.mesh
     planes = quads.expected_planes(found.curvatures, edge_length)
     panels_off, surface_off = deviations(net, surface)
-    degrees, counts = np.unique(mesh.degrees, return_counts=True)
     return QuadPatternReport(
         status=best.status,
         reason=reason,
-        faces={
-            "count": mesh.n_faces,
-            "degrees": {
-                str(d): n for d, n in zip(degrees.tolist(), counts.tolist(), strict=True)
-            },
-        },
+        faces=face_counts(mesh),
         edges={
             "target": float(edge_length),
             "mean": mean_edge_length(mesh),
