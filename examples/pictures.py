@@ -196,6 +196,12 @@ def remeshed_roof() -> Image.Image:
     return _made_by("11_freeform_remeshed", "roof_remeshed.png")
 
 
+def quad_pattern() -> Image.Image:
+    """Quads on a design surface: flat panels, and spheres on a few moulds."""
+    names = ("canopy_planes.png", "canopy_spheres.png")
+    return _beside(*_pictures_of("14_quad_pattern", *names))
+
+
 def supports() -> Image.Image:
     """Beams on node axes from below, one of their nodes, and upright beams at a cylinder."""
     mesh = roof_mesh(12, 18)
@@ -308,6 +314,7 @@ PICTURES = {
     "few-moulds": few_moulds,
     "remeshed-torus": remeshed_torus,
     "remeshed-roof": remeshed_roof,
+    "quad-pattern": quad_pattern,
     "supports": supports,
     "assemblies": assemblies,
 }
