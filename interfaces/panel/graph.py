@@ -71,8 +71,9 @@ def panel_graph(
         Its steps are named mesh, description, start, angles (before an optimum of more than
         angles), optimum, panels, audit, report, step, rhino, table, list, picture and view;
         with a number of moulds also moulds, blanks, mould_drawing and mould_picture, with a
-        support also feasibility, annuli, beams, drawing and beam_table, with either plain, the
-        panels without them. Of a pattern mesh is the surface; gain, pattern and net follow it.
+        bound on angles before these fewest, with a support also feasibility, annuli, beams,
+        drawing and beam_table, with either plain, the panels without them. Of a pattern mesh
+        is the surface; gain, pattern and net follow it.
         Its writers write relative to the folder of the run.
 
     Raises
@@ -102,10 +103,12 @@ def panel_graph(
         optimum = _optimum(graph, options, mesh, moves, crease)
     design = spheres = optimum.sphere_mesh
     labels, clusters, blanks = None, None, None
-    if options.moulds is not None:
-        count = graph.param("moulds", options.moulds, min=1)
+    count = _mould_count(graph, options, spheres, crease)
+    if count is not None:
+        # Vertices that move make angles smaller in the mean, and may make the largest larger.
+        relaxed = moves if options.max_angle_largest is None else {}
         moulds = graph.add(
-            "cluster_radii", "moulds", sphere_mesh=spheres, k=count, crease=crease, **moves
+            "cluster_radii", "moulds", sphere_mesh=spheres, k=count, crease=crease, **relaxed
         )
         spheres, labels, clusters = moulds.sphere_mesh, moulds.labels, moulds.report
     kind = beams or options.support
@@ -120,7 +123,7 @@ def panel_graph(
     )
     support = add_beams(graph, options, annuli, panels.panels) if annuli else None
     plain = _plain(graph, design, layers) if support or spheres is not design else {}
-    if options.moulds is not None:
+    if count is not None:
         blanks = _add_blanks(graph, panels.panels)
     audit = graph.add(
         "audit", "audit", panels=panels.panels, cut=panels.report,
@@ -139,6 +142,22 @@ def panel_graph(
         cut=panels.report, reference=mesh, title=options.mesh.stem if options.mesh else "roof",
     )  # fmt: skip
     return graph
+
+
+def _mould_count(
+    graph: Graph, options: PanelOptions, spheres: Wire, crease: Param
+) -> Param | Wire | None:
+    """How many moulds: as asked for, the fewest that keep angles below bounds, or any."""
+    if options.moulds is not None:
+        return graph.param("moulds", options.moulds, min=1)
+    bounds = {
+        name: graph.param(name, bound, min=0, max=180)
+        for name in ("max_angle", "max_angle_largest")
+        if (bound := getattr(options, name)) is not None
+    }
+    if not bounds:
+        return None
+    return graph.add("fewest_moulds", "fewest", sphere_mesh=spheres, crease=crease, **bounds).k
 
 
 def _add_blanks(graph: Graph, panels: Wire) -> Step:
