@@ -1,4 +1,4 @@
-# Everything from a fresh clone: make demo, make test. Needs Python 3.11 to 3.14, make and git.
+# Everything from a fresh clone: make demo, make test, make docs. Needs Python 3.11 to 3.14, make and git.
 # The first that runs (a shim may be there and not run) and can make an environment is taken.
 # 3.14 comes late: what we need has wheels for it, but we do not test there. 3.15 has no rhino3dm.
 PYTHONS := python3.13 python3.12 python3.11 python3.14 python3
@@ -22,7 +22,7 @@ PARALLEL = OPENBLAS_NUM_THREADS=1 $(PYTEST) -n 2 --dist loadfile
 # bits. Haswell is what AMD processors get, Prescott the oldest. Ignored where there is no x86.
 CORETYPES := Haswell Prescott
 
-.PHONY: demo test test-kernels lint bench install system browser clean
+.PHONY: demo test test-long test-kernels lint bench docs install system browser clean
 
 demo: system
 	$(BIN)/spheremesh panel -o out/demo --moulds 8 --thickness 0.02
@@ -30,6 +30,9 @@ demo: system
 test: lint browser
 	$(PARALLEL) tests
 	$(PYTEST) -p no:cacheprovider --doctest-modules --pyargs $(addprefix spheremesh.,$(PACKAGES))
+
+test-long: system
+	$(PARALLEL) -m long tests
 
 test-kernels: system
 	@for each in $(CORETYPES); do echo "OPENBLAS_CORETYPE=$$each"; \
@@ -49,6 +52,10 @@ bench: system
 	$(BIN)/python benchmarks/run.py
 	$(BIN)/python benchmarks/angles.py targets large
 	$(BIN)/python benchmarks/energy.py large scipy
+
+docs: system
+	@$(BIN)/python -c 'import furo, myst_parser' 2>/dev/null || $(BIN)/python -m pip install -qq --group docs
+	$(BIN)/python docs/site/build.py out/docs
 
 install: $(INSTALLED)
 

@@ -5,7 +5,7 @@
 A run counts as a fault if it raises what is no error of our own, takes more than 5 s of CPU or
 500 MB, or ends the process. Seeds are changed byte by byte, word by word and line by line, and
 then cut at every byte: a cut file is refused, or said in a remark, or has lost nothing.
-Faulty inputs are kept in the folder of --keep. A reader is a row of READERS.
+Faulty inputs are kept in the folder of --keep. A reader is a row of READERS in fuzz_seeds.py.
 """
 
 import argparse
@@ -16,22 +16,18 @@ import os
 import random
 import re
 import resource
-import struct
 import sys
 import tempfile
 import time
 import warnings
 from collections import Counter
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from fuzz_changes import changed
+from fuzz_seeds import READERS, Reader
 
-from spheremesh import Graph, Mesh
-from spheremesh.fabrication.mesh_files.reader import content_mesh, read_content
-from spheremesh.fabrication.mesh_files.writer import write_mesh
 from spheremesh.kernel.errors import SpheremeshError
 from spheremesh.nodes.graphs.errors import GraphError, NodeError
 
@@ -39,252 +35,6 @@ MOST_CPU, MOST_MEGABYTES = 5.0, 500
 OURS = (SpheremeshError, GraphError, NodeError)
 WAIT = 60.0
 """Seconds after which a run that says nothing is ended."""
-
-POINTS = [
-    (0, 0, 0),
-    (1, 0, 0.25),
-    (2, 0, 0),
-    (0, 1, 1 / 3),
-    (1, 1, 0.5),
-    (2, 1, 0),
-    (1, 2, 0.1),
-]
-FACES = [(0, 1, 4, 3), (1, 2, 5, 4), (3, 4, 6), (4, 5, 6)]
-TRIANGLES = [(0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4), (3, 4, 6), (4, 5, 6)]
-
-
-@dataclass(frozen=True)
-class Reader:
-    """What is read: the suffix of its files, whole files to start from, and how."""
-
-    suffix: str
-    seeds: Callable[[], list[bytes]]
-    read: Callable[[Path], Any]
-
-
-def read_a_mesh(path: Path) -> Any:  # noqa: ANN401
-    """What a mesh file holds; and its mesh, which may be refused."""
-    content = read_content(path)
-    content_mesh(content, path)
-    return content
-
-
-def read_a_graph(path: Path) -> Any:  # noqa: ANN401
-    """A graph file, loaded and drawn, not run."""
-    return Graph.load(path).mermaid()
-
-
-def _written(suffix: str) -> bytes:
-    with tempfile.TemporaryDirectory() as folder:
-        path = write_mesh(Mesh(POINTS, FACES), f"{folder}/a{suffix}")
-        return path.read_bytes()
-
-
-def _obj_seeds() -> list[bytes]:
-    points = "".join("v {:g} {:g} {:g}\n".format(*each) for each in POINTS)
-    rich = "# a roof\nmtllib a.mtl\no Roof\n" + points + "vt 0 0\nvn 0 0 1\ng North Glass\n"
-    rich += "usemtl steel\ns off\nf 1/1/1 2/1/1 \\\n 5/1/1 4/1/1\nf -6//1 -5//1 -2//1 -3//1\n"
-    rich += "g South\nf 4 5 7\nf 5 6 7\nl 1 2 3\np 4\ncstype bezier\ndeg 1 1\n"
-    soup = "".join(
-        f"v {x} {y} {z}\n" for face in FACES for x, y, z in (POINTS[i] for i in face)
-    )
-    soup += "f 1 2 3 4\nf 5 6 7 8\nf 9 10 11\nf 12 13 14\n"
-    return [_written(".obj"), rich.encode(), soup.encode()]
-
-
-def _off_seeds() -> list[bytes]:
-    head = f"{len(POINTS)} {len(FACES)} 0\n"
-    rows = [" ".join(map(str, (len(face), *face))) for face in FACES]
-    colored = "".join("{} {} {} 255 0 0 255\n".format(*each) for each in POINTS)
-    broken = " ".join(str(x) for each in POINTS for x in each).replace(" 1 ", "\n1 ")
-    painted = "".join(f"{row} 0.5 0.5 0.5\n" for row in rows)
-    return [
-        _written(".off"),
-        f"COFF\n# c\n{head}{colored}{painted}".encode(),
-        f"OFF{head}{broken}\n{' '.join(rows)}\n".encode(),
-    ]
-
-
-def _ply_seeds() -> list[bytes]:
-    def head(order: str, extra: str = "") -> bytes:
-        return (
-            f"ply\nformat {order} 1.0\ncomment c\nelement vertex {len(POINTS)}\n{extra}"
-            "property float x\nproperty float y\nproperty float z\n"
-            f"element face {len(FACES)}\nproperty list uchar int vertex_indices\n"
-            "property list uchar float texcoord\nend_header\n"
-        ).encode()
-
-    text = "".join("{} {} {}\n".format(*each) for each in POINTS)
-    text += "".join(" ".join(map(str, (len(f), *f))) + " 2 0 0\n" for f in FACES)
-    binary = b"".join(struct.pack(">B3f", 9, *each) for each in POINTS)
-    for face in FACES:
-        binary += struct.pack(f">B{len(face)}iB2f", len(face), *face, 2, 0, 0)
-    order = "binary_big_endian"
-    return [
-        _written(".ply"),
-        head("ascii") + text.encode(),
-        head(order, "property uchar red\n") + binary,
-    ]
-
-
-def _stl_seeds() -> list[bytes]:
-    facets = "".join(
-        "facet normal 0 0 1\nouter loop\n"
-        + "".join("vertex {:g} {:g} {:g}\n".format(*POINTS[i]) for i in triangle)
-        + "endloop\nendfacet\n"
-        for triangle in TRIANGLES
-    )
-    return [_written(".stl"), f"solid roof\n{facets}endsolid roof\n".encode()]
-
-
-def other_seeds(suffix: str) -> list[bytes]:
-    """Of a format that meshio or trimesh writes."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"a{suffix}"
-        if suffix == ".glb":
-            import trimesh
-
-            trimesh.Trimesh(POINTS, TRIANGLES, process=False).export(path)
-        else:
-            import meshio
-
-            meshio.Mesh(np.array(POINTS), [("quad", FACES[:2]), ("triangle", FACES[2:])]).write(
-                path
-            )
-        return [path.read_bytes()]
-
-
-def _rhino_seeds() -> list[bytes]:
-    import rhino3dm
-
-    sphere = rhino3dm.Sphere(rhino3dm.Point3d(0, 0, 0), 2.0)
-    seeds = [_written(".3dm")]
-    with tempfile.TemporaryDirectory() as folder:
-        for add, what in (
-            ("AddBrep", sphere.ToBrep()),
-            ("AddSurface", sphere.ToNurbsSurface()),
-        ):
-            model = rhino3dm.File3dm()
-            getattr(model.Objects, add)(what)
-            model.Write(f"{folder}/a.3dm", 8)
-            seeds.append((Path(folder) / "a.3dm").read_bytes())
-    return seeds
-
-
-def _graph_seeds() -> list[bytes]:
-    graph = Graph("roof", units="m")
-    count = graph.param("moulds", 3, min=1, max=9)
-    mesh = graph.add("roof_mesh", n_span=4, n_length=6)
-    spheres = graph.add("fit_spheres", mesh=mesh)
-    graph.add("cluster_radii", sphere_mesh=spheres, k=count)
-    with tempfile.TemporaryDirectory() as folder:
-        graph.save(f"{folder}/a.json")
-        return [(Path(folder) / "a.json").read_bytes()]
-
-
-READERS: dict[str, Reader] = {
-    "obj": Reader(".obj", _obj_seeds, read_a_mesh),
-    "off": Reader(".off", _off_seeds, read_a_mesh),
-    "ply": Reader(".ply", _ply_seeds, read_a_mesh),
-    "stl": Reader(".stl", _stl_seeds, read_a_mesh),
-    "3dm": Reader(".3dm", _rhino_seeds, read_a_mesh),
-    "graph": Reader(".json", _graph_seeds, read_a_graph),
-    "vtk": Reader(".vtk", lambda: other_seeds(".vtk"), read_a_mesh),
-    "vtu": Reader(".vtu", lambda: other_seeds(".vtu"), read_a_mesh),
-    "msh": Reader(".msh", lambda: other_seeds(".msh"), read_a_mesh),
-    "bdf": Reader(".bdf", lambda: other_seeds(".bdf"), read_a_mesh),
-    "inp": Reader(".inp", lambda: other_seeds(".inp"), read_a_mesh),
-    "glb": Reader(".glb", lambda: other_seeds(".glb"), read_a_mesh),
-}
-
-NUMBERS = (
-    b"0", b"-1", b"1", b"3", b"255", b"65536", b"2147483647", b"4294967295", b"999999999999",
-    b"18446744073709551616", b"1e308", b"-1e-308", b"1e999", b"nan", b"inf", b"0.5", b"1.0D+2",
-    b"1_0", b"", b"x", b"1/2", b"-9223372036854775808", b"9" * 5000,
-)  # fmt: skip
-PACKED = tuple(
-    struct.pack(order + code, value)
-    for order in "<>"
-    for code, values in (
-        ("B", (0, 1, 127, 255)), ("H", (0, 65535)), ("i", (-1, 0, 2**31 - 1, -(2**31))),
-        ("I", (2**32 - 1, 10**9)), ("q", (-1, 2**63 - 1)), ("f", (np.nan, np.inf, 1e38, 1e-45)),
-        ("d", (np.nan, -np.inf, 1e308, 5e-324)),
-    )
-    for value in values
-)  # fmt: skip
-
-
-def changed(data: bytes, others: list[bytes], rng: random.Random) -> bytes:
-    """One of the seeds with a few random changes."""
-    result = bytearray(data)
-    for _ in range(rng.choice((1, 1, 2, 3, 8))):
-        change = rng.choice(CHANGES)
-        result = bytearray(change(bytes(result), others, rng))
-        if not result:
-            return data[: rng.randrange(1, len(data))]
-    return bytes(result[:200_000])
-
-
-def _span(data: bytes, rng: random.Random) -> tuple[int, int]:
-    start = rng.randrange(len(data) + 1)
-    return start, min(len(data), start + rng.choice((1, 1, 2, 4, 8, 30, 200)))
-
-
-def _poke(data: bytes, _: list[bytes], rng: random.Random) -> bytes:
-    start = rng.randrange(len(data))
-    return data[:start] + bytes([rng.randrange(256)]) + data[start + 1 :]
-
-
-def _pack(data: bytes, _: list[bytes], rng: random.Random) -> bytes:
-    start, patch = rng.randrange(len(data)), rng.choice(PACKED)
-    return data[:start] + patch + data[start + len(patch) :]
-
-
-def _delete(data: bytes, _: list[bytes], rng: random.Random) -> bytes:
-    start, end = _span(data, rng)
-    return data[:start] + data[end:]
-
-
-def _repeat(data: bytes, _: list[bytes], rng: random.Random) -> bytes:
-    start, end = _span(data, rng)
-    return data[:end] + data[start:end] * rng.choice((1, 2, 100)) + data[end:]
-
-
-def _splice(data: bytes, others: list[bytes], rng: random.Random) -> bytes:
-    other = rng.choice(others)
-    start, end = _span(other, rng)
-    at = rng.randrange(len(data) + 1)
-    return data[:at] + other[start:end] + data[at + rng.choice((0, end - start)) :]
-
-
-def _number(data: bytes, _: list[bytes], rng: random.Random) -> bytes:
-    found = list(re.finditer(rb"[-+.\w/]+", data[:20_000]))
-    if not found:
-        return data
-    word = rng.choice(found)
-    return data[: word.start()] + rng.choice(NUMBERS) + data[word.end() :]
-
-
-def _lines(data: bytes, _: list[bytes], rng: random.Random) -> bytes:
-    lines = data.split(b"\n")
-    i, j = rng.randrange(len(lines)), rng.randrange(len(lines))
-    kind = rng.randrange(4)
-    if kind == 0:
-        lines[i], lines[j] = lines[j], lines[i]
-    elif kind == 1:
-        del lines[i]
-    elif kind == 2:
-        lines.insert(i, lines[j])
-    else:
-        lines[i] = lines[i].upper() if rng.random() < 0.5 else lines[i] + b" " + lines[j]
-    return b"\n".join(lines)
-
-
-def _cut(data: bytes, _: list[bytes], rng: random.Random) -> bytes:
-    return data[: rng.randrange(1, len(data) + 1)]
-
-
-CHANGES = (_poke, _pack, _pack, _delete, _repeat, _splice, _number, _number, _lines, _cut)
 
 
 def used() -> tuple[float, float]:

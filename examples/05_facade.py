@@ -33,7 +33,9 @@ print(f"{cut.report['written']} panels; {render(cut.panels, 'facade.png')}")
 
 # The frame: flat beams in the planes of the arcs, cut square before round nodes, and bolted.
 annuli = annulus_support(facade, depth=0.06)
-frame = beams(annuli.annuli, thickness=0.008, node_radius=0.012, node_gap=0.001)
+frame = beams(
+    annuli.annuli, thickness=0.008, node_radius=0.012, node_gap=0.001, panels=cut.panels
+)
 bolted = drilling_marks(frame.beams, count=2, diameter=0.006, inset=0.012)
 found = audit(
     cut.panels,

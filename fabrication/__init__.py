@@ -8,6 +8,7 @@ them.
 
 mesh_files  OBJ, OFF, PLY and STL, written and read; Rhino files and others as meshes.
 rhino       Rhino .3dm files: a model written, meshes and surfaces read.
+rhino_objects  Single objects of Rhino in JSON, as Grasshopper sends and takes them.
 opennurbs   The byte stream of .3dm files: exact Breps and render meshes.
 step        STEP files as text, and a check of that text.
 drawings    Flat drawings: beams for cutting, moulds with their blanks.

@@ -22,6 +22,8 @@ DAMPING: Final = 1e-12
 """Least damping of a Newton step; its inverse is the largest before a descent is given up."""
 ENERGY_ROUNDING: Final = 1e-13
 """Relative rounding of a sum of energies: a rise below it is no rise."""
+RESIDUAL_ROUNDING: Final = 1e-15
+"""Rounding of residuals, in mean edges: it moves an energy by so much of its root."""
 PARALLEL_PLANES: Final = 1e-6
 """Cutting planes that meet at a smaller angle (radians) are in line."""
 SAME_CURVATURE: Final = 1e-9
@@ -236,6 +238,8 @@ STEP_RIDGE: Final = 1e-12
 
 COINCIDENT: Final = 1e-6
 """Vertices of separate meshes closer than this, in mean edges, are one (1 µm per m)."""
+CURVE_SHAPE: Final = 1e-9
+"""A curve that lies this close to an arc or a line, in chords, is one."""
 EXACT_BREP: Final = 1e-12
 """How far the parts of a Brep may lie apart, relative to the radius of its sphere."""
 ROUNDED_FILE: Final = 0.01
@@ -271,3 +275,5 @@ ROUGHER: Final = 1e-3
 """Spheres whose mean angle is larger than that of planes by more, relatively, are rougher."""
 WIDER_GAP: Final = 1e-3
 """Gaps that are wider by more than this share of the mean edge are worth a warning."""
+DOWNWARD: Final = 0.25
+"""Share of the area of a mesh, seen from below, that makes it a roof turned over."""

@@ -1,6 +1,10 @@
-"""Every Python block of README and docs runs; blocks of a page share their names."""
+"""Every Python block of README and docs runs; blocks of a page share their names.
+
+A block that begins with the name of a file, ``# daylight.py``, is that file.
+"""
 
 import re
+import sys
 import warnings
 from pathlib import Path
 
@@ -12,18 +16,28 @@ from spheremesh.nodes import NodeWarning
 ROOT = Path(__file__).parents[1]
 TABLES = {"laws.md", "operations.md"}
 """Pages without code."""
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [
+    ROOT / "README.md",
+    *sorted((ROOT / "docs").glob("*.md")),
+    *sorted((ROOT / "docs" / "tutorials").glob("*.md")),
+]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_page_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
     blocks = re.findall(r"^```python\n(.*?)^```", page.read_text(encoding="utf-8"), re.M | re.S)
     assert blocks or page.name in TABLES, f"{page.name} shows no code"
     names: dict[str, object] = {"__name__": "docs"}
     with warnings.catch_warnings():
         warnings.simplefilter("default", NodeWarning)
         for block in blocks:
+            file = re.match(r"# (\w+)\.py\n", block)
+            if file:
+                (tmp_path / f"{file[1]}.py").write_text(block, encoding="utf-8")
+                monkeypatch.delitem(sys.modules, file[1], raising=False)
+                continue
             exec(compile(block, str(page), "exec"), names)  # noqa: S102
 
 

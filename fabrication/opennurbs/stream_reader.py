@@ -4,9 +4,12 @@ import struct
 import zlib
 from collections.abc import Generator
 from contextlib import contextmanager
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from . import stream_codes as codes
+
+_MOST_INFLATED: Final = 2**29
+"""Bytes of a buffer: a stream of a kilobyte can hold a megabyte of zeros."""
 
 
 class UnreadableError(Exception):
@@ -141,9 +144,13 @@ class StreamReader:
 
 
 def buffer_content(data: bytes, buffer: BufferPlace) -> bytes:
-    """Content of a buffer; empty if deflated bytes are damaged."""
+    """Content of a buffer; empty if deflated bytes are damaged, or inflate beyond measure."""
     content = data[buffer.start : buffer.stop]
+    if not buffer.is_deflated:
+        return content
+    stream = zlib.decompressobj()
     try:
-        return zlib.decompress(content) if buffer.is_deflated else content
+        inflated = stream.decompress(content, _MOST_INFLATED)
     except zlib.error:
         return b""
+    return inflated if stream.eof else b""

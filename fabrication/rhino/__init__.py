@@ -3,6 +3,7 @@
 beam_writer     Writes beams: capped extrusions of their contours, drilling marks, nodes.
 brep_faces      Reads the faces of polysurfaces with their trims, as records of the kernel.
 block_writer    Writes blocks: one piece of geometry, set into the model many times.
+curves          Arcs, lines and circles as curves.
 isolation       Runs a function in a process of its own, with limits on time and memory.
 layers          Layers: which are on, and which a user means.
 mesh_writer     Writes meshes; faces with more than four corners are ngons.

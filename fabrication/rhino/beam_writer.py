@@ -9,7 +9,6 @@ import base64
 
 import numpy as np
 
-from ...kernel.arrays import FloatArray
 from ...kernel.beams.beams import (
     Beams,
     DrillMarks,
@@ -22,7 +21,7 @@ from ...kernel.beams.node_cylinders import NodeCylinders, node_cylinders
 from ...kernel.beams.triangles import beam_triangles, cylinder_triangles
 from ...kernel.errors import InputError
 from ...kernel.parts.colors import AXIS_COLOR, BEAM_COLOR, NODE_COLOR
-from ...kernel.spheres.arcs import ArcCircles, Arcs, arc_circles
+from ...kernel.spheres.arcs import arc_circles
 from ...kernel.support.node_axes import node_name
 from ..opennurbs.render_meshes import (
     MESH_TOLERANCE,
@@ -30,6 +29,7 @@ from ..opennurbs.render_meshes import (
     extrusions_with_meshes,
     gather_meshes,
 )
+from .curves import arc_curve
 from .model import RhinoModel, Untyped, add_layer, object_attributes
 
 
@@ -47,7 +47,7 @@ def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: boo
         Whether the extrusions carry triangles for viewers that cannot mesh them.
     """
     place = add_layer(model, "Beams", BEAM_COLOR, has_material=True)
-    solids, texts = _beam_extrusions(model.library, beams), _beam_text(beams, units)
+    solids, texts = beam_extrusions(model.library, beams), _beam_text(beams, units)
     if render_meshes and solids:
         error = MESH_TOLERANCE * float(beam_lengths(beams).min()) / 2
         groups = list(beam_triangles(beams, MESH_TOLERANCE))
@@ -63,7 +63,7 @@ def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: boo
     cylinders = node_cylinders(beams)
     if cylinders.n_nodes:
         place = add_layer(model, "Nodes", NODE_COLOR, has_material=True)
-        solids = _cylinder_extrusions(model.library, cylinders)
+        solids = cylinder_extrusions(model.library, cylinders)
         if render_meshes:
             error = MESH_TOLERANCE * cylinders.radius
             triangles = cylinder_triangles(
@@ -81,8 +81,24 @@ def add_beams(model: RhinoModel, beams: Beams, units: str, *, render_meshes: boo
             model.file.Objects.AddCurve(circle, attributes)
 
 
-def _beam_extrusions(library: Untyped, beams: Beams) -> list[Untyped]:
-    """A capped extrusion per beam in model coordinates, as thick as the beams."""
+def beam_extrusions(library: Untyped, beams: Beams) -> list[Untyped]:
+    """A capped extrusion per beam in model coordinates, as thick as the beams.
+
+    Parameters
+    ----------
+    library : module
+        rhino3dm.
+
+    Returns
+    -------
+    list of rhino3dm.Extrusion
+        In their order.
+
+    Raises
+    ------
+    InputError
+        If openNURBS refuses one.
+    """
     outer, inner = section_arcs(beams)
     circles = arc_circles(outer), arc_circles(inner)
     lifts = -beams.annuli.frames[:, 2] * beams.thickness / 2
@@ -91,7 +107,7 @@ def _beam_extrusions(library: Untyped, beams: Beams) -> list[Untyped]:
     for i, name in enumerate(beams.annuli.ids):
         lift = lifts[i]
         sides = [
-            _curve(library, arcs, found, i, lift)
+            arc_curve(library, arcs, found, i, lift)
             for arcs, found in zip((outer, inner), circles, strict=True)
         ]
         sides[0].Reverse()
@@ -147,27 +163,6 @@ def with_meshes(
     return found
 
 
-def _curve(
-    library: Untyped, arcs: Arcs, circles: ArcCircles, i: int, lift: FloatArray
-) -> Untyped:
-    """Arc or line i, by its circle: three points would lose the radius of a flat arc."""
-    start, end = arcs.starts[i] + lift, arcs.ends[i] + lift
-    radius = float(circles.radii[i])
-    if radius == np.inf:
-        return library.LineCurve(
-            library.Point3d(*start.tolist()), library.Point3d(*end.tolist())
-        )
-    center = circles.centers[i] + lift
-    x = arcs.starts[i] - circles.centers[i]
-    y = np.cross(circles.axes[i], x)
-    circle = library.Circle(radius)
-    circle.Plane = library.Plane(
-        library.Point3d(*center.tolist()), library.Vector3d(*x.tolist()),
-        library.Vector3d(*y.tolist()),
-    )  # fmt: skip
-    return library.ArcCurve.CreateFromArc(library.Arc(circle, float(circles.sweeps[i])))
-
-
 def _beam_text(beams: Beams, units: str) -> list[dict[str, str]]:
     """User text of each beam; ``-`` is beyond the boundary, `tilt` in degrees."""
     annuli, facts = beams.annuli, beam_facts(beams)
@@ -206,8 +201,24 @@ def _axis_lines(library: Untyped, beams: Beams) -> list[tuple[str, Untyped]]:
     ]
 
 
-def _cylinder_extrusions(library: Untyped, cylinders: NodeCylinders) -> list[Untyped]:
-    """A capped extrusion per node cylinder, in model coordinates."""
+def cylinder_extrusions(library: Untyped, cylinders: NodeCylinders) -> list[Untyped]:
+    """A capped extrusion per node cylinder, in model coordinates.
+
+    Parameters
+    ----------
+    library : module
+        rhino3dm.
+
+    Returns
+    -------
+    list of rhino3dm.Extrusion
+        In their order.
+
+    Raises
+    ------
+    InputError
+        If openNURBS refuses one.
+    """
     solids: list[Untyped] = []
     for origin, direction, height in zip(
         cylinders.origins.tolist(), cylinders.directions.tolist(), cylinders.heights.tolist(),

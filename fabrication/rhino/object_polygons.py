@@ -8,7 +8,7 @@ import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray
 from ...kernel.errors import InputError
-from ..opennurbs.mesh_ngons import read_mesh_object
+from ..opennurbs.mesh_ngons import MeshContent, read_mesh_object
 from ..polygons import Polygons, join_polygons, transform_polygons
 from .isolation import QUIET_SECONDS, allow_seconds
 from .layers import RhinoObject
@@ -212,7 +212,18 @@ def _read_object(each: PlacedObject, size: GridSize, scale: float) -> ObjectPoly
 
 
 def _mesh_polygons(mesh: RhinoObject) -> Polygons:
-    vertices, faces, ngons = read_mesh_object(base64.b64decode(mesh.Encode()["data"]))
+    return content_polygons(read_mesh_object(base64.b64decode(mesh.Encode()["data"])))
+
+
+def content_polygons(content: MeshContent) -> Polygons:
+    """The faces of a mesh of Rhino: an ngon stands where the first of its parts stood.
+
+    Raises
+    ------
+    InputError
+        If faces refer to vertices that it does not have, or coordinates are not finite.
+    """
+    vertices, faces, ngons = content
     degrees = np.where(faces[:, 2] == faces[:, 3], 3, 4)
     is_free = np.ones(len(faces), bool)
     boundaries: dict[int, IntArray] = {}

@@ -1,6 +1,7 @@
 """Reads the surfaces of a Rhino file as a mesh with their exact normals and curvatures."""
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +20,7 @@ from ...kernel.surfaces.vertex_shapes import (
 from ...kernel.tolerances import COINCIDENT
 from ..polygons import Polygons, drop_repeats, join_polygons, mean_side, to_mesh, weld
 from .brep_faces import read_polysurface
+from .layers import RhinoObject
 from .object_polygons import allow_object, file_units, open_model, placed_transform
 from .object_reader import PlacedObject, find_objects, kind_name
 from .surface_reader import SURFACES, face_polygons, mesh_advice
@@ -90,6 +92,31 @@ def read_surfaces_3dm(data: bytes, layer: str, size: GridSize) -> SurfaceContent
     left_out = (f"left out what is no surface: {held}; read meshes with read_mesh",)
     remarks = (*remark, *found.remarks, *failures, *(left_out if held else ()))
     return SurfaceContent(_join(parts), units, remarks)
+
+
+def surface_of_objects(objects: Sequence[RhinoObject], size: GridSize) -> Surface:
+    """Surfaces, polysurfaces and extrusions as one surface, as `read_surfaces_3dm` reads them.
+
+    rhino3dm may never come back from a damaged object: call this by `isolated`.
+
+    Parameters
+    ----------
+    objects : sequence of rhino3dm.GeometryBase
+        At least one.
+    size : GridSize
+        Numbers of rows, or the length of the edges.
+
+    Raises
+    ------
+    InputError
+        If one is no surface, or cannot be meshed; the message says why.
+    """
+    parts: list[_Part] = []
+    for geometry in objects:
+        if type(geometry).__name__ not in SURFACES:
+            raise InputError(f"a {kind_name(geometry)} is no surface; give a mesh as a mesh")
+        parts.append(_read_part(PlacedObject(geometry, np.eye(4), "surface"), size, 1.0))
+    return _join(parts)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from ...fabrication.mesh_files.reader import read_content
 from ...kernel.errors import InputError
 
 SupportKind = Literal["axis", "exact", "bisector"]
+PatternKind = Literal["quads", "as-is"]
 
 
 @dataclass(frozen=True)
@@ -23,13 +24,19 @@ class PanelOptions:
     repair : bool
         Whether to repair the mesh first.
     edge_length : float or None
-        Length of the edges of faces on surfaces, in model units.
+        Length of the edges of a pattern, or of faces on surfaces, in model units.
+    pattern : {"quads", "as-is"}
+        Whether the mesh is a surface to be covered by quads of that length, or its faces are
+        the panels.
     rows : (int, int) or None
         Rows of faces along u and v of each surface; neither: as `read_mesh` has it.
     units : str or None
         Model units; None for those of the file, and metres if it names none.
     moulds : int or None
-        Number of moulds; None for a radius per panel.
+        Number of moulds; None for a radius per panel, or as many as bounds ask for.
+    max_angle, max_angle_largest : float or None
+        The fewest moulds keep the mean and the largest angle between neighbours below, in
+        degrees.
     thickness, joint_gap : float
         In model units.
     side : {"inward", "outward", "centred"}
@@ -67,9 +74,12 @@ class PanelOptions:
     layer: str = ""
     repair: bool = False
     edge_length: float | None = None
+    pattern: PatternKind = "as-is"
     rows: tuple[int, int] | None = None
     units: str | None = None
     moulds: int | None = None
+    max_angle: float | None = None
+    max_angle_largest: float | None = None
     thickness: float = 0.0
     joint_gap: float = 0.0
     side: Literal["inward", "outward", "centred"] = "inward"
@@ -113,6 +123,6 @@ def model_units(options: PanelOptions) -> tuple[str, bool]:
 
 def fineness(options: PanelOptions) -> dict[str, Any]:
     """How finely surfaces are divided, as inputs of `read_mesh`."""
-    if options.edge_length is not None:
+    if options.edge_length is not None and options.pattern == "as-is":
         return {"edge_length": options.edge_length}
     return dict(zip(("n_u", "n_v"), options.rows or (), strict=False))

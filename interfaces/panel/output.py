@@ -8,6 +8,8 @@ from typing import Any, Final
 
 import click
 
+from .verdict import print_verdict
+
 MOST_ERRORS: Final = 5
 """Errors of one kind that are printed; all are in the report."""
 
@@ -32,7 +34,7 @@ def print_report(
     _print_errors(audit["errors"], {part["code"] for part in refused})
     if as_json:
         click.echo(json.dumps(report, indent=1))
-        _print_verdict(report, is_error=True)
+        print_verdict(report, is_error=True)
         return
     _print_feasibility(report["support"])
     _print_size(report["input"], is_assumed=is_assumed)
@@ -40,6 +42,7 @@ def print_report(
         click.echo(line)
     for name in files:
         click.echo(f"  {out / name}")
+    _print_pattern(report.get("pattern"))
     _print_angles(report["angles_deg"], report["creases"])
     click.echo(f"moulds {report['moulds']['count'] or 'not asked for: a radius per panel'}")
     panels = report["panels"]
@@ -48,7 +51,7 @@ def print_report(
         _print_support(report["support"], report["beams"])
     if report["audit"]:
         _print_audit(report["audit"])
-    _print_verdict(report)
+    print_verdict(report)
 
 
 def _print_errors(errors: Sequence[Mapping[str, Any]], known: set[str]) -> None:
@@ -64,24 +67,6 @@ def _print_errors(errors: Sequence[Mapping[str, Any]], known: set[str]) -> None:
             click.echo(f"error {code}: {count - MOST_ERRORS} more, in report.json", err=True)
 
 
-def _print_verdict(report: Mapping[str, Any], *, is_error: bool = False) -> None:
-    """The last line where a model cannot be built: the three causes that most parts have."""
-    if report["buildable"]:
-        return
-    causes: dict[str, list[tuple[float, str]]] = {}
-    errors: list[dict[str, Any]] = report["audit"]["errors"] if report["audit"] else []
-    for found in errors:
-        text = f"{found['id']} {found['message']}"
-        causes.setdefault(found["code"], []).append((found["size"] or 0.0, text))
-    for part in (*report["panels"]["rejected"], *report["beams"]["rejected"]):
-        if not report["audit"]:
-            causes.setdefault(part["code"], []).append((0.0, f"{part['id']} {part['reason']}"))
-    ranked = sorted(causes.items(), key=lambda item: -len(item[1]))
-    texts = [f"{code} ({len(parts)}): {max(parts)[1]}" for code, parts in ranked[:3]]
-    more = f"; {len(ranked) - 3} more causes" if len(ranked) > 3 else ""
-    click.secho(f"NOT BUILDABLE: {'; '.join(texts)}{more}", fg="red", err=is_error)
-
-
 def _print_angles(angles: Mapping[str, Any], creases: Mapping[str, Any]) -> None:
     """How smoothly panels meet, and where they do not."""
     planar, spherical = angles["planar"], angles["spherical"]
@@ -94,6 +79,20 @@ def _print_angles(angles: Mapping[str, Any], creases: Mapping[str, Any]) -> None
             f"creases of more than {creases['angle_deg']:g} degrees, not counted: "
             f"{creases['count']}, at {creases['mean_deg']:.2f} ({creases['max_deg']:.1f}) "
             "degrees as built; --crease to change"
+        )
+
+
+def _print_pattern(pattern: Mapping[str, Any] | None) -> None:
+    """What became of a pattern, beside what was expected."""
+    if pattern:
+        net = pattern["net"]
+        angles, faces = net["angles_deg"], net["faces"]["count"]
+        off = net["deviation"]["surface"]
+        click.echo(
+            f"quads {net['status']} ({len(net['tries'])} tried): {faces} faces, "
+            f"edges of {net['edges']['mean']:.3g}, at most {100 * off:.0f} % of one off the "
+            f"surface; {angles['expected']:.2f} degrees expected, {angles['spheres']:.2f} "
+            "reached before moulds"
         )
 
 

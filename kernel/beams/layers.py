@@ -262,7 +262,7 @@ def _cylinder_tops(annuli: Annuli, panels: Panels, radius: float, bearing: float
     """Levels (B, 2) of discs about the node axes that are clear of the panels beside beams.
 
     From the outer corners of the beams, along the axes to the inner side; each panel is asked
-    for the sector from a beam to the next one.
+    for the sector from a beam to the next one. Without any panel discs begin at the corners.
     """
     beams, sides = np.nonzero(_panel_rows(panels, annuli.edge_faces) >= 0)
     found = _panel_rows(panels, annuli.edge_faces)[beams, sides]
@@ -288,6 +288,7 @@ def _cylinder_tops(annuli: Annuli, panels: Panels, radius: float, bearing: float
         levels, exists = meet_lines(lifted, centers[:, end], axes[:, end])
         levels = np.where(exists, levels, 0.0) - starts[:, end]
         np.maximum.at(result[:, end], beams, levels)
+    result[np.isneginf(result)] = 0.0
     return result
 
 

@@ -20,6 +20,7 @@ from ..congruences.curvature_spheres import touching_spheres
 from ..errors import InputError
 from ..meshes.mesh import Mesh, mean_edge_length
 from ..meshes.triangulation import check_triangles
+from ..solvers.factorization import factorize_symmetric
 from ..solvers.levenberg_marquardt import DampedStep, levenberg_marquardt
 from ..tolerances import AXIS_SLACK, DUAL_EDGE
 from .delaunay_flips import MAX_SWEEPS, dual_edge_lengths, flip_to_convex
@@ -301,14 +302,6 @@ def descend(
 def _solve(matrix: object, damping: FloatArray, right: FloatArray) -> FloatArray:
     """Solve a sparse symmetric system whose diagonal is raised."""
     from scipy.sparse import diags_array
-    from scipy.sparse.linalg import splu
 
-    factorize: Any = splu
-    sparse: Any = matrix
-    factors = factorize(
-        sparse + diags_array(damping, format="csc"),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
-    return np.asarray(factors.solve(right), np.float64)
+    raised: Any = diags_array(damping, format="csc")
+    return factorize_symmetric(matrix + raised)(right)

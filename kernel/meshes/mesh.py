@@ -99,6 +99,17 @@ class Mesh:
         return len(self.offsets) - 1
 
     @property
+    def counts(self) -> dict[str, int]:
+        """Numbers of elements by the letters that stand for them in shapes of arrays.
+
+        Returns
+        -------
+        dict
+            Of vertices "V", faces "F" and interior edges "E".
+        """
+        return {"V": self.n_vertices, "F": self.n_faces, "E": len(self.topology.edge_corners)}
+
+    @property
     def degrees(self) -> IntArray:
         """Number of corners of each face, (F,).
 

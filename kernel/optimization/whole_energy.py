@@ -43,6 +43,8 @@ NEARER = (1, 10, 100, 1000)
 FIRST_STEPS = 10
 FIRST_DECREMENT = 1e-3
 """Steps without second derivatives end at this decrement: they lead out of saddles."""
+STEPS_OF_ANGLES = 2
+"""Steps by the angles alone, which leave the planes."""
 
 
 @dataclass(frozen=True)
@@ -290,12 +292,13 @@ def _angles_first(run: _Run, weights: EnergyWeights) -> _Run:
     if weights.angle == 0 or (weights.regularity == 0 and weights.support == 0):
         return run
     alone = replace(weights, regularity=0.0, support=0.0)
-    return _first_steps(run, "angles", energy_problem(run.setting, run.freedom, alone))
+    problem = energy_problem(run.setting, run.freedom, alone)
+    return _first_steps(run, "angles", problem, STEPS_OF_ANGLES)
 
 
-def _first_steps(run: _Run, name: str, problem: EnergyProblem) -> _Run:
+def _first_steps(run: _Run, name: str, problem: EnergyProblem, most: int = FIRST_STEPS) -> _Run:
     """A few steps without second derivatives, which lead downhill from anywhere."""
-    steps = min(run.max_iterations, FIRST_STEPS)
+    steps = min(run.max_iterations, most)
     found = descend_energy(problem, run.unknowns, steps, FIRST_DECREMENT, is_exact=False)
     stage = stage_of(problem, name, found)
     return replace(run, unknowns=found.state, stages=(*run.stages, stage))

@@ -261,10 +261,16 @@ def _assembled(
     rest_t = np.zeros((later, later))
     for child, rest in handed_up:
         split, left = len(child.into_own), rest.T
-        own_t[child.into_own[:, None], child.into_own] += left[:split, :split]
-        under_t[child.into_own[:, None], child.into_later] += left[:split, split:]
-        rest_t[child.into_later[:, None], child.into_later] += left[split:, split:]
+        _scatter(own_t, child.into_own, child.into_own, left[:split, :split])
+        _scatter(under_t, child.into_own, child.into_later, left[:split, split:])
+        _scatter(rest_t, child.into_later, child.into_later, left[split:, split:])
     return own_t.T, under_t.T, rest_t.T
+
+
+def _scatter(table: FloatArray, rows: IntArray, columns: IntArray, values: FloatArray) -> None:
+    """Add values to rows and columns of a table; by flat places several times faster."""
+    places = rows[:, None] * table.shape[1] + columns
+    np.add.at(table.reshape(-1), places.ravel(), values.ravel())
 
 
 def solve_fronts(factors: FrontalFactors, right: FloatArray) -> FloatArray:

@@ -1,9 +1,10 @@
 """Newton's method that knows a minimum from a saddle.
 
 A step solves ``(H + μ I) s = -g`` by a factorisation that refuses matrices which are not
-positive definite: the shift μ grows until it accepts, and falls to next to nothing where H is
-positive definite of itself. So every step goes down. At rest under a shift, the lowest
-eigenvector is found, and where the energy falls along it, the descent goes on from there.
+positive definite; then the convex part of H leads on, under the same shift μ. So every step
+goes down. The shift grows where steps promise too much, and falls to next to nothing where
+they keep what they promise. At rest, the lowest eigenvector is found, and where the energy
+falls along it, the descent goes on from there.
 
 The method knows nothing of matrices: a problem hands it the energy of a state, a model at a
 state, and the way to move along a step.
@@ -22,6 +23,7 @@ from ..tolerances import (
     LEAST_DECREMENT,
     LEAST_SHIFT,
     LOWEST_EIGENVALUE,
+    RESIDUAL_ROUNDING,
     SAME_FALL,
 )
 from .factorization import Solver
@@ -30,19 +32,21 @@ from .levenberg_marquardt import State, Status
 Factorize = Callable[[float], Solver | None]
 
 LARGEST_SHIFT = 1e3
-CONVEX_SHIFT = 1e-5
-"""Where the Hessian needs a larger shift, its convex part leads on faster."""
 GROWTH = 1e3
+LONGEST_WAIT = 7
+"""Steps that the convex part leads at most before the Hessian is tried again."""
 RENEWED_SHIFT = 1e-7
 """Shift with which a step that lowered nothing is tried again."""
 SHORTEST_PART, LONGEST_PART = 2.0**-7, 2.0**10
 BETTER_THAN_PROMISED = 1.3
+CHORD = 0.1
+"""Share of the last decrement that is left where the last factors serve once more."""
 MOST_ESCAPES = 10
 """Saddles that a descent leaves at most."""
 
 
 class Model(NamedTuple):
-    """The energy near a state, to second order.
+    """The energy near a state, to second order; the second derivatives only if asked for.
 
     Attributes
     ----------
@@ -51,13 +55,13 @@ class Model(NamedTuple):
     factorize : callable
         Shift to a function that solves with ``H + shift I``, H half of the second derivatives,
         or to None if that is not positive definite.
-    convex : callable
-        Makes the same for the part of H that is never indefinite: ``JᵀJ`` of least squares.
+    factorize_convex : callable
+        The same for the part of H that is never indefinite: ``JᵀJ`` of least squares.
     """
 
     gradient: FloatArray
     factorize: Factorize
-    convex: Callable[[], Factorize]
+    factorize_convex: Factorize
 
 
 @dataclass(frozen=True)
@@ -125,29 +129,65 @@ class _Step(NamedTuple):
     step: FloatArray
     decrement: float
     is_exact: bool
+    is_chord: bool = False
 
     @property
     def is_least(self) -> bool:
-        return self.is_exact and self.shift <= LEAST_SHIFT
+        """Whether its factors prove that H itself is positive definite here."""
+        return self.is_exact and self.shift <= LEAST_SHIFT and not self.is_chord
+
+    def chord(self, taken: _Taken[State], gradient: FloatArray) -> "_Step | None":
+        """A step by the factors of this one, where they serve as well as new ones would."""
+        if not (self.is_exact and self.shift <= LEAST_SHIFT and taken.part == 1):
+            return None
+        step = self.solve(-gradient)
+        decrement = -float(dot(gradient, step))
+        if not 0 <= decrement <= CHORD * self.decrement:
+            return None
+        return self._replace(step=step, decrement=decrement, is_chord=True)
 
 
-class _Shifts(NamedTuple):
-    """Shifts to begin with: of the Hessian, and of its convex part."""
+class _Trust(NamedTuple):
+    """What the last steps taught.
 
-    exact: float
-    convex: float
+    Attributes
+    ----------
+    shift : float
+        Shift to begin with.
+    refusals, wait : int
+        How often in a row the Hessian was refused, and how many steps it is not tried for.
+    refused_at : float
+        Decrement when it was refused last.
+    """
 
-    def adapted(self, found: _Step, part: float, agreement: float) -> "_Shifts":
+    shift: float = LEAST_SHIFT
+    refusals: int = 0
+    wait: int = 0
+    refused_at: float = np.inf
+
+    def tried(self, found: _Step) -> "_Trust":
+        """A factorisation that is refused costs as much as a step: wait before the next."""
+        if found.is_exact:
+            return _Trust(self.shift)
+        if found.decrement < self.refused_at / 4 and self.wait:
+            return self._replace(wait=0)
+        if self.wait:
+            return self._replace(wait=self.wait - 1)
+        wait = min(2**self.refusals, LONGEST_WAIT)
+        return _Trust(self.shift, self.refusals + 1, wait, found.decrement)
+
+    def adapted(self, found: _Step, part: float, agreement: float) -> "_Trust":
+        """Less shift where a step kept what it promised, more where it did not."""
         shift = found.shift
         if agreement > 0.75 and part >= 1:
             shift = max(shift / 8, LEAST_SHIFT)
         elif agreement < 0.25 or part < 0.25:
             shift *= 4
-        return _Shifts(shift, self.convex) if found.is_exact else _Shifts(LEAST_SHIFT, shift)
+        return self._replace(shift=shift)
 
-    def renewed(self, found: _Step) -> "_Shifts":
-        shift = max(10 * found.shift, RENEWED_SHIFT)
-        return _Shifts(shift, self.convex) if found.is_exact else _Shifts(self.exact, shift)
+    def renewed(self, found: _Step) -> "_Trust":
+        """After a step that lowered nothing."""
+        return self._replace(shift=max(10 * found.shift, RENEWED_SHIFT))
 
 
 def newton(
@@ -177,35 +217,46 @@ def newton(
     Nocedal, Wright 2006, Numerical Optimization, Secs. 3.4 and 3.5.
     """
     state, history = start, [problem.energies(start)]
-    shifts = _Shifts(LEAST_SHIFT, LEAST_SHIFT)
-    model, escapes, lowest, is_refused = None, 0, -np.inf, False
+    trust = _Trust()
+    model, found, escapes, lowest, is_refused = None, None, 0, -np.inf, False
     for iteration in range(1, max_iterations + 1):
         tell_progress(iteration - 1, max_iterations)
         model = problem.model(state) if model is None else model
         energy = float(history[-1].sum())
         rest = tolerance * energy + LEAST_DECREMENT
-        found = _step(model, shifts, uses_curvature=is_exact)
-        if found.decrement <= rest and is_exact and not (is_refused or found.is_least):
+        if found is None:
+            found = _step(model, trust.shift, uses_curvature=is_exact and not trust.wait)
+            trust = trust.tried(found)
+        knows_enough = found.is_least or (found.is_chord and not leaves_saddles)
+        if found.decrement <= rest and is_exact and not (is_refused or knows_enough):
             # A shift makes steps short, and a convex model knows no saddle.
             found = _exact_step(model, LEAST_SHIFT, LARGEST_SHIFT) or found
         taken = _search(problem, state, found, energy) if found.decrement > rest else None
         is_refused = taken is None and found.decrement > rest
-        if is_refused and found.decrement > ENERGY_ROUNDING * energy:
+        if is_refused and found.decrement > _rounding(energy):
             if found.shift > LARGEST_SHIFT:
                 return NewtonDescent(state, "stalled", np.array(history), iteration, lowest)
-            shifts = shifts.renewed(found)
+            trust, found = trust.renewed(found), None
             continue
         if taken is None and leaves_saddles:
+            if not found.is_exact:
+                found = _exact_step(model, LEAST_SHIFT, LARGEST_SHIFT) or found
             lowest, vector = _lowest(model, found)
             if lowest < -LOWEST_EIGENVALUE and escapes < MOST_ESCAPES and vector.any():
                 taken, escapes = _escape(problem, state, vector, energy), escapes + 1
         if taken is None:
             state = _last(problem, state, found, energy)
             return NewtonDescent(state, "converged", np.array(history), iteration, lowest)
-        state, model = taken.state, None
+        state, model = taken.state, problem.model(taken.state)
         history.append(taken.terms)
-        shifts = shifts.adapted(found, taken.part, taken.agreement)
+        trust = trust.adapted(found, taken.part, taken.agreement)
+        found = found.chord(taken, model.gradient)
     return NewtonDescent(state, "exhausted", np.array(history), max_iterations, lowest)
+
+
+def _rounding(energy: float) -> float:
+    """Falls of an energy that rounding hides."""
+    return ENERGY_ROUNDING * energy + RESIDUAL_ROUNDING * float(np.sqrt(energy))
 
 
 def _last(problem: Problem[State], state: State, found: _Step, energy: float) -> State:
@@ -216,12 +267,10 @@ def _last(problem: Problem[State], state: State, found: _Step, energy: float) ->
     return moved if change <= ENERGY_ROUNDING * energy + LEAST_DECREMENT else state
 
 
-def _step(model: Model, shifts: _Shifts, *, uses_curvature: bool) -> _Step:
-    """Step by the Hessian where it is nearly positive definite, else by its convex part."""
-    found = None
-    if uses_curvature:
-        found = _exact_step(model, shifts.exact, max(CONVEX_SHIFT, shifts.exact))
-    found = found or _solved(model, model.convex(), shifts.convex, np.inf, is_exact=False)
+def _step(model: Model, shift: float, *, uses_curvature: bool) -> _Step:
+    """Step by the Hessian where it is positive definite, else by its convex part."""
+    found = _exact_step(model, shift, shift) if uses_curvature else None
+    found = found or _solved(model, model.factorize_convex, shift, np.inf, is_exact=False)
     return found or _Step(np.inf, np.copy, -model.gradient, np.inf, is_exact=False)
 
 

@@ -81,6 +81,17 @@ class SphereMesh:
         _fill(result, mesh, local_spheres)
         return result
 
+    @property
+    def counts(self) -> dict[str, int]:
+        """Numbers of elements by the letters that stand for them in shapes of arrays.
+
+        Returns
+        -------
+        dict
+            Of vertices "V", faces "F" and interior edges "E".
+        """
+        return self.mesh.counts
+
 
 def _fill(target: SphereMesh, mesh: Mesh, local_spheres: FloatArray) -> None:
     norms = minkowski(local_spheres, local_spheres)

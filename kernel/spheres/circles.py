@@ -134,16 +134,22 @@ def pencil_spheres(
 def sphere_through_points(points: FloatArray) -> FloatArray:
     """Spheres or planes through four points (..., 4, 3), no four on a circle.
 
-    Unit rows (..., 5); the orientation is arbitrary.
+    Unit rows (..., 5); the orientation is arbitrary. NaN where the points coincide, or are not
+    finite.
     """
+    is_finite = np.asarray(np.isfinite(points).all(axis=(-2, -1)))
+    points = np.where(is_finite[..., None, None], points, 0.0)
     center = points.mean(axis=-2, keepdims=True)
     size = norm(points - center).max(axis=-1)[..., None, None]
+    is_point = ~(size > 0)
+    size = np.where(is_point, 1.0, size)
     local = (points - center) / size
     system = lift_points(local) * np.array([1.0, -0.5, -0.5, -0.5, 1.0])
     # Rows of the system are (1, -p, |p|²); reordered, their null vector is (A, B, C).
     system = np.concatenate([system[..., 4:], system[..., 1:4], system[..., :1]], -1)
     row = np.linalg.svd(system)[2][..., -1, :]
-    row = row / np.sqrt(minkowski(row, row))[..., None]
+    norms = np.where(is_point[..., 0, 0] | ~is_finite, np.nan, minkowski(row, row))
+    row = row / np.sqrt(norms)[..., None]
     scale, shift = size[..., 0, 0], center[..., 0, :]
     a, b = row[..., 0] / scale, row[..., 1:4]
     constant = row[..., 4] * scale + a * dot(shift, shift) + dot(b, shift)

@@ -52,10 +52,10 @@ def from_center_radius(center: FloatArray, radius_squared: FloatArray) -> FloatA
 
 def from_plane(normal: FloatArray, distance: FloatArray) -> FloatArray:
     """Unit rows (..., 5) with A = 0 of the planes ``n·x = d``, with unit normals n."""
-    normal = np.asarray(normal, float)
-    distance = np.broadcast_to(np.asarray(distance, float), normal.shape[:-1])
-    zero = np.zeros((*normal.shape[:-1], 1))
-    return np.concatenate([zero, normal, distance[..., None]], axis=-1)
+    distance = np.asarray(distance, float)[..., None]
+    normal, distance = np.broadcast_arrays(np.asarray(normal, float), distance)
+    zero = np.zeros_like(distance[..., :1])
+    return np.concatenate([zero, normal, distance[..., :1]], axis=-1)
 
 
 def lift_points(points: FloatArray) -> FloatArray:

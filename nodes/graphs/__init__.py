@@ -4,6 +4,7 @@ A graph is a specification that is edited, a runner, and a store of results; `Gr
 face of the three.
 
 annotations    How types are read: alternatives, elements, what arrays hold, and their names.
+arrays         Arrays at ports: their shape, the kind and size of their numbers, their counts.
 editor         A graph under the hands of its user: steps, sliders and wires, added and changed.
 errors         What can go wrong with graphs, as types, and how a mistyped name is answered.
 graph          The lazy graph: nodes wired together, run as far as a target needs.

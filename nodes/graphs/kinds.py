@@ -10,7 +10,6 @@ from typing import Any, Literal, cast, get_args, get_type_hints
 import numpy as np
 
 from .annotations import (
-    ArrayFacts,
     Hint,
     Member,
     Value,
@@ -19,6 +18,7 @@ from .annotations import (
     members,
     scalar_type,
 )
+from .arrays import as_array, is_other_array, takes_array
 
 
 def accepts(hint: Hint, value: Value) -> bool:
@@ -78,11 +78,12 @@ def convert(hint: Hint, value: Value) -> Value:
         The value itself if it is of the annotated type.
     """
     options = members(hint)
-    if any(isinstance(m.kind, type) and _is_instance(m, value) for m in options):
+    is_of_type = any(isinstance(m.kind, type) and _is_instance(m, value) for m in options)
+    if is_of_type and not is_other_array(hint, value):
         return value
     for member in options:
         row = _row(member)
-        if isinstance(value, row.convertible):
+        if isinstance(value, row.convertible) and row.takes(member, value):
             return row.convert(member, value)
     return value
 
@@ -171,37 +172,14 @@ def is_bool(value: Value) -> bool:
 
 def _is_choice(target: Member, value: Value) -> bool:
     options = get_args(target.hint)
-    return any(value == x and is_bool(value) == is_bool(x) for x in options)
+    # an array compares entry by entry
+    return not isinstance(value, np.ndarray) and any(
+        value == x and is_bool(value) == is_bool(x) for x in options
+    )
 
 
 def _may_be_choice(target: Member, source: Member) -> bool:
     return any(_fits(source, Member(type(x), type(x))) for x in get_args(target.hint))
-
-
-def _is_array(target: Member, value: Value) -> bool:
-    return _is_numeric(value) and _has_shape(value, target.facts)
-
-
-def _is_numeric(value: Value) -> bool:
-    """Whether it is an array or could become one."""
-    if isinstance(value, list | tuple):
-        items = cast("Sequence[Value]", value)
-        return all(isinstance(item, Complex) or _is_numeric(item) for item in items)
-    return isinstance(value, np.ndarray)
-
-
-def _has_shape(value: Value, facts: ArrayFacts | None) -> bool:
-    """Whether it has a shape, and its numbers agree; letters stand for any."""
-    try:
-        shape = np.shape(value)
-    except ValueError:  # rows of different lengths
-        return False
-    if facts is None or shape == (0,):  # the empty list
-        return True
-    return len(shape) == len(facts.shape) and all(
-        isinstance(wanted, str) or count == wanted
-        for count, wanted in zip(shape, facts.shape, strict=True)
-    )
 
 
 def _may_be_array(target: Member, source: Member) -> bool:
@@ -312,12 +290,7 @@ _ROWS: dict[Hint, _Row] = {
     Sequence: _LIST,
     Iterable: _LIST,
     tuple: _Row(_is_tuple, _may_be_tuple, (list,), lambda _, value: tuple(value)),
-    np.ndarray: _Row(
-        _is_array,
-        _may_be_array,
-        (list, tuple),
-        lambda target, value: np.asarray(value, scalar_type(target)),
-    ),
+    np.ndarray: _Row(takes_array, _may_be_array, (list, tuple, np.ndarray), as_array),
     Path: _Row(_is_path, _may_be_path, (str,), lambda _, value: Path(value)),
     str: _Row(_is_path, _may_be_path, (os.PathLike,), lambda _, value: str(value)),
 }

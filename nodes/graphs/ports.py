@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .annotations import Value, type_name
+from .arrays import LARGEST
 from .errors import GraphError
 from .kinds import accepts, is_bool, record_fault
 from .stores.digests import digest
@@ -114,6 +115,11 @@ def check_range(value: object, port: Port, where: str) -> None:
         return
     if isinstance(value, int) and not -(2**63) <= value < 2**63:
         raise GraphError(f"{where}: a whole number has 64 bits at most")
+    size = abs(float(cast("float", value)))
+    if 0 < size < np.inf and not 1 / LARGEST <= size <= LARGEST:
+        raise GraphError(
+            f"{where} = {value}: must be 0 or between {1 / LARGEST:g} and {LARGEST:g} in size"
+        )
     low, high = port.min, port.max
     # written so that a NaN is outside of every range
     if (low is not None and not value >= low) or (high is not None and not value <= high):

@@ -396,5 +396,5 @@ def render(
         panels, color_by=color_by, shading=shading, width=width, height=height, legend=legend
     )
     with replacing(path) as temporary:
-        image.save(temporary, format="PNG", optimize=True)
+        image.save(temporary, format="PNG")
     return str(path)

@@ -345,7 +345,7 @@ def roof_mesh(n_span: Count = 24, n_length: Count = 60, length: Length = 80.0) -
 def triangulated_surface(
     shape: triangulated.SampleShape = "bump",
     edge_length: Annotated[float, Port(min=0)] = 0.1,
-    seed: int | None = None,
+    seed: Annotated[int, Port(min=0)] | None = None,
 ) -> SampledSurface:
     """A triangulated sample surface with exact normals, to try remeshing on.
 

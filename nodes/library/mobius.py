@@ -105,6 +105,8 @@ def reflection(mirror: Sphere) -> Transform:
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from spheremesh.nodes import apply_mobius, reflection
     >>> ground = reflection(np.array([0.0, 0, 0, 1, 0]))
     >>> apply_mobius(np.array([[1.0, 2, 3]]), ground).tolist()
     [[1.0, 2.0, -3.0]]
@@ -127,6 +129,8 @@ def inverse(transform: Transform) -> Transform:
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from spheremesh.nodes import apply_mobius, inverse, similarity
     >>> back = inverse(similarity(translation=[0, 0, 1]))
     >>> apply_mobius(np.array([[0.0, 0, 1]]), back).tolist()
     [[0.0, 0.0, 0.0]]
@@ -150,6 +154,8 @@ def sent_to_infinity(points: Points, transform: Transform) -> Marks:
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from spheremesh.nodes import inversion, sent_to_infinity
     >>> sent_to_infinity(np.array([[1.0, 0, 0], [2, 0, 0]]), inversion([1, 0, 0])).tolist()
     [True, False]
     """
@@ -246,6 +252,8 @@ def stereographic(points: Points) -> SpherePoints:
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from spheremesh.nodes import stereographic
     >>> stereographic(np.array([[1.0, 0, 0], [0, 0, 0]])).tolist()
     [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0]]
     """
@@ -268,6 +276,8 @@ def inverse_stereographic(points: SpherePoints) -> Points:
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from spheremesh.nodes import inverse_stereographic, stereographic
     >>> inverse_stereographic(stereographic(np.array([[1.0, 2, 2]]))).round(9).tolist()
     [[1.0, 2.0, 2.0]]
     """
@@ -292,7 +302,8 @@ def poles(spheres: Spheres) -> Poles:
 
     Examples
     --------
-    >>> from spheremesh.nodes import sphere_rows
+    >>> import numpy as np
+    >>> from spheremesh.nodes import inverse_stereographic, poles, sphere_rows
     >>> found = poles(sphere_rows(np.array([[1.0, 2, 3]]), 2.0)).poles
     >>> inverse_stereographic(found).round(9).tolist()
     [[1.0, 2.0, 3.0]]
@@ -316,6 +327,8 @@ def pentaspherical_coordinates(spheres: Spheres) -> Coordinates:
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from spheremesh.nodes import pentaspherical_coordinates
     >>> pentaspherical_coordinates(np.array([[0.0, 0, 0, 1, 3]])).tolist()
     [[0.0, 0.0, 1.0, 3.0, 3.0]]
     """
@@ -339,6 +352,8 @@ def polar_hyperplanes(spheres: Spheres) -> Coordinates:
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from spheremesh.nodes import polar_hyperplanes
     >>> polar_hyperplanes(np.array([[0.0, 0, 0, 1, 3]])).tolist()
     [[-6.0, 0.0, 0.0, 1.0, -0.0]]
     """

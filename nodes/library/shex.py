@@ -368,6 +368,8 @@ def pencil_positions(curvatures: Numbers, first: Numbers, second: Numbers) -> Na
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from spheremesh.nodes import pencil_positions
     >>> pencil_positions(*np.array([[3.0, 2, 1], [2, 2, 2], [0, 0, 0]])).tolist()
     ['empty', 'principal', 'central']
     """

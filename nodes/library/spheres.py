@@ -162,7 +162,7 @@ def edge_spheres(mesh: Mesh) -> EdgeSpheres:
 
     Examples
     --------
-    >>> from spheremesh.nodes import sphere_facts, torus_mesh
+    >>> from spheremesh.nodes import edge_spheres, sphere_facts, torus_mesh
     >>> spheres = edge_spheres(torus_mesh(12, 6, major_radius=3.0))
     >>> len(spheres), set(sphere_facts(spheres).kinds.tolist())
     (144, {'sphere'})
@@ -212,11 +212,14 @@ def sphere_rows(centers: Points, radii: float | Numbers) -> Spheres:
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from spheremesh.nodes import sphere_rows
     >>> sphere_rows(np.zeros((1, 3)), 2.0).tolist()
     [[0.25, 0.0, 0.0, 0.0, -1.0]]
     """
-    radii = np.broadcast_to(np.asarray(radii, float), np.shape(centers)[:-1])
-    return rows.normalize(rows.from_center_radius(centers, radii**2))
+    radii = np.asarray(radii, float)[..., None]
+    centers, radii = np.broadcast_arrays(np.asarray(centers, float), radii)
+    return rows.normalize(rows.from_center_radius(centers, radii[..., 0] ** 2))
 
 
 @node
@@ -237,6 +240,8 @@ def plane_rows(normals: Points, distances: float | Numbers) -> Spheres:
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from spheremesh.nodes import plane_rows
     >>> plane_rows(np.array([[0.0, 0.0, 1.0]]), 3.0).tolist()
     [[0.0, 0.0, 0.0, 1.0, 3.0]]
     """
@@ -263,6 +268,8 @@ def sphere_facts(spheres: Spheres) -> SphereFacts:
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from spheremesh.nodes import plane_rows, sphere_facts
     >>> sphere_facts(plane_rows(np.array([[0.0, 0.0, 1.0]]), 3.0)).kinds.tolist()
     ['plane']
     """
@@ -290,6 +297,8 @@ def sphere_pairs(first: Spheres, second: Spheres) -> SpherePairs:
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from spheremesh.nodes import sphere_pairs, sphere_rows
     >>> sphere_pairs(*sphere_rows(np.array([[0.0, 0, 0], [0, 0, 4]]), 2.0)[:, None]).pencils
     array(['parabolic'], dtype='<U10')
     """
@@ -320,6 +329,8 @@ def bisectors(first: Spheres, second: Spheres) -> Bisectors:
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from spheremesh.nodes import bisectors, plane_rows
     >>> bisectors(*plane_rows(np.eye(3)[:2], 0.0)[:, None]).acute.round(3).tolist()
     [[0.0, 0.707, 0.707, 0.0, 0.0]]
     """
@@ -343,6 +354,8 @@ def intersection_circles(first: Spheres, second: Spheres) -> circles.Circles:
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from spheremesh.nodes import intersection_circles, sphere_rows
     >>> balls = sphere_rows(np.array([[0.0, 0, 0], [0, 0, 2]]), np.sqrt(2))
     >>> intersection_circles(*balls[:, None]).radii_squared.round(9).tolist()
     [1.0]
@@ -362,10 +375,12 @@ def sphere_through_points(points: Quadruples) -> Spheres:
     Returns
     -------
     (N, 5) float array
-        Unit rows of either orientation.
+        Unit rows of either orientation; NaN where the points coincide.
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from spheremesh.nodes import sphere_facts, sphere_through_points
     >>> corners = np.array([[1.0, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0]])
     >>> sphere_facts(sphere_through_points(corners[None])).radii_squared.round(9).tolist()
     [1.0]

@@ -1,6 +1,7 @@
 """What the workshop allows, on the command line: errors, the last line, exit codes."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,8 @@ from spheremesh import Mesh
 from spheremesh.fabrication.mesh_files.writer import write_mesh
 from spheremesh.interfaces.cli import GATE_FAILED, main
 from spheremesh.kernel.surfaces.circular_nets import roof_net
+
+LIMITS = "--allow-step", "--allow-torsion"
 
 
 @pytest.fixture(scope="module")
@@ -38,8 +41,15 @@ def test_what_is_not_allowed_is_the_last_line(skew: Path, tmp_path: Path) -> Non
     last = result.stdout.strip().splitlines()[-1]
     assert last.startswith("NOT BUILDABLE: P201 (")
     assert "a step of" in last
+    cures = last.partition(". What would do: ")[2]
+    assert cures.startswith("vertices on their spheres, which they miss by up to ")
+    assert "(--support bisector)" in cures
+    step, twist = (float(re.search(f"{option} ([0-9.]+)", cures)[1]) for option in LIMITS)
     report = json.loads((tmp_path / "a" / "report.json").read_text("utf-8"))
     assert not report["buildable"]
+    for code, limit in (("P201", step), ("B202", twist)):
+        sizes = [found["size"] for found in report["audit"]["errors"] if found["code"] == code]
+        assert max(sizes) <= limit <= 1.02 * max(sizes)
     codes = [found["code"] for found in report["audit"]["errors"]]
     shown = [line for line in result.stderr.splitlines() if line.startswith("error P201")]
     assert set(codes) == {"P201", "B202"}

@@ -10,8 +10,13 @@ import pytest
 
 import spheremesh as sm
 from spheremesh.fabrication.mesh_files.writer import write_mesh
-from spheremesh.interfaces.panel import PanelOptions, panel_graph, run_job
-from spheremesh.nodes import NodeError
+from spheremesh.interfaces.panel import (
+    PanelOptions,
+    feasible_panel_graph,
+    panel_graph,
+    run_job,
+)
+from spheremesh.nodes import DiskStore, NodeError
 from spheremesh.nodes.library.input import ellipsoid_mesh
 
 CIRCUMFERENCES = (8, 12)
@@ -57,3 +62,27 @@ def test_an_error_of_a_writer_names_the_path_of_the_graph(tmp_path: Path) -> Non
     with pytest.raises(NodeError, match=r"cannot write roof\.xyz: ") as error:
         graph.run("wrong", write_to=tmp_path)
     assert str(tmp_path) not in error.value.reason
+
+
+def test_with_another_thickness_nothing_before_the_panels_runs(tmp_path: Path) -> None:
+    mesh = tmp_path / "dome.obj"
+    write_mesh(ellipsoid_mesh(8, 4), mesh)
+
+    def steps_run(thickness: float) -> tuple[set[str], sm.Graph]:
+        options = PanelOptions(mesh=mesh, moulds=3, thickness=thickness)
+        graph = feasible_panel_graph(options, DiskStore(tmp_path / "cache"))
+        said: list[tuple[str, str]] = []
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            graph.run("report", "blanks", on_step=lambda *state: said.append(state))
+        return {step for step, state in said if state == "running"}, graph
+
+    first, graph = steps_run(0.02)
+    later = {name for name, step in graph.steps.items() if step.node.name == "panels"}
+    for name, step in graph.steps.items():
+        if not later.isdisjoint(step.parents):
+            later.add(name)
+    assert {"mesh", "start", "optimum", "moulds"} <= first - later
+    second, _ = steps_run(0.03)
+    assert "panels" in second
+    assert second <= later

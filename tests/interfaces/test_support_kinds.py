@@ -139,6 +139,17 @@ def test_upright_beams_that_were_asked_for_are_no_matter_of_a_warning(bumps: Pat
     assert not any(text.startswith("support") for text in report["warnings"])
 
 
+def test_beams_on_top_of_panels_are_said(tmp_path: Path) -> None:
+    roof = roof_mesh(4, 6)
+    over = Mesh(roof.vertices, [face[::-1] for face in roof.faces])
+    for mesh, is_said in ((roof, False), (over, True), (vase_net(12, 6, 1.0, 2.0, 0.3), False)):
+        path = write_mesh(mesh, tmp_path / "mesh.obj")
+        warned = report_of(path, support="axis")["warnings"]
+        assert any("on top of the panels" in text for text in warned) == is_said
+        plain = report_of(path, moulds=3)["warnings"]
+        assert not any("on top of the panels" in text for text in plain)
+
+
 @pytest.mark.parametrize("moulds", [None, 2])
 def test_hexagons_keep_their_exact_nodes(tmp_path: Path, moulds: int | None) -> None:
     """The spheres of the file stay, and beams stand where they meet; moulds open gaps alone."""

@@ -1,55 +1,88 @@
 """First and second derivatives of energy (6), in the directions in which unknowns may move."""
 
-from functools import cache, partial
+from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
 from ...arrays import FloatArray, dot
 from ...solvers.block_patterns import PairKind, add_up
 from ...solvers.block_systems import Blocks, factorize_system
-from ...solvers.newton import Factorize, Model
+from ...solvers.factorization import Solver
+from ...solvers.newton import Model
 from ...spheres.minkowski import minkowski_gradient
 from ..energies.second_derivatives import SecondDerivatives
 from ..energies.setting import Group, Unknowns
 from .freedom import Tangents, row_multipliers, tangents
-from .problem import UPRIGHT, EnergyProblem, bound, weighted_residuals
+from .problem import (
+    UPRIGHT,
+    EnergyProblem,
+    WeightedResiduals,
+    bound,
+    weighted_residuals,
+)
 
 
 def energy_model(problem: EnergyProblem, unknowns: Unknowns, *, is_exact: bool) -> Model:
-    """The energy near a state; the second derivatives only if asked for."""
+    """The energy near a state; second derivatives are made when something is factorised."""
     directions = tangents(problem.freedom, unknowns, problem.layout.counts)
-
-    def _hessian(*, is_exact: bool) -> tuple[FloatArray, Factorize]:
-        gradients, blocks = _derivatives(problem, unknowns, is_exact=is_exact)
-        _bend(problem, unknowns, gradients, blocks, is_exact=is_exact)
-        reduced = _reduced(blocks, directions, problem)
-        gradient = np.concatenate(
-            [
-                np.einsum("nij,ni->nj", basis, table).ravel()
-                for basis, table in zip(directions, gradients, strict=True)
-            ]
-        )
-        return gradient, partial(factorize_system, problem.patterns[1], reduced)
-
-    gradient, factorize = _hessian(is_exact=is_exact)
+    slopes = _slopes(problem, unknowns)
 
     @cache
-    def _convex() -> Factorize:
-        return _hessian(is_exact=False)[1] if is_exact else factorize
+    def _system(*, is_exact: bool) -> Blocks:
+        blocks = _hessian(problem, unknowns, slopes, is_exact=is_exact)
+        return _reduced(blocks, directions, problem)
 
-    return Model(gradient, factorize, _convex)
+    def _factorize(shift: float) -> Solver | None:
+        return factorize_system(problem.patterns[1], _system(is_exact=is_exact), shift)
+
+    def _factorize_convex(shift: float) -> Solver | None:
+        return factorize_system(problem.patterns[1], _system(is_exact=False), shift)
+
+    gradient = np.concatenate(
+        [
+            np.einsum("nij,ni->nj", basis, table).ravel()
+            for basis, table in zip(directions, slopes.gradients, strict=True)
+        ]
+    )
+    return Model(gradient, _factorize, _factorize_convex)
 
 
-def _derivatives(
-    problem: EnergyProblem, unknowns: Unknowns, *, is_exact: bool
-) -> tuple[list[FloatArray], Blocks]:
-    """Half of the gradient and of the Hessian by the unknowns as they stand."""
-    pattern, setting = problem.patterns[0], problem.setting
-    layout = problem.layout
+class _Slopes(NamedTuple):
+    """Of each term its residuals and Jacobian, and half of the gradient of each group."""
+
+    parts: list[WeightedResiduals]
+    jacobians: list[tuple[FloatArray, ...]]
+    gradients: list[FloatArray]
+
+
+def _slopes(problem: EnergyProblem, unknowns: Unknowns) -> _Slopes:
+    pattern = problem.patterns[0]
+    parts = weighted_residuals(problem, unknowns)
+    jacobians = [term.jacobian(problem.setting, unknowns) for term in problem.terms]
     gradients = [
         np.zeros((count, width))
-        for count, width in zip(layout.counts, layout.widths, strict=True)
+        for count, width in zip(problem.layout.counts, problem.layout.widths, strict=True)
     ]
+    for number, (values, slopes, _) in enumerate(parts):
+        forces = slopes * values
+        for block, sums, table in zip(
+            pattern.blocks[number], pattern.gradients[number], jacobians[number], strict=True
+        ):
+            if sums is not None:
+                gradients[block.group] += add_up(sums, forces[:, None] * table)
+    # Upright axes: |n - m|² is 2 - 2 n·m, as n stays unit.
+    gradients[Group.NORMAL] -= UPRIGHT**2 * problem.upright
+    _, slope, _ = bound(problem, unknowns)
+    gradients[Group.VERTEX] += slope[:, None] * unknowns.displacements[: len(slope)]
+    return _Slopes(parts, jacobians, gradients)
+
+
+def _hessian(
+    problem: EnergyProblem, unknowns: Unknowns, slopes: _Slopes, *, is_exact: bool
+) -> Blocks:
+    """Half of the Hessian by the unknowns as they stand, bent as moves are."""
+    pattern, layout = problem.patterns[0], problem.layout
     diagonal = tuple(
         np.zeros((count, width, width))
         for count, width in zip(layout.counts, layout.widths, strict=True)
@@ -58,20 +91,13 @@ def _derivatives(
         kind: np.zeros((len(pairs), layout.widths[kind[0]], layout.widths[kind[1]]))
         for kind, pairs in pattern.pairs.items()
     }
-    parts = weighted_residuals(problem, unknowns)
     for number, term in enumerate(problem.terms):
-        tables = term.jacobian(setting, unknowns)
-        values, slopes, bends = parts[number]
-        forces = slopes * values
-        curvatures = slopes**2 + bends * values
-        for block, sums, table in zip(
-            pattern.blocks[number], pattern.gradients[number], tables, strict=True
-        ):
-            if sums is not None:
-                gradients[block.group] += add_up(sums, forces[:, None] * table)
+        tables = slopes.jacobians[number]
+        values, firsts, seconds = slopes.parts[number]
+        curvatures = firsts**2 + seconds * values
         bent: SecondDerivatives = {}
         if is_exact:
-            bent = term.second_derivatives(setting, unknowns, forces)
+            bent = term.second_derivatives(problem.setting, unknowns, firsts * values)
         for (i, j), addition in pattern.additions[number].items():
             first = curvatures[:, None] * tables[i]
             table = first[:, :, None] * tables[j][:, None, :]
@@ -83,23 +109,18 @@ def _derivatives(
             target += add_up(addition.straight, table)
             if addition.turned is not None:
                 target += add_up(addition.turned, table.transpose(0, 2, 1))
-    _add_bound(problem, unknowns, gradients, diagonal)
-    return gradients, Blocks(diagonal, mixed)
+    blocks = Blocks(diagonal, mixed)
+    _add_bound(problem, unknowns, blocks)
+    _bend(problem, unknowns, slopes.gradients, blocks, is_exact=is_exact)
+    return blocks
 
 
-def _add_bound(
-    problem: EnergyProblem,
-    unknowns: Unknowns,
-    gradients: list[FloatArray],
-    diagonal: tuple[FloatArray, ...],
-) -> None:
-    # Upright axes: |n - m|² is 2 - 2 n·m, as n stays unit.
-    gradients[Group.NORMAL] -= UPRIGHT**2 * problem.upright
+def _add_bound(problem: EnergyProblem, unknowns: Unknowns, blocks: Blocks) -> None:
     _, slope, bend = bound(problem, unknowns)
     moved = unknowns.displacements[: len(slope)]
-    gradients[Group.VERTEX] += slope[:, None] * moved
-    diagonal[Group.VERTEX][:] += slope[:, None, None] * np.eye(3)
-    diagonal[Group.VERTEX][:] += 2 * bend[:, None, None] * moved[:, :, None] * moved[:, None, :]
+    diagonal = blocks.diagonal[Group.VERTEX]
+    diagonal += slope[:, None, None] * np.eye(3)
+    diagonal += 2 * bend[:, None, None] * moved[:, :, None] * moved[:, None, :]
 
 
 def _bend(

@@ -158,17 +158,20 @@ def hold(
     hold and does not come nearer cannot hold: the rounds end there.
     """
     stages: list[Stage] = []
-    unknowns, objective, lowest = start, np.inf, -np.inf
+    unknowns, objective = start, np.inf
     left = {name: _Left() for name in problem.hard}
-    for number in range(MULTIPLIER_ROUNDS):
+    number, is_settled = 0, False
+    while True:
         is_last = number >= len(bound_weights) - 1
         weight = bound_weights[min(number, len(bound_weights) - 1)]
         problem = replace(problem, bound_weight=weight)
         tolerance = max(AT_REST, FIRST_ROUND * STRICTER**number)
+        # Saddles are left where the last weight comes in, and looked for once more at the end.
+        looks = is_settled or number == len(bound_weights) - 1
         descent = descend_energy(
-            problem, unknowns, max_iterations, tolerance, leaves_saddles=is_last
+            problem, unknowns, max_iterations, tolerance, leaves_saddles=looks
         )
-        unknowns, lowest = descent.state, descent.lowest
+        unknowns, minimised = descent.state, problem
         stages.append(stage_of(problem, f"round {number + 1}", descent))
         found = hard_misses(problem, unknowns)
         problem = _taken_up(problem, found)
@@ -179,17 +182,26 @@ def hold(
         }
         previous, objective = objective, _objective(problem, descent.history[-1])
         change = abs(previous - objective)
-        is_settled = change <= SAME_OBJECTIVE * objective + LEAST_DECREMENT
-        if is_last and all(each.is_held for each in left.values()):
-            if is_settled or not problem.hard:
-                return Held(unknowns, tuple(stages), lowest, is_held=True)
-        elif any(each.slow > (0 if is_used_up else PATIENCE) for each in left.values()):
+        is_same = change <= SAME_OBJECTIVE * objective + LEAST_DECREMENT
+        is_held = all(each.is_held for each in left.values())
+        is_settled = is_last and is_held and (is_same or not problem.hard)
+        if is_settled and looks:
+            return Held(unknowns, tuple(stages), descent.lowest, is_held=True)
+        is_stuck = not (is_last and is_held) and any(
+            each.slow > (0 if is_used_up else PATIENCE) for each in left.values()
+        )
+        number += 1
+        if is_stuck or number == MULTIPLIER_ROUNDS:
             break
         problem = _harder(problem, {name for name, each in left.items() if each.slow})
     # Where conditions depend on each other, multipliers grow on and on, and what is missing
     # falls slowly: less than what vertices may miss is as good as nothing.
     is_held = all(each.miss <= COMMON_VERTEX for each in left.values())
-    return Held(unknowns, tuple(stages), lowest, is_held=is_held)
+    if not looks:
+        descent = descend_energy(
+            minimised, unknowns, max_iterations, tolerance, leaves_saddles=True
+        )
+    return Held(descent.state, tuple(stages), descent.lowest, is_held=is_held)
 
 
 class _Left(NamedTuple):

@@ -7,7 +7,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, cast
 
+import numpy as np
+
 from ..annotations import Value
+from ..arrays import check_counts, check_magnitudes
 from ..errors import NodeError
 from ..kinds import convert
 from ..node import Node, collected_messages
@@ -204,29 +207,29 @@ def _joined(step: Step, entries: Sequence[Entry], shape: Index) -> Entry:
 
 def _called(step: Step, arguments: Mapping[str, Any]) -> Value:
     node: Node = step.node
-    inputs: dict[str, Any] = {}
-    for name, value in arguments.items():
-        port = node.inputs[name]
-        # What comes by wire was checked as a type; items of lists were not, and small values
-        # are looked at again.
-        is_listed = isinstance(step.inputs.get(name), Each | list | tuple)
-        if is_listed or value is None or isinstance(value, bool | int | float | str):
-            check_value(port, value, f"{step.name}.{name}")
-        inputs[name] = _converted(port, value, f"{step.name}.{name}")
-    value = node.function(**inputs)
+    value = node.function(**_inputs(step, arguments))
     if node.has_fields and not isinstance(value, node.result_type):
         kind = node.result_type.__name__
         raise TypeError(f"node {node.name} must return {kind}, not {type(value).__name__}")
     return value
 
 
-def _converted(port: Port, value: Value, where: str) -> Value:
-    try:
-        return convert(port.type, value)
-    except (TypeError, ValueError, OverflowError):
-        # A list into which wires were put may hold what the input does not accept.
-        check_value(port, value, where)
-        raise
+def _inputs(step: Step, arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """What a function is given: checked, and in the form that it expects.
+
+    A wire was checked as a type when it was drawn; what has come by it is known only now.
+    """
+    ports, inputs, has_arrays = step.node.inputs, dict[str, Any](), False
+    for name, value in arguments.items():
+        where = f"{step.name}.{name}"
+        check_value(ports[name], value, where)
+        inputs[name] = convert(ports[name].type, value)
+        if isinstance(inputs[name], np.ndarray):
+            check_magnitudes(inputs[name], where)
+            has_arrays = True
+    if has_arrays:
+        check_counts(step.name, {name: ports[name].type for name in inputs}, inputs)
+    return inputs
 
 
 def _returned(value: Value, written: Mapping[str, str]) -> Value:

@@ -6,7 +6,7 @@ from typing import Any, cast
 
 from ..annotations import Hint, Value, element_type, type_name
 from ..errors import GraphError, nearest
-from ..kinds import accepts, fits
+from ..kinds import fits
 from ..node import Node
 from ..ports import REQUIRED, Port, check_value
 from ..stores.digests import digest
@@ -68,7 +68,7 @@ def connect(place: Place, port: Port, given: Value, at: str = "") -> Value:
         value = _present_value(place, given)
         _check_literal(port, value, f"param {given.name} for {where}")
     elif isinstance(given, list | tuple) and _has_sources(given):
-        if not accepts(port.type, []):
+        if not fits(list[Any], port.type):
             raise GraphError(f"{where}: a list, must be {type_name(port.type)}; use each(...)")
         item_port = replace(port, type=element_type(port.type))
         items = cast("Sequence[Value]", given)

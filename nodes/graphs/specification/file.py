@@ -23,6 +23,7 @@ VERSIONS = (1, 2)
 OWN_ENTRIES = (
     "format", "version", "title", "units", "params", "steps", "groups", "comments", "contents",
 )  # fmt: skip
+OWN_PARAM_ENTRIES = ("value", "min", "max", "choices")
 OWN_STEP_ENTRIES = ("node", "version", "module", "graph", "outputs", "inputs")
 _LIBRARY = __name__.partition(".graphs.")[0] + ".library."
 _LONGEST_MESSAGE = 400
@@ -107,7 +108,8 @@ def _encode_param(param: Param, value: Value, contents: Contents) -> dict[str, V
     limits = {"min": port.min, "max": port.max, "choices": list(port.choices) or None}
     facts = {"value": value, **{k: v for k, v in limits.items() if v is not None}}
     where = f"params.{param.name}"
-    return {key: _encode_at(where, value, contents) for key, value in facts.items()}
+    own = {key: _encode_at(where, value, contents) for key, value in facts.items()}
+    return {**own, **param.extra}
 
 
 def _encode_step(step: Step, contents: Contents) -> dict[str, Value]:

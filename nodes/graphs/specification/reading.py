@@ -5,6 +5,7 @@ import json
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
 from typing import Any, cast
@@ -17,7 +18,7 @@ from ..stores.results import own, snapshot
 from .connections import check_name
 from .edits import Inputs, with_draft, with_step
 from .encoding import Names, decode, parse_json
-from .file import FORMAT, OWN_ENTRIES, OWN_STEP_ENTRIES, VERSIONS
+from .file import FORMAT, OWN_ENTRIES, OWN_PARAM_ENTRIES, OWN_STEP_ENTRIES, VERSIONS
 from .order import ordered
 from .specification import Specification, frozen
 from .subgraphs import Call, graph_node
@@ -80,7 +81,7 @@ def _checked_content(content: dict[str, Any]) -> dict[str, Any]:
     _entry(content, "units", str, "")
     for name, facts in _entry(content, "params", dict, "").items():
         _checked(facts, dict, f"params.{name}")
-        _refuse_others(facts, ("value", "min", "max", "choices"), f"params.{name}")
+        _refuse_misspelt(facts, OWN_PARAM_ENTRIES, f"params.{name}")
         if "value" not in facts:
             raise GraphError(f'params.{name}: "value" is missing')
         if not isinstance(facts.get("choices", []), list):
@@ -175,7 +176,9 @@ def _no_wire(name: str) -> Value:
 
 
 def _slider(graph: Specification, name: str, facts: Mapping[str, Any], names: Names) -> Param:
-    decoded = {key: decode(value, names) for key, value in facts.items()}
+    own_facts = {key: value for key, value in facts.items() if key in OWN_PARAM_ENTRIES}
+    extra = {key: value for key, value in facts.items() if key not in OWN_PARAM_ENTRIES}
+    decoded = {key: decode(value, names) for key, value in own_facts.items()}
     check_name(name, "param")
     value = decoded.pop("value")
     if isinstance(value, Each):
@@ -183,7 +186,7 @@ def _slider(graph: Specification, name: str, facts: Mapping[str, Any], names: Na
     choices = tuple(decoded.pop("choices", ()))
     port = Port(name=name, choices=choices, **decoded)
     check_slider(value, port)
-    return Param(graph.owner, name, own(value, snapshot), port)
+    return Param(graph.owner, name, own(value, snapshot), port, frozen(extra))
 
 
 def _stored(inline: Mapping[str, Any], folder: Path | None, name: str) -> Value:
@@ -312,7 +315,8 @@ def _checked(value: Value, kind: type, where: str) -> Value:
     return value
 
 
-def _refuse_others(facts: Mapping[str, Any], known: Sequence[str], where: str) -> None:
+def _refuse_misspelt(facts: Mapping[str, Any], known: Sequence[str], where: str) -> None:
+    """Entries of others are kept; one that nearly has a name of ours was meant to be ours."""
     for key in facts:
-        if key not in known:
+        if key not in known and get_close_matches(key[:100], known, n=1, cutoff=0.7):
             raise GraphError(f"{where}: unknown entry {key!r}; {nearest(key, known)}")

@@ -12,6 +12,10 @@ from ..node import Node
 from ..ports import Port
 
 
+def _empty() -> Mapping[str, Any]:
+    return _EMPTY
+
+
 @dataclass(frozen=True, eq=False)
 class Param:
     """A slider.
@@ -22,12 +26,15 @@ class Param:
         What all that belongs to a graph and its copies has in common.
     value : object
         Its value when the slider was made; that of `Graph.params` is the present one.
+    extra : mapping of str to object
+        Entries of its place in a graph file that others have put there.
     """
 
     graph: object = field(repr=False)
     name: str
     value: Value
     port: Port = field(repr=False)
+    extra: Mapping[str, Any] = field(default_factory=_empty, repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,10 +130,6 @@ def each(values: Value, *, match: str = "", axis: str = "") -> Each:
     if isinstance(values, Iterable):
         return Each(list(values), match, axis)  # pyright: ignore[reportUnknownArgumentType]
     raise GraphError(f"each needs a list or a wire, not {type(values).__name__}")
-
-
-def _empty() -> Mapping[str, Any]:
-    return _EMPTY
 
 
 @dataclass(frozen=True, eq=False)

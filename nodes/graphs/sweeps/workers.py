@@ -31,6 +31,8 @@ _RETRIES: Final = 2
 _MOST_ABANDONED: Final = 600.0
 """Seconds without any worker after which a cluster is given up."""
 _NO_WORKERS: Final = "the cluster has no workers any more"
+_ENDS: Final = ("finished", "error", "cancelled")
+"""What a future of Dask may end as; one that is pending or lost is still to come."""
 _LOOK_AGAIN: Final = 5.0
 """Seconds after which results that were announced are asked for again."""
 
@@ -159,6 +161,7 @@ def _finished(
             began = time.monotonic()
             with suppress(TimeoutError):
                 wait_for_any(list(futures), timeout=_LOOK_AGAIN, return_when="FIRST_COMPLETED")
+            _reopen(client.cluster)
             if client.scheduler_info()["workers"]:
                 abandoned = 0.0
             else:
@@ -166,13 +169,26 @@ def _finished(
             if abandoned > _MOST_ABANDONED:
                 yield from ((task, Outcome(error=_NO_WORKERS)) for task in futures.values())
                 return
-            for future in [each for each in futures if each.done()]:
-                with suppress(TimeoutError):
-                    outcome = _dask_outcome(future)
-                    yield futures.pop(future), outcome
+            for future in list(futures):
+                # Asked one by one: those after it may be lost while one is waited for.
+                if future.status in _ENDS:
+                    with suppress(TimeoutError):
+                        outcome = _dask_outcome(future)
+                        yield futures.pop(future), outcome
     finally:
         for future in futures:
             future.cancel()
+
+
+def _reopen(cluster: Any) -> None:  # noqa: ANN401
+    """Have workers back that a cluster of this process has given up.
+
+    It does so with those that are not there fifteen seconds after a death, though they may be
+    starting for the second time; what it was asked for it starts when it is asked once more.
+    """
+    asked = len(getattr(cluster, "worker_spec", ()))
+    if asked and len(cluster.workers) < asked:
+        cluster.scale(asked)
 
 
 def _dask_outcome(future: Any) -> Outcome | None:  # noqa: ANN401

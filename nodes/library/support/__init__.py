@@ -4,6 +4,7 @@ axis         Beams in planes of their edge and its node axes: vertices and spher
 beams        Beams of annuli, and the marks for drilling them.
 bisector     Upright beams for any mesh: their planes bisect the faces, cylinders take up the
              torsion.
+equal_radii  Spheres of equal radii, to start a support from.
 exact        Nets that slide until beams and panels meet exactly.
 feasibility  Whether a mesh can have beams on node axes.
 kept         Spheres that a mesh has already, with the nodes of a support in them.

@@ -147,7 +147,7 @@ def beams(
 @node
 def drilling_marks(
     beams: Beams,
-    count: Annotated[int, Port(min=1)] = 2,
+    count: Annotated[int, Port(min=1, max=1000)] = 2,
     diameter: Annotated[float | None, Port(min=0)] = None,
     inset: Annotated[float | None, Port(min=0)] = None,
 ) -> MarkedBeams:

@@ -119,8 +119,8 @@ def least_node_radius(
     >>> from spheremesh.nodes import bisector_support, fit_spheres, least_node_radius
     >>> from spheremesh.nodes import triangulate, vase_mesh
     >>> annuli = bisector_support(fit_spheres(triangulate(vase_mesh(12, 6))), depth=0.1).annuli
-    >>> bool(0.005 < least_node_radius(annuli, thickness=0.01) < 0.1)
-    True
+    >>> round(least_node_radius(annuli, thickness=0.01), 4)
+    0.0681
     """
     if thickness is None:
         thickness = mean_end_depth(annuli) / 10

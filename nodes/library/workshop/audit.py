@@ -152,7 +152,7 @@ def check_step(path: ReadPath) -> Audit:
     --------
     >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
-    >>> from spheremesh.nodes import fit_spheres, panels, torus_mesh, write_step
+    >>> from spheremesh.nodes import check_step, fit_spheres, panels, torus_mesh, write_step
     >>> torus = panels(fit_spheres(torus_mesh(8, 6)), thickness=0.02).panels
     >>> with TemporaryDirectory() as folder:
     ...     check_step(write_step(torus, Path(folder) / "torus.step")).findings

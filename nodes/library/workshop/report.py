@@ -1,6 +1,5 @@
 """The report of a panelling."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -15,8 +14,7 @@ from ....kernel.support.annulus_construction import AnnuliReport
 from ....kernel.support.beam_supports import SupportReport
 from ....kernel.support.feasibility import FeasibilityReport
 from ....kernel.support.node_axes import NodesReport
-from ....kernel.tolerances import ROUGHER, WIDER_GAP
-from ...graphs.node import node, warn
+from ...graphs.node import node
 from ...graphs.ports import Units
 from ..cluster import BlanksReport, MouldsReport
 from ..fabricate import CutReport
@@ -25,6 +23,7 @@ from ..support.beams import BeamsReport
 from ..support.exact import ExactSupportReport
 from ..support.structure import LandingReport
 from .audit import AuditReport
+from .losses import warn_of_losses, warn_of_side, warn_of_support
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +148,9 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         angles["unclustered"] = optimum["angles_deg"]["spherical"]
         found = {name: moulds[name] for name in found}
     miss = float(vertex_error(sphere_mesh).max())
-    _warn_of_losses(angles, cut, plain)
+    warn_of_losses(angles, cut, plain, annuli, support)
+    if annuli is not None:
+        warn_of_side(mesh)
     made_beams = {
         "written": beams["written"] if beams else 0,
         "rejected": [
@@ -212,31 +213,6 @@ def _design_move(
     return {"max": total * edge, "relative_to_edge": total}
 
 
-def _warn_of_losses(
-    angles: Mapping[str, Mapping[str, float]], cut: CutReport, plain: CutReport | None
-) -> None:
-    """Say where flat panels, or panels without moulds and support, would be better."""
-    spherical, planar = angles["spherical"]["mean"], angles["planar"]["mean"]
-    if spherical > planar * (1 + ROUGHER):
-        warn(
-            f"rougher than flat panels: neighbours meet at {spherical:.3g} degrees in the "
-            f"mean, flat ones at {planar:.3g}; more moulds, or none, may be smoother"
-        )
-    if plain is None:
-        return
-    if cut["written"] < plain["written"]:
-        warn(
-            f"{cut['written']} panels instead of {plain['written']} without moulds and "
-            "support: more moulds, or --support bisector, may keep them"
-        )
-    wide, usual = cut["edge_gap"]["relative_to_edge"], plain["edge_gap"]["relative_to_edge"]
-    if wide > usual + WIDER_GAP:
-        warn(
-            f"gaps between edges are up to {100 * wide:.2g} % of an edge, and without moulds "
-            f"and support {100 * usual:.2g} %: more moulds, or --support exact, may close them"
-        )
-
-
 def _support(
     optimum: OptimumReport,
     nodes: NodesReport | None,
@@ -252,7 +228,7 @@ def _support(
         "feasibility": dict(feasibility) if feasibility else None,
     }
     if isinstance(annuli, SupportReport):
-        _warn_of_support(annuli, feasibility, asked)
+        warn_of_support(annuli, feasibility, asked)
         return {
             "kind": "exact" if asked == "exact" else annuli.kind,
             "asked": asked or annuli.kind,
@@ -274,18 +250,3 @@ def _support(
         "beam_tilt_deg_max": (annuli["tilt_deg"] if annuli else nodes["beam_tilt_deg"])["max"],
         **common,
     }
-
-
-def _warn_of_support(
-    annuli: SupportReport, feasibility: FeasibilityReport | None, asked: str | None
-) -> None:
-    """Say what became of beams on node axes where they were asked for and are not good."""
-    if feasibility is None or asked != "axis" or feasibility.verdict == "feasible":
-        return
-    instead = (
-        "upright beams with node cylinders instead (--support bisector); for axes in common "
-        "remesh to quadrilaterals or hexagons"
-        if annuli.kind == "bisector"
-        else "remesh, or take upright beams (--support bisector)"
-    )
-    warn(f"support {feasibility.verdict}: {feasibility.reason}: {instead}")

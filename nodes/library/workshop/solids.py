@@ -30,7 +30,7 @@ def cadquery_solids(
 
     Examples
     --------
-    >>> from spheremesh.nodes import fit_spheres, panels, torus_mesh
+    >>> from spheremesh.nodes import cadquery_solids, fit_spheres, panels, torus_mesh
     >>> torus = panels(fit_spheres(torus_mesh(8, 6)), thickness=0.02).panels
     >>> len(cadquery_solids(torus).children)
     48

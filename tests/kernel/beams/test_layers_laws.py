@@ -199,6 +199,12 @@ def test_missing_panels_and_their_beams() -> None:
     beams, rejected = beams_under_panels(annuli, some, 0.03)
     assert rejected == ()
     assert rest_clearances(beams, some)[2].min() > -1e-9
+    one = select_parts(panels, np.arange(panels.n_panels) == 0)
+    alone, rejected = beams_under_panels(annuli, one, 0.03, node_radius=0.05)
+    assert rejected == ()
+    assert alone.cylinder_tops is not None
+    assert np.isfinite(alone.cylinder_tops).all()
+    assert (node_cylinders(alone).heights > 0.1).all()
     none = select_parts(panels, np.zeros(panels.n_panels, bool))
     beams, _ = beams_under_panels(annuli, none, 0.03)
     np.testing.assert_array_equal(beams.corners, cut_beams(annuli, 0.03)[0].corners)

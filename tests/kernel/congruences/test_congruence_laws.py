@@ -214,6 +214,17 @@ def test_law_c3_spheres_of_revolution_are_conjugate_in_rows_of_any_scale() -> No
     assert conjugacy_residuals(along_u, along_v, other, lift=scale * row).min() > 1e-3
 
 
+def test_conjugacy_of_what_is_not_finite_is_unknown() -> None:
+    along_u, along_v, mixed = np.random.default_rng(5).normal(size=(3, 4, 3))
+    expected = conjugacy_residuals(along_u, along_v, mixed)
+    along_u[1, 2], mixed[3, 0] = np.inf, np.nan
+    found = conjugacy_residuals(along_u, along_v, mixed)
+    np.testing.assert_array_equal(found[[0, 2]], expected[[0, 2]])
+    assert np.isnan(found[[1, 3]]).all()
+    one = conjugacy_residuals(along_u[:1], along_v[:1], mixed[:3])
+    np.testing.assert_array_equal(one[0], expected[0])
+
+
 # C5
 
 

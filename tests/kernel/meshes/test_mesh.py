@@ -56,6 +56,7 @@ def test_faces_of_mixed_degree_round_trip() -> None:
     assert [face.tolist() for face in mesh.faces] == HOUSE
     assert mesh.degrees.tolist() == [4, 3, 5]
     assert (mesh.n_vertices, mesh.n_faces) == (8, 3)
+    assert mesh.counts == {"V": 8, "F": 3, "E": len(mesh.topology.edge_faces)}
     assert mesh.offsets.tolist() == [0, 4, 7, 12]
     again = Mesh(mesh.vertices, mesh.faces)
     np.testing.assert_array_equal(again.corners, mesh.corners)

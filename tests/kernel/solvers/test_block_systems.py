@@ -1,5 +1,7 @@
 """Block systems against dense algebra; nested dissection; what is not positive definite."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -7,6 +9,7 @@ from hypothesis import strategies as st
 from scipy.sparse import csc_array
 
 from spheremesh.kernel.arrays import FloatArray, IntArray
+from spheremesh.kernel.errors import ConvergenceError
 from spheremesh.kernel.solvers.block_patterns import add_up, hessian_pattern
 from spheremesh.kernel.solvers.block_systems import (
     Blocks,
@@ -20,7 +23,11 @@ from spheremesh.kernel.solvers.blocks import (
     jacobian_pattern,
 )
 from spheremesh.kernel.solvers.dissection import SMALLEST_SET, dissect
-from spheremesh.kernel.solvers.factorization import factorize_symmetric, solve_definite
+from spheremesh.kernel.solvers.factorization import (
+    factorize,
+    factorize_symmetric,
+    solve_definite,
+)
 from spheremesh.kernel.solvers.multifrontal import (
     factorize_fronts,
     frontal_pattern,
@@ -198,3 +205,11 @@ def test_jacobians_have_their_blocks_and_keep_zeros() -> None:
     dense = matrix.toarray()
     np.testing.assert_array_equal(dense[9 + 2, 4:6], entries[1][0][2])
     np.testing.assert_array_equal(dense[9 + 3, 8:11], entries[1][1][3])
+
+
+@pytest.mark.parametrize("direct", [factorize, factorize_symmetric])
+def test_a_singular_matrix_ends_in_an_error_of_ours(
+    direct: Callable[[object], object],
+) -> None:
+    with pytest.raises(ConvergenceError, match="cannot be solved"):
+        direct(csc_array(np.diag([1.0, 0.0, 2.0])))

@@ -26,7 +26,7 @@ def minimise(
 
     def _model(x: FloatArray) -> Model:
         _, gradient, hessian, convex = function(x)
-        return Model(np.asarray(gradient) / 2, dense(hessian / 2), lambda: dense(convex / 2))
+        return Model(np.asarray(gradient) / 2, dense(hessian / 2), dense(convex / 2))
 
     problem = Problem(
         lambda x: np.array([function(x)[0]]),

@@ -264,6 +264,15 @@ def test_law_b5_sphere_through_points_at_any_scale(scale: float, distance: float
     np.testing.assert_allclose(square, scale**2, rtol=1e-10 + 10 * rounding)
 
 
+def test_no_sphere_is_through_points_that_coincide() -> None:
+    good = np.array([[1.0, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0]])
+    far = good.copy()
+    far[1, 2] = np.inf
+    rows = sphere_through_points(np.array([np.full((4, 3), 7.0), good, far, 0 * good]))
+    assert np.isnan(rows).all(axis=1).tolist() == [True, False, True, True]
+    np.testing.assert_array_equal(rows[1], sphere_through_points(good))
+
+
 @given(center=POINTS, normal=directions(), radius=RADII, point=POINTS)
 def test_law_b5_sphere_through_circle_and_point(
     center: FloatArray, normal: FloatArray, radius: float, point: FloatArray

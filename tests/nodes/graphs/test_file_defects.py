@@ -2,56 +2,16 @@
 
 import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-import numpy as np
 import pytest
-from numpy.typing import NDArray
+from graph_toys import mix, mixed_graph, quote_graph, split, use_blob
 
 import spheremesh as sm
 from spheremesh.nodes import GraphError, node
-from spheremesh.nodes.graphs.node import running_graph
 from spheremesh.nodes.graphs.specification import file
-
-
-class Parts(NamedTuple):
-    """Low and high."""
-
-    low: float
-    high: float
-
-
-def split(value: float) -> Parts:
-    return Parts(value / 4, 3 * value / 4)
-
-
-def mix(
-    a: float,
-    weights: NDArray[np.float64] | None = None,
-    facts: Mapping[str, Any] | None = None,
-    limit: float = 1.0,
-    name: str = "",
-) -> float:
-    total = 0.0 if weights is None else float(weights.sum())
-    return a + total + len(facts or {}) + min(limit, 100) + len(name)
-
-
-def quote_graph() -> str:
-    return running_graph()
-
-
-class Blob:
-    """Has a content, but no form in JSON."""
-
-    def content_key(self) -> bytes:
-        """Equal for all."""
-        return b""
-
-
-def use_blob(blob: Blob) -> str:
-    return running_graph() + type(blob).__name__
 
 
 @pytest.fixture(autouse=True)
@@ -59,19 +19,6 @@ def toys() -> None:
     """Register the toys for one test."""
     for function in (split, mix, quote_graph, use_blob):
         node(function)
-
-
-def example() -> sm.Graph:
-    g = sm.Graph("Dachfläche", units="mm")
-    k = g.param("k", 8, min=1, max=60)
-    g.param("kind", "best", choices=["best", "fast"])
-    parts = g.add(split, value=k)
-    g.add(
-        mix, "mixed", name="x", a=parts.high, limit=float("inf"), facts={"a": [1, None]},
-        weights=np.array([[1.5, 2.5]]),
-    )  # fmt: skip
-    g.add(mix, "mapped", a=sm.each([1, parts.low, k]), weights=[1, 2])
-    return g
 
 
 Change = Callable[[dict[str, Any]], object]
@@ -198,7 +145,7 @@ DEFECTS: list[tuple[Change, str]] = [
 
 @pytest.mark.parametrize(("change", "message"), DEFECTS, ids=[text for _, text in DEFECTS])
 def test_a_defect_of_a_file_is_named(tmp_path: Path, change: Change, message: str) -> None:
-    content = json.loads(example().to_json())
+    content = json.loads(mixed_graph().to_json())
     change(content)
     path = tmp_path / "graph.json"
     path.write_text(json.dumps(content), encoding="utf-8")
@@ -251,14 +198,14 @@ def test_a_file_that_is_too_long_is_not_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "graph.json"
-    example().save(path)
+    mixed_graph().save(path)
     monkeypatch.setattr(file, "MOST_BYTES", 100)
     with pytest.raises(GraphError, match=r"graph\.json: longer than 100 bytes"):
         sm.Graph.load(path)
 
 
 def test_a_cut_off_file_is_refused_at_every_byte() -> None:
-    text = example().to_json().rstrip()
+    text = mixed_graph().to_json().rstrip()
     for i in range(len(text)):
         with pytest.raises(GraphError, match="not JSON"):
             sm.Graph.from_json(text[:i])

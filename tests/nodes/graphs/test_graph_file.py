@@ -4,56 +4,16 @@ import difflib
 import json
 import subprocess
 import sys
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
+from graph_toys import Blob, mix, mixed_graph, quote_graph, split, use_blob
 
 import spheremesh as sm
 from spheremesh.nodes import GraphError, node
 from spheremesh.nodes.graphs.node import running_graph
 from spheremesh.nodes.graphs.specification import reading
-
-
-class Parts(NamedTuple):
-    """Low and high."""
-
-    low: float
-    high: float
-
-
-def split(value: float) -> Parts:
-    return Parts(value / 4, 3 * value / 4)
-
-
-def mix(
-    a: float,
-    weights: NDArray[np.float64] | None = None,
-    facts: Mapping[str, Any] | None = None,
-    limit: float = 1.0,
-    name: str = "",
-) -> float:
-    total = 0.0 if weights is None else float(weights.sum())
-    return a + total + len(facts or {}) + min(limit, 100) + len(name)
-
-
-def quote_graph() -> str:
-    return running_graph()
-
-
-class Blob:
-    """Has a content, but no form in JSON."""
-
-    def content_key(self) -> bytes:
-        """Equal for all."""
-        return b""
-
-
-def use_blob(blob: Blob) -> str:
-    return running_graph() + type(blob).__name__
 
 
 @pytest.fixture(autouse=True)
@@ -63,21 +23,8 @@ def toys() -> None:
         node(function)
 
 
-def example() -> sm.Graph:
-    g = sm.Graph("Dachfläche", units="mm")
-    k = g.param("k", 8, min=1, max=60)
-    g.param("kind", "best", choices=["best", "fast"])
-    parts = g.add(split, value=k)
-    g.add(
-        mix, "mixed", name="x", a=parts.high, limit=float("inf"), facts={"a": [1, None]},
-        weights=np.array([[1.5, 2.5]]),
-    )  # fmt: skip
-    g.add(mix, "mapped", a=sm.each([1, parts.low, k]), weights=[1, 2])
-    return g
-
-
 def test_a_loaded_graph_is_the_same(tmp_path: Path) -> None:
-    g = example()
+    g = mixed_graph()
     g.set(k=12)
     path = tmp_path / "graph.json"
     g.save(path)
@@ -93,7 +40,7 @@ def test_a_loaded_graph_is_the_same(tmp_path: Path) -> None:
 
 
 def test_the_form_of_the_file() -> None:
-    content = json.loads(example().to_json())
+    content = json.loads(mixed_graph().to_json())
     assert content["params"]["k"] == {"value": 8, "min": 1, "max": 60}
     assert content["steps"]["split"]["inputs"] == {"value": {"param": "k"}}
     assert list(content["steps"]["mixed"]["inputs"]) == [
@@ -110,7 +57,7 @@ def test_the_form_of_the_file() -> None:
 
 
 def test_one_change_is_one_line() -> None:
-    g = example()
+    g = mixed_graph()
     before = g.to_json()
     g.set(k=9)
     lines = difflib.unified_diff(before.splitlines(), g.to_json().splitlines(), n=0)
@@ -120,7 +67,7 @@ def test_one_change_is_one_line() -> None:
 
 def test_saving_replaces_only_with_a_whole_file(tmp_path: Path) -> None:
     path = tmp_path / "graph.json"
-    g = example()
+    g = mixed_graph()
     g.save(path)
     before = path.read_bytes()
     g.add(use_blob, blob=Blob())
@@ -133,15 +80,15 @@ def test_saving_replaces_only_with_a_whole_file(tmp_path: Path) -> None:
 
 
 def test_a_step_may_stand_before_what_it_needs() -> None:
-    content = json.loads(example().to_json())
+    content = json.loads(mixed_graph().to_json())
     content["steps"] = dict(reversed(content["steps"].items()))
     g = sm.Graph.from_json(json.dumps(content))
     assert list(g.steps) == ["split", "mapped", "mixed"]
-    assert g.run("mixed") == example().run("mixed")
+    assert g.run("mixed") == mixed_graph().run("mixed")
 
 
 def test_another_version_of_a_node_is_told() -> None:
-    text = example().to_json()
+    text = mixed_graph().to_json()
     node(version="2")(split)
     with pytest.warns(
         UserWarning, match="'split' was saved with version 1 of node split, this"
@@ -160,7 +107,7 @@ def test_a_writer_can_keep_its_graph() -> None:
 
 
 def test_mermaid() -> None:
-    lines = example().mermaid().splitlines()
+    lines = mixed_graph().mermaid().splitlines()
     assert lines[0] == "flowchart LR"
     assert '  param_k(["k = 8"])' in lines
     assert '  step_mixed["mixed (mix)"]' in lines
@@ -209,7 +156,7 @@ def test_many_steps_in_the_wrong_order_are_quickly_in_order() -> None:
 def test_ports_of_old_files_are_read_by_their_present_names(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    text = example().to_json()
+    text = mixed_graph().to_json()
     old = text.replace('"weights":', '"loads":').replace('"value": {', '"number": {')
     old = old.replace("split.high", "split.upper")
     with pytest.raises(GraphError, match=r"steps\.split: .* has no input 'number'"):

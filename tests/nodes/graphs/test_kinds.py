@@ -5,28 +5,27 @@ import typing
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple, TypeVar, TypeVarTuple
+from typing import Annotated, Any, Literal, TypeVar, TypeVarTuple
 
 import numpy as np
 import pytest
+from graph_toys import (
+    Round,
+    Shape,
+    fit_shape,
+    measure,
+    pick,
+    read_shape,
+    to_path,
+    to_text,
+    translate,
+)
 from numpy.typing import ArrayLike, NDArray
 
 import spheremesh as sm
 from spheremesh.nodes import Port, node
 from spheremesh.nodes.graphs.annotations import ArrayFacts, type_name
 from spheremesh.nodes.graphs.kinds import accepts, convert, fits, record_fault
-
-
-class Shape:
-    """Something that has a content."""
-
-    def content_key(self) -> bytes:
-        """Equal for all."""
-        return b""
-
-
-class Round(Shape):
-    """A kind of shape."""
 
 
 @dataclass(frozen=True)
@@ -51,43 +50,6 @@ class CutReport(Report):
 
 class AngleReport(Report):
     """Of angles."""
-
-
-class Fit(NamedTuple):
-    """A shape and its report."""
-
-    shape: Round
-    report: Mapping[str, Any]
-
-
-def read_shape(path: str) -> Shape:
-    return Shape() if path else Round()
-
-
-def fit_shape(shape: Shape, ring: Annotated[int, Port(min=0, max=5, unit="steps")] = 1) -> Fit:
-    return Fit(Round(), {"ring": ring, "of": str(shape)})
-
-
-def measure(
-    shape: Round, kind: Literal["area", "length"] = "area", labels: Sequence[int] | None = None
-) -> float:
-    return len(kind) + len(labels or ()) + float(isinstance(shape, Round))
-
-
-def pick(kind: Annotated[str, Port(choices=("a", "b"))]) -> str:
-    return kind
-
-
-def translate(offset: tuple[float, float, float]) -> tuple[float, float, float]:
-    return offset
-
-
-def to_path(path: Path) -> Path:
-    return path / "x"
-
-
-def to_text(text: str) -> str:
-    return text.upper()
 
 
 @pytest.fixture(autouse=True)

@@ -1,64 +1,25 @@
 """Errors when wired: both ends are named, and the nearest valid name."""
 
-from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
+from graph_toys import (
+    Round,
+    Shape,
+    fit_shape,
+    measure,
+    pick,
+    read_shape,
+    to_path,
+    to_text,
+    translate,
+)
 from numpy.typing import NDArray
 
 import spheremesh as sm
-from spheremesh.nodes import GraphError, NodeError, Port, node
-
-
-class Shape:
-    """Something that has a content."""
-
-    def content_key(self) -> bytes:
-        """Equal for all."""
-        return b""
-
-
-class Round(Shape):
-    """A kind of shape."""
-
-
-class Fit(NamedTuple):
-    """A shape and its report."""
-
-    shape: Round
-    report: Mapping[str, Any]
-
-
-def read_shape(path: str) -> Shape:
-    return Shape() if path else Round()
-
-
-def fit_shape(shape: Shape, ring: Annotated[int, Port(min=0, max=5, unit="steps")] = 1) -> Fit:
-    return Fit(Round(), {"ring": ring, "of": str(shape)})
-
-
-def measure(
-    shape: Round, kind: Literal["area", "length"] = "area", labels: Sequence[int] | None = None
-) -> float:
-    return len(kind) + len(labels or ()) + float(isinstance(shape, Round))
-
-
-def pick(kind: Annotated[str, Port(choices=("a", "b"))]) -> str:
-    return kind
-
-
-def translate(offset: tuple[float, float, float]) -> tuple[float, float, float]:
-    return offset
-
-
-def to_path(path: Path) -> Path:
-    return path / "x"
-
-
-def to_text(text: str) -> str:
-    return text.upper()
+from spheremesh.nodes import GraphError, NodeError, node
 
 
 @pytest.fixture(autouse=True)

@@ -1,7 +1,10 @@
 """The library is found by itself, and only when asked for."""
 
+import ast
+import builtins
 import subprocess
 import sys
+from doctest import DocTestParser
 
 import pytest
 
@@ -24,6 +27,22 @@ def test_every_node_has_an_example(name: str) -> None:
     example = nodes.find_node(name).help.partition("\nExamples\n--------\n")[2]
     assert f"{name}(" in example
     assert not example.splitlines()[-1].startswith((">>>", "..."))
+
+
+@pytest.mark.parametrize("name", LIBRARY)
+def test_examples_run_wherever_they_are_pasted(name: str) -> None:
+    """Doctest lends them the names of the module; the reader has none."""
+    parts = DocTestParser().get_examples(nodes.find_node(name).help)
+    bound, used = set(dir(builtins)), set[str]()
+    for part in ast.walk(ast.parse("".join(example.source for example in parts))):
+        match part:
+            case ast.Name(id=word, ctx=ast.Load()):
+                used.add(word)
+            case ast.Name(id=word) | ast.arg(arg=word):
+                bound.add(word)
+            case ast.Import(names=aliases) | ast.ImportFrom(names=aliases):
+                bound |= {(alias.asname or alias.name).partition(".")[0] for alias in aliases}
+    assert used <= bound
 
 
 def test_importing_spheremesh_imports_no_node_and_nothing_heavy() -> None:

@@ -24,6 +24,8 @@ from spheremesh.nodes import (
     cadquery_solids,
     central_spheres,
     drilling_marks,
+    ellipsoid_mesh,
+    equal_radii,
     face_planes,
     fit_spheres,
     keep_spheres,
@@ -386,3 +388,25 @@ def test_assemblies_are_drawn_whole_and_near_a_node(tmp_path: Path) -> None:
     assert paper[1] < paper[0] < 1
     with pytest.raises(InputError, match="no beam ends at vertex 99"):
         render_assembly(cut, made, tmp_path / "roof.png", near=99)
+
+
+def test_equal_radii_start_supports_on_vertices_that_slide() -> None:
+    """The optimum is the same as from smallest angles; pieces have radii of their own."""
+    net = ellipsoid_mesh(10, 5)
+    start = equal_radii(net)
+    curvatures = np.abs(2 * start.local_spheres[:, 0])
+    assert np.ptp(curvatures) < 1e-12 * curvatures.max()
+    assert vertex_error(start).max() < 1e-9
+    found = [
+        optimize_spheres(spheres, regularity=3.5, support=1, tolerance=0.3)
+        for spheres in (start, minimize_angles(fit_spheres(net)).sphere_mesh)
+    ]
+    means = [each.report.angles_deg["spherical"]["mean"] for each in found]
+    assert means[0] == pytest.approx(means[1], rel=1e-3)
+    assert support_structure(found[0].sphere_mesh).torsion.max() < 1e-5
+    both = Mesh(
+        np.vstack([net.vertices, 3 * net.vertices + 40]),
+        [*net.faces, *(face + net.n_vertices for face in net.faces)],
+    )
+    small, large = np.split(np.abs(equal_radii(both).local_spheres[:, 0]), 2)
+    np.testing.assert_allclose(small, 3 * large, rtol=1e-9)

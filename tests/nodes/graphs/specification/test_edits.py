@@ -2,27 +2,17 @@
 
 import random
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pytest
+from graph_toys import split
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import spheremesh as sm
 from spheremesh.nodes import GraphError, node
-
-
-class Parts(NamedTuple):
-    """Low and high."""
-
-    low: float
-    high: float
-
-
-def split(value: float) -> Parts:
-    return Parts(value / 4, 3 * value / 4)
 
 
 def add(a: float, b: float = 1.0) -> float:

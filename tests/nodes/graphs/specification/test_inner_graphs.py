@@ -179,6 +179,7 @@ def test_unknown_nodes_and_entries_are_kept() -> None:
     g.add(add, "last", a=g.steps["low"])
     content = json.loads(g.to_json())
     content["canvas"] = {"zoom": 2}
+    content["params"]["k"]["label"] = "Size"
     content["steps"]["low"].pop("module")
     content["steps"]["low"].update(node="of_the_future", version="9", at=[1, 2])
     content["steps"]["low"]["inputs"]["c"] = {"wire": "split.high"}
@@ -193,6 +194,10 @@ def test_unknown_nodes_and_entries_are_kept() -> None:
     with pytest.raises(GraphError, match="step 'low' is not finished: unknown node"):
         kept.run("last")
     kept.rename("split", "parts")
+    kept.rename("k", "size")
+    kept.set(size=8.0)
+    assert kept.diff(kept.copy()) == ()
+    assert '"label": "Size"' in kept.to_json()
     assert '"wire": "parts.high"' in kept.to_json()
     kept.replace("low", add, a=1.0)
     assert kept.run("last") == 3
