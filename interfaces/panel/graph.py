@@ -84,7 +84,7 @@ def panel_graph(
         If the units of the file are to be used and it cannot be read.
     """
     graph = Graph(
-        options.mesh.stem if options.mesh else "roof",
+        _title(options),
         units=options.units or model_units(options)[0],
     )
     thickness = graph.param("thickness", options.thickness, min=0)
@@ -136,11 +136,9 @@ def panel_graph(
         **(support.report if support else {}),
     )  # fmt: skip
     made = {"panels": panels.panels} | ({"beams": support.beams} if support else {})
+    told = {**made, "findings": audit.findings, "cut": panels.report, "reference": spheres}
+    graph.add("write_view", "view", **told, path="view.html", title=_title(options))
     _add_writers(graph, pattern.surface if pattern else mesh, made)
-    graph.add(
-        "write_view", "view", **made, path="view.html", findings=audit.findings,
-        cut=panels.report, reference=mesh, title=options.mesh.stem if options.mesh else "roof",
-    )  # fmt: skip
     return graph
 
 
@@ -158,6 +156,10 @@ def _mould_count(
     if not bounds:
         return None
     return graph.add("fewest_moulds", "fewest", sphere_mesh=spheres, crease=crease, **bounds).k
+
+
+def _title(options: PanelOptions) -> str:
+    return options.mesh.stem if options.mesh else "roof"
 
 
 def _add_blanks(graph: Graph, panels: Wire) -> Step:
