@@ -83,10 +83,8 @@ def panel_graph(
     InputError
         If the units of the file are to be used and it cannot be read.
     """
-    graph = Graph(
-        options.mesh.stem if options.mesh else "roof",
-        units=options.units or model_units(options)[0],
-    )
+    title = options.mesh.stem if options.mesh else "roof"
+    graph = Graph(title, units=options.units or model_units(options)[0])
     thickness = graph.param("thickness", options.thickness, min=0)
     joint_gap = graph.param("joint_gap", options.joint_gap, min=0)
     pattern = add_pattern(graph, options) if options.pattern != "as-is" else None
@@ -137,10 +135,8 @@ def panel_graph(
     )  # fmt: skip
     made = {"panels": panels.panels} | ({"beams": support.beams} if support else {})
     _add_writers(graph, pattern.surface if pattern else mesh, made)
-    graph.add(
-        "write_view", "view", **made, path="view.html", findings=audit.findings,
-        cut=panels.report, reference=mesh, title=options.mesh.stem if options.mesh else "roof",
-    )  # fmt: skip
+    shown = {"findings": audit.findings, "cut": panels.report, "reference": mesh}
+    graph.add("write_view", "view", **made, **shown, path="view.html", title=title)
     return graph
 
 
