@@ -83,10 +83,8 @@ def panel_graph(
     InputError
         If the units of the file are to be used and it cannot be read.
     """
-    graph = Graph(
-        _title(options),
-        units=options.units or model_units(options)[0],
-    )
+    title = options.mesh.stem if options.mesh else "roof"
+    graph = Graph(title, units=options.units or model_units(options)[0])
     thickness = graph.param("thickness", options.thickness, min=0)
     joint_gap = graph.param("joint_gap", options.joint_gap, min=0)
     pattern = add_pattern(graph, options) if options.pattern != "as-is" else None
@@ -136,9 +134,9 @@ def panel_graph(
         **(support.report if support else {}),
     )  # fmt: skip
     made = {"panels": panels.panels} | ({"beams": support.beams} if support else {})
-    told = {**made, "findings": audit.findings, "cut": panels.report, "reference": spheres}
-    graph.add("write_view", "view", **told, path="view.html", title=_title(options))
     _add_writers(graph, pattern.surface if pattern else mesh, made)
+    shown = {"findings": audit.findings, "cut": panels.report, "reference": spheres}
+    graph.add("write_view", "view", **made, **shown, path="view.html", title=title)
     return graph
 
 
@@ -156,10 +154,6 @@ def _mould_count(
     if not bounds:
         return None
     return graph.add("fewest_moulds", "fewest", sphere_mesh=spheres, crease=crease, **bounds).k
-
-
-def _title(options: PanelOptions) -> str:
-    return options.mesh.stem if options.mesh else "roof"
 
 
 def _add_blanks(graph: Graph, panels: Wire) -> Step:

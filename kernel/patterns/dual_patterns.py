@@ -14,7 +14,7 @@ from ..optimization.angle_minimization import minimize_angles
 from ..sphere_meshes.fit import fit_spheres
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..surfaces.surface import Surface
-from ..tolerances import CREASE
+from ..tolerances import CREASE, OPENING
 from .gain_report import check_edge
 from .net_flaws import FaceJudgement, judge_faces
 from .quad_pattern import EVENING_ROUNDS
@@ -24,9 +24,6 @@ BOUNDS: Final = (3.0, 5.0, 9.0, 15.0, 20.0, 30.0)
 
 SHORTEST_HEXAGON_EDGE = 0.1
 """Least edge of a hexagon, in mean edges."""
-
-OPENING = np.pi / 3
-"""Largest half opening of a triangle on its sphere."""
 
 
 @dataclass(frozen=True)
