@@ -26,6 +26,19 @@ class _PanelCommand(click.Command):
 @click.argument("mesh", required=False, type=click.Path(path_type=Path))
 @click.option("-o", "--out", required=True, type=click.Path(path_type=Path), help="Folder.")
 @click.option("--moulds", type=int, help="Number of mould radii; by default one per panel.")
+@click.option(
+    "--max-angle",
+    metavar="DEG",
+    type=click.FloatRange(0, 180),
+    help="The fewest moulds with which neighbours meet at no more degrees in the mean.",
+)
+@click.option(
+    "--max-angle-largest",
+    metavar="DEG",
+    type=click.FloatRange(0, 180),
+    help="The fewest moulds with which no neighbours meet at more degrees; both bounds hold if "
+    "both are given.",
+)
 @click.option("--thickness", type=float, default=0.0, help="Thickness, in model units.")
 @click.option("--joint-gap", type=float, default=0.0, help="Joint width, in model units.")
 @click.option(
@@ -197,6 +210,7 @@ def panel(  # numpydoc ignore=PR01
         raise click.UsageError(
             f"--pattern {options['pattern']} needs the length of its edges: add --edge-length"
         )
+    _check_moulds(options)
     _check_exact(options)
     _warn_of_no_beams(options)
     with told_errors(), shown_progress() as progress:
@@ -209,6 +223,17 @@ def panel(  # numpydoc ignore=PR01
     print_report(report, out, files, as_json=as_json, is_assumed=is_assumed)
     if strict and has_errors(report):
         sys.exit(GATE_FAILED)
+
+
+def _check_moulds(options: Mapping[str, Any]) -> None:
+    """The number of moulds is given, or found for bounds on angles."""
+    bounds = ("max_angle", "max_angle_largest")
+    given = [f"--{name.replace('_', '-')}" for name in bounds if options[name] is not None]
+    if given and options["moulds"] is not None:
+        raise click.UsageError(
+            f"--moulds and {' and '.join(given)} exclude each other: the bound says how many "
+            "moulds there are; drop one"
+        )
 
 
 def _check_exact(options: dict[str, Any]) -> None:

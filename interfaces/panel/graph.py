@@ -71,10 +71,11 @@ def panel_graph(
     -------
     Graph
         Its steps are named mesh, description, start, angles (before an optimum of more than
-        angles), optimum, panels, audit, report, step, rhino, table, list and picture; with a
-        number of moulds also moulds, blanks, mould_drawing and mould_picture, with a support
-        also feasibility, annuli, beams, drawing and beam_table, with either plain, the panels
-        without them. Of a pattern mesh is the surface; gain, pattern and net follow it.
+        angles), optimum, panels, audit, report, step, rhino, table, list, picture and view;
+        with a number of moulds also moulds, blanks, mould_drawing and mould_picture, with a
+        bound on angles before these fewest, with a support also feasibility, annuli, beams,
+        drawing and beam_table, with either plain, the panels without them. Of a pattern mesh
+        is the surface; gain, pattern and net follow it.
         Its writers write relative to the folder of the run.
 
     Raises
@@ -84,10 +85,8 @@ def panel_graph(
     InputError
         If the units of the file are to be used and it cannot be read.
     """
-    graph = Graph(
-        options.mesh.stem if options.mesh else "roof",
-        units=options.units or model_units(options)[0],
-    )
+    title = options.mesh.stem if options.mesh else "roof"
+    graph = Graph(title, units=options.units or model_units(options)[0])
     thickness = graph.param("thickness", options.thickness, min=0)
     joint_gap = graph.param("joint_gap", options.joint_gap, min=0)
     pattern = add_pattern(graph, options) if options.pattern != "as-is" else None
@@ -104,10 +103,12 @@ def panel_graph(
         optimum = _optimum(graph, options, mesh, moves, crease)
     design = spheres = optimum.sphere_mesh
     labels, clusters, blanks = None, None, None
-    if options.moulds is not None:
-        count = graph.param("moulds", options.moulds, min=1)
+    count = _mould_count(graph, options, spheres, crease)
+    if count is not None:
+        # Vertices that move make angles smaller in the mean, and may make the largest larger.
+        relaxed = moves if options.max_angle_largest is None else {}
         moulds = graph.add(
-            "cluster_radii", "moulds", sphere_mesh=spheres, k=count, crease=crease, **moves
+            "cluster_radii", "moulds", sphere_mesh=spheres, k=count, crease=crease, **relaxed
         )
         spheres, labels, clusters = moulds.sphere_mesh, moulds.labels, moulds.report
     kind = beams or options.support
@@ -122,7 +123,7 @@ def panel_graph(
     )
     support = add_beams(graph, options, annuli, panels.panels) if annuli else None
     plain = _plain(graph, design, layers) if support or spheres is not design else {}
-    if options.moulds is not None:
+    if count is not None:
         blanks = _add_blanks(graph, panels.panels)
     audit = graph.add(
         "audit", "audit", panels=panels.panels, cut=panels.report,
@@ -136,7 +137,25 @@ def panel_graph(
     )  # fmt: skip
     made = {"panels": panels.panels} | ({"beams": support.beams} if support else {})
     _add_writers(graph, pattern.surface if pattern else mesh, made)
+    shown = {"findings": audit.findings, "cut": panels.report, "reference": mesh}
+    graph.add("write_view", "view", **made, **shown, path="view.html", title=title)
     return graph
+
+
+def _mould_count(
+    graph: Graph, options: PanelOptions, spheres: Wire, crease: Param
+) -> Param | Wire | None:
+    """How many moulds: as asked for, the fewest that keep angles below bounds, or any."""
+    if options.moulds is not None:
+        return graph.param("moulds", options.moulds, min=1)
+    bounds = {
+        name: graph.param(name, bound, min=0, max=180)
+        for name in ("max_angle", "max_angle_largest")
+        if (bound := getattr(options, name)) is not None
+    }
+    if not bounds:
+        return None
+    return graph.add("fewest_moulds", "fewest", sphere_mesh=spheres, crease=crease, **bounds).k
 
 
 def _add_blanks(graph: Graph, panels: Wire) -> Step:

@@ -33,7 +33,10 @@ class PanelOptions:
     units : str or None
         Model units; None for those of the file, and metres if it names none.
     moulds : int or None
-        Number of moulds; None for a radius per panel.
+        Number of moulds; None for a radius per panel, or as many as bounds ask for.
+    max_angle, max_angle_largest : float or None
+        The fewest moulds keep the mean and the largest angle between neighbours below, in
+        degrees.
     thickness, joint_gap : float
         In model units.
     side : {"inward", "outward", "centred"}
@@ -75,6 +78,8 @@ class PanelOptions:
     rows: tuple[int, int] | None = None
     units: str | None = None
     moulds: int | None = None
+    max_angle: float | None = None
+    max_angle_largest: float | None = None
     thickness: float = 0.0
     joint_gap: float = 0.0
     side: Literal["inward", "outward", "centred"] = "inward"

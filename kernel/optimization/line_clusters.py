@@ -7,7 +7,9 @@ the halving is one array (Wang and Song, Ckmeans.1d.dp, 2011; Wu, Optimal quanti
 matrix searching, 1991).
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
@@ -53,6 +55,15 @@ def line_clusters(values: FloatArray, weights: FloatArray, k: int) -> list[Float
     >>> [each.round(9).tolist() for each in means]
     [[8.4], [0.5, 13.666666667], [0.5, 10.5, 20.0]]
     """
+    return list(islice(each_line_clusters(values, weights), k))
+
+
+def each_line_clusters(values: FloatArray, weights: FloatArray) -> Iterator[FloatArray]:
+    """Ascending means of the best 1, 2, ... clusters, up to one for each number.
+
+    As `line_clusters`, for whoever does not know beforehand how many are needed: a cluster more
+    costs no more than one search.
+    """
     middle = float(np.average(values, weights=weights))
     centered = values - middle  # sums of squares keep their digits
     sums = _Sums(*(
@@ -61,10 +72,11 @@ def line_clusters(values: FloatArray, weights: FloatArray, k: int) -> list[Float
     ends = np.arange(len(values) + 1)
     least = np.concatenate([[0.0], sums.cost(np.zeros_like(ends[1:]), ends[1:])])
     begins = [np.zeros_like(ends)]
-    for count in range(1, k):
+    yield _means(begins, sums) + middle
+    for count in range(1, len(values)):
         least, begin = _one_cluster_more(least, sums, count)
         begins.append(begin)
-    return [_means(begins[:count], sums) + middle for count in range(1, k + 1)]
+        yield _means(begins, sums) + middle
 
 
 def _one_cluster_more(

@@ -4,7 +4,9 @@ Curvatures are clustered, not radii: the radius of a nearly flat panel is arbitr
 would decide alone. The side to which a panel curves is no property of the mould; it is kept.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
@@ -12,11 +14,11 @@ from ..arrays import BoolArray, FloatArray, IntArray, sum_by
 from ..errors import InputError
 from ..meshes.mesh import Mesh
 from ..sphere_meshes.sphere_mesh import SphereMesh
-from ..spheres.circles import circle_pencils, face_circles, pencil_spheres
+from ..spheres.circles import Circles, circle_pencils, face_circles, pencil_spheres
 from ..tolerances import SAME_CURVATURE
 from .angle_minimization import pencil_angles
 from .energies.table import EnergyWeights
-from .line_clusters import line_clusters
+from .line_clusters import each_line_clusters, line_clusters
 from .whole_energy import Conditions, Optimization, move_vertices
 
 RELAXED_CLOSENESS = 0.05
@@ -94,35 +96,89 @@ def cluster_radii(
     own = 2 * np.abs(sphere_mesh.local_spheres[:, 0])
     if np.ptp(own) <= SAME_CURVATURE * own.min():
         return sphere_mesh, _one_mould(own)
+    bends = _panel_bends(sphere_mesh, same_sagitta)
+    return _on_moulds(bends, _centers(bends.of_moulds(k), k, bends.same))
+
+
+def each_clustering(
+    sphere_mesh: SphereMesh, same_sagitta: float = 0.0
+) -> Iterator[tuple[SphereMesh, RadiusClusters]]:
+    """What `cluster_radii` gives for k = 1, 2, ..., until no more moulds can be told apart.
+
+    Circles are found once, and a mould more costs one search.
+
+    Raises InputError, as the first is asked for, if the sagitta is negative or not finite.
+    """
+    first = cluster_radii(sphere_mesh, 1, same_sagitta)
+    yield first
+    if first[0] is sphere_mesh:
+        return  # all have one radius already
+    bends = _panel_bends(sphere_mesh, same_sagitta)
+    ordered = bends.of_moulds(2)
+    curved = np.sort(ordered[ordered > 0])
+    if not len(curved):
+        return
+    is_mixed = len(curved) < len(ordered)
+    flat = np.zeros(int(is_mixed))
+    # Without a flat mould, the first of these has all panels and is known already.
+    for centers in islice(_each_spaced_centers(curved, bends.same), int(not is_mixed), None):
+        yield _on_moulds(bends, np.concatenate([flat, centers]))
+
+
+@dataclass(frozen=True)
+class _PanelBends:
+    """How panels bend in the pencils of their circles, and what a workshop tells apart.
+
+    Curvatures are absolute, `side` is -1 or 1; panels marked flat have a mould of their own
+    where there are two. Curvatures that differ by less than `same` are one.
+    """
+
+    mesh: Mesh
+    circles: Circles
+    radii: FloatArray
+    curvatures: FloatArray
+    side: FloatArray
+    is_flat: BoolArray
+    same: float
+
+    def of_moulds(self, k: int) -> FloatArray:
+        """Curvatures (F,) as k moulds see them."""
+        has_flat = k > 1 or self.is_flat.all()
+        return np.where(self.is_flat & has_flat, 0.0, self.curvatures)
+
+
+def _panel_bends(sphere_mesh: SphereMesh, same_sagitta: float) -> _PanelBends:
     circles, _ = face_circles(sphere_mesh.mesh)
     radii = np.sqrt(circles.radii_squared)
     angles = pencil_angles(sphere_mesh, circles)
     # What rounding leaves of a plane is no curvature.
     angles = np.where(np.abs(np.sin(angles)) < SAME_CURVATURE, 0.0, angles)
     curvatures = np.abs(np.sin(angles)) / radii
-    side = np.where(angles < 0, -1.0, 1.0)
-
     # The sagitta of a blank of radius ρ is κρ²/2 to first order.
     same = 2 * same_sagitta / float(radii.max()) ** 2
     is_flat = curvatures < max(same, SAME_CURVATURE * curvatures.max())
-    if k > 1 or is_flat.all():
-        curvatures[is_flat] = 0.0
-    centers = _centers(curvatures, k, same)
+    side = np.where(angles < 0, -1.0, 1.0)
+    return _PanelBends(sphere_mesh.mesh, circles, radii, curvatures, side, is_flat, same)
+
+
+def _on_moulds(bends: _PanelBends, centers: FloatArray) -> tuple[SphereMesh, RadiusClusters]:
+    """Every panel on the mould next to it on which it lies; curvatures of moulds ascend."""
+    radii, curvatures = bends.radii, bends.of_moulds(len(centers))
+    centers = centers.copy()
     centers[0] = min(centers[0], 1 / radii.max())
-    fits = centers[None, :] * radii[:, None] <= 1
-    distance = np.abs(centers[None, :] - curvatures[:, None])
-    nearest = np.argmin(distance, axis=1)
-    chosen = np.argmin(np.where(fits, distance, np.inf), axis=1)
+    nearest = np.searchsorted((centers[1:] + centers[:-1]) / 2, curvatures)
+    fitting = np.searchsorted(centers, 1 / radii, side="right") - 1
+    chosen = np.minimum(nearest, np.maximum(fitting, 0))
     used, labels = np.unique(-centers[chosen], return_inverse=True)
     moulds = -used
-    clustered = side * np.arcsin(np.minimum(radii * moulds[labels], 1.0))
-    planes, great_spheres = circle_pencils(circles)
+    clustered = bends.side * np.arcsin(np.minimum(radii * moulds[labels], 1.0))
+    planes, great_spheres = circle_pencils(bends.circles)
     rows = pencil_spheres(planes, great_spheres, clustered)
     with np.errstate(divide="ignore"):
         clusters = RadiusClusters(
             labels.astype(np.int64), 1 / moulds, np.bincount(labels), chosen != nearest
         )
-    return SphereMesh.from_local(sphere_mesh.mesh, rows), clusters
+    return SphereMesh.from_local(bends.mesh, rows), clusters
 
 
 def _one_mould(curvatures: FloatArray) -> RadiusClusters:
@@ -200,16 +256,36 @@ def _centers(curvatures: FloatArray, k: int, same: float) -> FloatArray:
 
 def _spaced_centers(ordered: FloatArray, k: int, same: float) -> FloatArray:
     """The most centres, up to k, of which none are closer than `same`."""
-    scale = float(ordered[-1])
-    is_next = np.diff(ordered) > SAME_CURVATURE * scale
-    groups = np.concatenate([np.zeros(1, np.int64), np.cumsum(is_next, dtype=np.int64)])
-    weights = np.bincount(groups).astype(np.float64)
-    values = sum_by(groups, ordered, len(weights)) / weights
+    values, weights = _distinct(ordered)
     if len(values) <= k and (np.diff(values) >= same).all():
         return values
+    scale = float(ordered[-1])
     if same > 0:
         k = int(min(k, 1 + np.ptp(values) // same))
     found = line_clusters(values / scale, weights, min(k, len(values)))
     return scale * next(
         centers for centers in reversed(found) if (scale * np.diff(centers) >= same).all()
     )
+
+
+def _each_spaced_centers(ordered: FloatArray, same: float) -> Iterator[FloatArray]:
+    """What `_spaced_centers` gives for k = 1, 2, ..., until there can be no more."""
+    values, weights = _distinct(ordered)
+    scale, count = float(ordered[-1]), len(values)
+    is_spaced = bool((np.diff(values) >= same).all())
+    most = count if is_spaced else int(min(count, 1 + np.ptp(values) // same))
+    spaced = values
+    for k, centers in enumerate(each_line_clusters(values / scale, weights), 1):
+        found = values if k == count else scale * centers
+        spaced = found if (np.diff(found) >= same).all() else spaced
+        yield spaced
+        if k >= most:
+            return
+
+
+def _distinct(ordered: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Numbers that can be told apart, ascending, and how often each occurs."""
+    is_next = np.diff(ordered) > SAME_CURVATURE * float(ordered[-1])
+    groups = np.concatenate([np.zeros(1, np.int64), np.cumsum(is_next, dtype=np.int64)])
+    weights = np.bincount(groups).astype(np.float64)
+    return sum_by(groups, ordered, len(weights)) / weights, weights

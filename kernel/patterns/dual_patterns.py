@@ -15,7 +15,7 @@ from ..remesh.planar.node_planarity import measure_nodes, node_axis_angles
 from ..sphere_meshes.fit import fit_spheres
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..surfaces.surface import Surface
-from ..tolerances import CREASE
+from ..tolerances import CREASE, OPENING
 from .gain_report import check_edge
 from .net_flaws import FaceJudgement, judge_faces
 from .polishing import polish
@@ -26,9 +26,6 @@ BOUNDS: Final = (3.0, 5.0, 9.0, 15.0, 20.0, 30.0)
 
 SHORTEST_HEXAGON_EDGE = 0.1
 """Least edge of a hexagon, in mean edges."""
-
-WIDEST_OPENING = np.pi / 3
-"""Largest half opening of a triangle on its sphere."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +74,7 @@ def triangle_pattern(source: Mesh | Surface, edge: float) -> tuple[SphereMesh, F
         If the length is not positive, or the triangles would be too many.
     """
     start = fit_spheres(even_triangles(source, edge))
-    net, _ = minimize_angles(start, crease=CREASE, max_opening=WIDEST_OPENING)
+    net, _ = minimize_angles(start, crease=CREASE, max_opening=OPENING)
     return net, judge_faces(net, "bisector", convex=False)
 
 

@@ -5,6 +5,7 @@ arrays      Types of the arrays that go by wire.
 cluster     Few moulds for many panels, and their blanks.
 congruence  Spheres at the vertices of a surface, and the surfaces that they envelop.
 fabricate   Panels, and the files that fabricators open.
+fewest      The fewest moulds with which panels still meet smoothly enough.
 input       Meshes to start from: read from files, or exactly circular nets.
 lists       Lists as values: what steps mapped over lists give, in another form.
 meshing     Other meshes of the same shape: triangulated, subdivided, remeshed, repaired.

@@ -5,4 +5,5 @@ congruent  Panels of one shape.
 losses     What moulds and a support cost, and what became of it, in warnings.
 report     The report of a panelling.
 solids     Panels and beams as solids for CadQuery.
+view       A page on which a model turns, shines and answers.
 """
