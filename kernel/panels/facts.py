@@ -115,7 +115,7 @@ def panel_facts(panels: Panels) -> PanelFacts:
         **vars(panel_radii(panels)),
         areas=panel_areas(panels),
         volumes=panel_volumes(panels),
-        sizes=_bounding_sizes(panels),
+        sizes=panel_sizes(panels),
         corners=panels.corners + panels.origins[panels.corner_panels],
         corner_angles=_corner_angles(panels),
         edge_lengths=arc_lengths(arcs),
@@ -172,7 +172,7 @@ def _wall_tilts(panels: Panels) -> FloatArray:
     return np.arcsin(np.clip(np.abs(dot(unit(mean), panels.plane_normals)), 0.0, 1.0))
 
 
-def _bounding_sizes(panels: Panels) -> FloatArray:
+def panel_sizes(panels: Panels) -> FloatArray:
     """Length, width and rise (P, 3) of the boxes around the outer faces."""
     first: IntArray = panels.offsets[:-1]
     up = unit(panels.spheres[:, 1:4])
