@@ -22,12 +22,12 @@ PARALLEL = OPENBLAS_NUM_THREADS=1 $(PYTEST) -n 2 --dist loadfile
 # bits. Haswell is what AMD processors get, Prescott the oldest. Ignored where there is no x86.
 CORETYPES := Haswell Prescott
 
-.PHONY: demo test test-long test-kernels lint bench docs install system clean
+.PHONY: demo test test-long test-kernels lint bench docs install system browser clean
 
 demo: system
 	$(BIN)/spheremesh panel -o out/demo --moulds 8 --thickness 0.02
 
-test: lint
+test: lint browser
 	$(PARALLEL) tests
 	$(PYTEST) -p no:cacheprovider --doctest-modules --pyargs $(addprefix spheremesh.,$(PACKAGES))
 
@@ -75,6 +75,15 @@ system: install
 	    apt-get update -q && apt-get install -q -y libgl1 libx11-6; \
 	  else \
 	    echo 'CadQuery objects and the tests need libGL.so.1 and libX11.so.6: install the packages libgl1 and libx11-6 (Debian, Ubuntu) or mesa-libGL and libX11 (Fedora).' >&2; \
+	  fi; }
+
+# Tests of the page use the system's Chromium; without it they are skipped.
+browser: install
+	@command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null || { \
+	  if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	    apt-get update -q && apt-get install -q -y chromium || true; \
+	  else \
+	    echo 'tests of the page are skipped: they need Chromium (in Debian and Fedora the package chromium).' >&2; \
 	  fi; }
 
 clean:

@@ -7,6 +7,7 @@ from spheremesh.nodes import (
     bisector_support,
     cluster_radii,
     fit_spheres,
+    least_node_radius,
     minimize_angles,
     panels,
     render_assembly,
@@ -28,9 +29,9 @@ clusters = cluster_radii(smooth, k=5)
 support = axis_support(clusters.sphere_mesh, depth=0.3)
 cut = panels(
     clusters.sphere_mesh, edges="axis", axes=support.axes, labels=clusters.labels,
-    thickness=0.02, joint_gap=0.03,
+    thickness=0.02, joint_gap=0.01,
 )  # fmt: skip
-frame = beams(support.annuli, thickness=0.03)
+frame = beams(support.annuli, thickness=0.03, panels=cut.panels)
 found = audit(
     cut.panels, cut.report, beams=frame.beams, annuli_report=support.report,
     beams_report=frame.report,
@@ -49,11 +50,12 @@ print(write_dxf(frame.beams, "beams.dxf"))
 triangles = minimize_angles(fit_spheres(triangulate(mesh))).sphere_mesh
 print(f"triangles: {support_feasibility(triangles).reason}")
 upright = bisector_support(triangles, depth=0.3, thickness=0.03)
-skin = panels(triangles, thickness=0.02, joint_gap=0.03)
-nodes = beams(upright.annuli, thickness=0.03, node_radius=upright.report.node_radius)
+skin = panels(triangles, thickness=0.02, joint_gap=0.01)
+radius = least_node_radius(upright.annuli, thickness=0.03, panels=skin.panels)
+nodes = beams(upright.annuli, thickness=0.03, node_radius=radius, panels=skin.panels)
 print(
     f"{skin.report['written']} triangles, {nodes.report['written']} beams before cylinders of "
-    f"{upright.report.node_radius:.3f}; torsion {upright.report.torsion_deg['p95']:.2f} degrees"
+    f"{radius:.3f}; torsion {upright.report.torsion_deg['p95']:.2f} degrees"
 )
 print(
     render_assembly(skin.panels, nodes.beams, "triangles_from_below.png", UNDERNEATH, width=900)

@@ -30,9 +30,9 @@ print(
 axes = common_axes(found.sphere_mesh)
 support = axis_support(found.sphere_mesh, depth=0.3, axes=axes)
 cut = panels(
-    found.sphere_mesh, edges="axis", axes=axes, thickness=0.02, joint_gap=0.03
+    found.sphere_mesh, edges="axis", axes=axes, thickness=0.02, joint_gap=0.01
 )  # fmt: skip
-frame = beams(support.annuli, thickness=0.03)
+frame = beams(support.annuli, thickness=0.03, panels=cut.panels)
 checked = audit(
     cut.panels, cut.report, beams=frame.beams, annuli_report=support.report,
     beams_report=frame.report,

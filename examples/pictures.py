@@ -7,11 +7,15 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from spheremesh import Mesh, SphereMesh
+from spheremesh.kernel.beams.beams import Beams
+from spheremesh.kernel.meshes.mesh import face_centroids, mean_edge_length
+from spheremesh.kernel.panels.panels import Panels
 from spheremesh.kernel.spheres.circles import circle_pencils, face_circles, pencil_spheres
 from spheremesh.nodes import (
     apply_mobius,
@@ -20,11 +24,16 @@ from spheremesh.nodes import (
     bisector_support,
     catenoid_mesh,
     cluster_radii,
+    common_axes,
     cost_curve,
+    ellipsoid_mesh,
     evolve_spheres,
+    exact_support,
     face_planes,
     fit_spheres,
     inversion,
+    least_joint,
+    least_node_radius,
     minimize_angles,
     model_change,
     panels,
@@ -40,6 +49,8 @@ from spheremesh.nodes import (
 )
 from spheremesh.viewer.assembly import assembly_image
 from spheremesh.viewer.render import compare_image, render_image
+
+Side = Literal["inward", "centred", "outward"]
 
 
 def roof() -> Image.Image:
@@ -186,18 +197,17 @@ def remeshed_roof() -> Image.Image:
     return _made_by("11_freeform_remeshed", "roof_remeshed.png")
 
 
+def quad_pattern() -> Image.Image:
+    """Quads on a design surface: flat panels, and spheres on a few moulds."""
+    names = ("canopy_planes.png", "canopy_spheres.png")
+    return _beside(*_pictures_of("14_quad_pattern", *names))
+
+
 def supports() -> Image.Image:
     """Beams on node axes from below, one of their nodes, and upright beams at a cylinder."""
     mesh = roof_mesh(12, 18)
-    smooth = minimize_angles(fit_spheres(mesh)).sphere_mesh
-    on_axes = axis_support(smooth, depth=0.3)
-    cut = panels(smooth, edges="axis", axes=on_axes.axes, thickness=0.02).panels
-    frame = beams(on_axes.annuli, thickness=0.05).beams
-    triangles = minimize_angles(fit_spheres(triangulate(mesh))).sphere_mesh
-    upright = bisector_support(triangles, depth=0.3, thickness=0.05)
-    skin = panels(triangles, thickness=0.02).panels
-    radius = upright.report.node_radius
-    joined = beams(upright.annuli, thickness=0.05, node_radius=radius).beams
+    cut, frame = _on_axes(_smooth(mesh))
+    skin, joined = _upright(_smooth(triangulate(mesh)))
     middle = int(np.argmax(mesh.vertices[:, 2]))
     below = (0.5, -0.7, -0.8)
     return _beside(
@@ -259,6 +269,91 @@ def cost_against_smoothness() -> Image.Image:
     return image
 
 
+def assemblies() -> Image.Image:
+    """Six assemblies from below, and below each one of its nodes."""
+    roof, dome = roof_mesh(12, 18), _cut_open(ellipsoid_mesh(16, 9))
+    vase, funnel = _cut_open(vase_mesh(20, 9)), _cut_open(catenoid_mesh(24, 9))
+    exact = exact_support(dome).sphere_mesh
+    moulds = cluster_radii(_smooth(roof), 6).sphere_mesh
+    made = [
+        _on_axes(moulds),
+        _on_axes(exact, common_axes(exact)),
+        _on_axes(_smooth(funnel), side="outward"),
+        _on_axes(_smooth(vase), side="centred"),
+        _upright(_smooth(triangulate(vase))),
+        _upright(_smooth(triangulate(roof))),
+    ]
+    rows = [_beside(*map(_views_from_below, made[k : k + 3])) for k in (0, 3)]
+    sheet = Image.new("RGB", (rows[0].width, sum(row.height for row in rows)))
+    for k, row in enumerate(rows):
+        sheet.paste(row, (0, k * row.height))
+    return sheet.quantize(96)
+
+
+def _cut_open(mesh: Mesh) -> Mesh:
+    """The half of a closed shape that is seen from within, from the front."""
+    middle = np.median(face_centroids(mesh)[:, 1])
+    faces = [
+        face
+        for face, center in zip(mesh.faces, face_centroids(mesh), strict=True)
+        if center[1] > middle
+    ]
+    used, corners = np.unique(np.concatenate(faces), return_inverse=True)
+    ends = np.cumsum([len(face) for face in faces])
+    return Mesh(mesh.vertices[used], np.split(corners, ends[:-1]))
+
+
+def _smooth(mesh: Mesh) -> SphereMesh:
+    return minimize_angles(fit_spheres(mesh)).sphere_mesh
+
+
+def _on_axes(
+    spheres: SphereMesh, axes: np.ndarray | None = None, side: Side = "inward"
+) -> tuple[Panels, Beams]:
+    """Panels that rest on beams between node axes; sizes in mean edges."""
+    edge = mean_edge_length(spheres.mesh)
+    support = axis_support(spheres, depth=0.25 * edge, axes=axes)
+    cut = panels(
+        spheres, edges="axis", axes=support.axes, thickness=0.02 * edge, side=side,
+        joint_gap=0.01 * edge,
+    ).panels  # fmt: skip
+    return cut, beams(support.annuli, thickness=0.04 * edge, panels=cut).beams
+
+
+def _upright(spheres: SphereMesh) -> tuple[Panels, Beams]:
+    """Panels that rest on upright beams before node cylinders; sizes in mean edges."""
+    edge = mean_edge_length(spheres.mesh)
+    upright = bisector_support(spheres, depth=0.25 * edge)
+    sizes: dict[str, Any] = {"axes": upright.axes, "thickness": 0.02 * edge}
+    joint = least_joint(spheres, joint_gap=0.01 * edge, **sizes)
+    cut = panels(spheres, thickness=0.02 * edge, joint_gap=joint).panels
+    below: dict[str, Any] = {"thickness": 0.04 * edge, "panels": cut}
+    radius = least_node_radius(upright.annuli, **below)
+    return cut, beams(upright.annuli, node_radius=radius, **below).beams
+
+
+def _views_from_below(made: tuple[Panels, Beams]) -> Image.Image:
+    """An assembly from below, and the node that is seen best from there."""
+    cut, frame = made
+    annuli = frame.annuli
+    whole = np.array([0.25, -0.9, -0.35])
+    nodes, axes = annuli.edge_vertices.ravel(), annuli.node_axes.reshape(-1, 3)
+    counts = np.bincount(nodes)
+    inside = counts[nodes] == np.median(counts[counts > 0])
+    end = np.argmax(np.where(inside, axes @ whole, -2.0))
+    aside = np.cross(axes[end], [0.6, 0.0, 0.8])
+    node, near = int(nodes[end]), axes[end] + 0.8 * aside / np.linalg.norm(aside)
+    size = {"width": 400, "height": 300}
+    views = (
+        assembly_image(cut, frame, whole, **size),
+        assembly_image(cut, frame, near, node, **size),
+    )
+    sheet = Image.new("RGB", (400, 600))
+    for k, view in enumerate(views):
+        sheet.paste(view, (0, 300 * k))
+    return sheet
+
+
 PICTURES = {
     "roof": roof,
     "roof-zebra": roof_zebra,
@@ -272,8 +367,10 @@ PICTURES = {
     "few-moulds": few_moulds,
     "remeshed-torus": remeshed_torus,
     "remeshed-roof": remeshed_roof,
+    "quad-pattern": quad_pattern,
     "supports": supports,
     "cost-curve": cost_against_smoothness,
+    "assemblies": assemblies,
 }
 
 

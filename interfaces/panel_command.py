@@ -84,9 +84,16 @@ class _PanelCommand(click.Command):
     "unify normals; what was done is in the report.",
 )
 @click.option(
+    "--pattern",
+    type=click.Choice(["quads", "as-is"]),
+    default="as-is",
+    help="Cover the MESH, or the surfaces of a .3dm, with quads of --edge-length; or take its "
+    "faces for the panels, as they are.",
+)
+@click.option(
     "--edge-length",
     type=click.FloatRange(min=0, min_open=True),
-    help="Length of the edges on surfaces of a .3dm, in model units.",
+    help="Length of the edges of a --pattern, or on surfaces of a .3dm, in model units.",
 )
 @click.option(
     "--rows",
@@ -193,7 +200,14 @@ def panel(  # numpydoc ignore=PR01
     demonstration roof is panelled. Files in the folder are replaced only if spheremesh wrote
     them and nobody changed them since.
     """
-    from .panel import PanelOptions, feasible_panel_graph, model_units, run_job
+    from .panel import (
+        PanelOptions,
+        feasible_panel_graph,
+        model_units,
+        panel_graph,
+        run_job,
+        say_gain,
+    )
     from .panel.output import has_errors, print_report
 
     if options["rows"] and options["edge_length"]:
@@ -203,12 +217,19 @@ def panel(  # numpydoc ignore=PR01
             "--edges and --support exclude each other: panels are cut where their beams stand; "
             "drop one"
         )
+    has_pattern = options["pattern"] != "as-is"
+    if has_pattern and not options["edge_length"]:
+        raise click.UsageError(
+            f"--pattern {options['pattern']} needs the length of its edges: add --edge-length"
+        )
     _check_moulds(options)
     _check_exact(options)
     _warn_of_no_beams(options)
     with told_errors(), shown_progress() as progress:
         options["units"], is_assumed = model_units(PanelOptions(**options))
         store = chosen_store(cache, no_cache=no_cache)
+        if has_pattern:
+            say_gain(panel_graph(PanelOptions(**options)), store)
         graph = feasible_panel_graph(PanelOptions(**options), store)
         report, files = run_job(graph, out, progress, overwrite=overwrite)
     print_report(report, out, files, as_json=as_json, is_assumed=is_assumed)

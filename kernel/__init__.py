@@ -2,6 +2,7 @@
 
 From the roof down; a room uses those below it.
 
+patterns        From a design surface to a pattern of panels.
 analysis        What is measured of a finished sphere mesh.
 exact_supports  Nets that slide until beams and panels meet exactly.
 clearances      How far parts are apart, and how deep they overlap.

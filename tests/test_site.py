@@ -49,13 +49,13 @@ def test_the_reference_has_every_node_with_its_ports_and_its_example(site: Site)
     sections: dict[str, str] = {}
     for page in pages.values():
         title, *parts = page.split("\n\n## ")
-        if title.startswith("# The nodes"):
+        if title.startswith(("# The nodes", "# What goes by wire")):
             continue
         sections.update({part.partition("\n")[0]: part for part in parts})
     assert set(sections) == library_names()
     for name, section in sections.items():
         node = find_node(name)
-        plain = section.replace("\\", "")
+        plain = re.sub(r"\[(\w+)\]\(types\.md#\w+\)", r"\1", section.replace("\\", ""))
         for port in (*node.inputs.values(), *node.outputs.values()):
             assert f"- **{port.name}**: {port_facts(port)}\n" in f"{plain}\n", name
         shown = re.findall(r"```pycon\n(.*?)\n```", section, re.DOTALL)
@@ -67,13 +67,18 @@ def test_links_of_the_reference_lead_to_nodes(site: Site) -> None:
     pages = site.reference.reference_pages()
     for text in pages.values():
         for page, name in re.findall(r"\]\((\w+)\.md#(\w+)\)", text):
-            assert f"\n## {name}\n" in pages[page]
+            assert f"\n## {name}\n" in (pages[page].lower() if page == "types" else pages[page])
     assert all(f"#{name})" in pages["index"] for name in library_names())
     assert "[`axis_support`](support.md#axis_support)" in pages["fabricate"]
+    assert "- **result**: [SphereMesh](types.md#spheremesh)\n" in pages["spheres"]
+    for name in ("Mesh", "SphereMesh", "Panels", "Beams", "Surface"):
+        assert f"\n## {name}\n" in pages["types"]
 
 
 def test_text_of_docstrings_is_no_markup(site: Site) -> None:
-    text = site.reference._text("a * b_c < ``d_e`` [f] `panels` `g`", {"panels": "fabricate"})
+    text = site.reference._text(
+        "a * b_c < ``d_e`` [f] `panels` `g`", {"panels": "fabricate.md#panels"}
+    )
     assert text == r"a \* b\_c \< `d_e` \[f\] [`panels`](fabricate.md#panels) `g`"
 
 
@@ -94,6 +99,7 @@ def test_every_page_has_its_place(site: Site, tmp_path: Path) -> None:
     front = (tmp_path / "index.md").read_text(encoding="utf-8")
     assert front.startswith((ROOT / "README.md").read_text(encoding="utf-8"))
     assert all(f"\n{name}\n" in front for name in listed)
+    assert (tmp_path / "interfaces" / "hops" / "client.py").is_file(), "a page offers it"
 
 
 def test_broken_links_are_told(site: Site, tmp_path: Path) -> None:

@@ -5,10 +5,12 @@ What is said of a port is what ``spheremesh nodes NAME`` says of it.
 
 import inspect
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from spheremesh.interfaces.node_help import port_facts, report_fields
+from spheremesh.kernel.reports import Report
 from spheremesh.nodes import Node, Port, library
+from spheremesh.nodes.graphs.annotations import Hint, element_type, members
 from spheremesh.nodes.graphs.node import REGISTRY, load_library
 
 SECTION = re.compile(r"^(\w[\w ]*)\n-{3,}\n", re.MULTILINE)
@@ -35,12 +37,15 @@ def reference_pages(pictures: Mapping[str, str] = {}) -> dict[str, str]:
     """
     chapters = library_nodes()
     about = dict(re.findall(r"^(\w+)  +(\S.*)$", inspect.getdoc(library) or "", re.MULTILINE))
-    homes = {node.name: chapter for chapter, nodes in chapters.items() for node in nodes}
+    every = [node for nodes in chapters.values() for node in nodes]
+    kinds = wired_types(every)
+    homes = {node.name: f"{node.category}.md#{node.name}" for node in every}
+    homes |= {name: f"types.md#{name.lower()}" for name in kinds}
     front = [
         "# The nodes",
-        f"All {len(homes)} nodes by chapters. Each is a plain function of `spheremesh.nodes`, "
+        f"All {len(every)} nodes by chapters. Each is a plain function of `spheremesh.nodes`, "
         "and a step of a graph (`g.add`). `spheremesh nodes NAME` tells the same on the "
-        "command line.",
+        "command line. [What goes by wire](types.md) tells of meshes, panels, beams.",
     ]
     pages: dict[str, str] = {}
     for chapter, nodes in chapters.items():
@@ -52,7 +57,35 @@ def reference_pages(pictures: Mapping[str, str] = {}) -> dict[str, str]:
             parts += _described(node, homes, pictures.get(node.name))
         pages[chapter] = "\n\n".join(parts) + "\n"
     pages["index"] = "\n\n".join(front) + "\n"
+    pages["types"] = "\n\n".join(_types(kinds, homes)) + "\n"
     return pages
+
+
+def wired_types(nodes: Iterable[Node]) -> dict[str, type]:
+    """Types of the library that ports take and give, by name; reports are told at the ports."""
+    ports = (p for node in nodes for p in (*node.inputs.values(), *node.outputs.values()))
+    kinds = {kind for port in ports for kind in _kinds(port.type)}
+    ours = (kind for kind in kinds if kind.__module__.startswith("spheremesh."))
+    return {kind.__name__: kind for kind in sorted(ours, key=lambda kind: kind.__name__)}
+
+
+def _kinds(hint: Hint) -> Iterator[type]:
+    for member in members(hint):
+        if isinstance(member.kind, type) and not issubclass(member.kind, Report):
+            yield member.kind
+        element = element_type(member.hint)
+        if isinstance(element, type) and element is not member.kind:
+            yield from _kinds(element)
+
+
+def _types(kinds: Mapping[str, type], homes: Mapping[str, str]) -> Iterable[str]:
+    yield "# What goes by wire"
+    yield "Records that nobody changes; nodes make new ones. Their arrays are read-only."
+    for name, kind in kinds.items():
+        opening, sections = sections_of(inspect.getdoc(kind) or "")
+        yield f"## {name}"
+        yield _text(opening, homes)
+        yield f"```text\n{sections['Attributes'].strip()}\n```"
 
 
 def _described(node: Node, homes: Mapping[str, str], picture: str | None) -> Iterable[str]:
@@ -80,7 +113,8 @@ def sections_of(doc: str) -> tuple[str, dict[str, str]]:
 
 def _port(port: Port, homes: Mapping[str, str]) -> str:
     """A port as an item of a list."""
-    lines = [f"- **{_text(port.name)}**: {_text(port_facts(port))}"]
+    facts = re.sub(r"\b[A-Z]\w+", lambda name: _linked(name[0], homes), _text(port_facts(port)))
+    lines = [f"- **{_text(port.name)}**: {facts}"]
     if port.help:
         lines.append(f"\n  {_text(port.help, homes)}")
     fields = report_fields(port)
@@ -95,11 +129,15 @@ def _text(text: str, homes: Mapping[str, str] = {}) -> str:
     parts: list[str] = []
     end = 0
     for code in CODE.finditer(text):
-        name = code[2]
-        link = f"[`{name}`]({homes[name]}.md#{name})" if name in homes else f"`{name}`"
+        link = _linked(code[2], homes, "`")
         parts += [_escaped(text[end : code.start()]), link]
         end = code.end()
     return "".join([*parts, _escaped(text[end:])])
+
+
+def _linked(name: str, homes: Mapping[str, str], quote: str = "") -> str:
+    shown = f"{quote}{name}{quote}"
+    return f"[{shown}]({homes[name]})" if name in homes else shown
 
 
 def _escaped(text: str) -> str:

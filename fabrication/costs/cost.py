@@ -8,7 +8,7 @@ import numpy as np
 from ...kernel.arrays import FloatArray, IntArray
 from ...kernel.beams.beams import Beams, beam_volumes
 from ...kernel.errors import InputError
-from ...kernel.panels.facts import panel_sizes
+from ...kernel.panels.facts import bounding_sizes
 from ...kernel.panels.mould_blanks import PanelCaps, panel_caps
 from ...kernel.panels.panels import Panels, panel_areas
 from ...kernel.reports import Report
@@ -117,7 +117,7 @@ def _add_panels(
     quantities: dict[str, float],
 ) -> None:  # fmt: skip
     """Blanks and panels themselves."""
-    is_flat, sizes = panels.design_spheres[:, 0] == 0, panel_sizes(panels)
+    is_flat, sizes = panels.design_spheres[:, 0] == 0, bounding_sizes(panels)
     blanks = np.where(is_flat, sizes[:, 0] * sizes[:, 1], _cap_areas(caps.radii, caps.sagittas))
     flat_count = int(is_flat.sum())
     quantities |= {"panels": panels.n_panels, "flat_panels": flat_count}

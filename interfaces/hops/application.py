@@ -207,12 +207,8 @@ def _no_constant(text: str) -> None:
 def _solved(
     service: Service, listed: Listed, request: Mapping[str, Any], watcher: Watcher
 ) -> Answer:
-    component, solver = listed.component, service.solver
     trees = read_trees(request.get("values"))
     units = str(request.get("modelunits") or "")
-    found = solve(solver, component, trees, units, watcher)
-    is_kept = not component.reads_files and (
-        solver.handles.is_lasting or not component.gives_handles
-    )
+    found = solve(service.solver, listed.component, trees, units, watcher)
     content = {"values": found.values, "warnings": found.warnings, "errors": list[str]()}
-    return Answer(200 if is_kept else _NOT_KEPT, to_json(content))
+    return Answer(200 if found.is_lasting else _NOT_KEPT, to_json(content))

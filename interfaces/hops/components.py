@@ -106,11 +106,6 @@ class Component:
         has_paths = any(is_path(each.port, each.carrier.form) for each in self.inputs)
         return has_paths or any(bool(node.file_inputs) for node in _inner_nodes(self.node))
 
-    @cached_property
-    def gives_handles(self) -> bool:
-        """Whether an answer holds handles, which are good as long as the store holds them."""
-        return any(each.encode is encoder(CODED) for each in self.outputs)
-
 
 def writes_files(node: Node) -> bool:
     """Whether a node, or one within it, writes files."""

@@ -4,17 +4,18 @@ A page of the web that a user looks at can send requests to their own machine. B
 where such requests come from (Origin), and a name that leads here by trickery stands in Host.
 """
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 from ...kernel.errors import InputError
-from ...nodes.graphs.annotations import Value
-from ...nodes.graphs.running.files import is_wired, is_written, paths_of
+from ...nodes.graphs.annotations import Hint, Value, element_type, is_subclass, members
+from ...nodes.graphs.running.files import is_written, paths_of
 from ...nodes.graphs.specification.specification import Specification
 from ...nodes.graphs.specification.subgraphs import Inner
-from ...nodes.graphs.specification.wires import Each, sources
+from ...nodes.graphs.specification.wires import Each, Wire, sources
 
 LOOPBACK: Final = frozenset({"localhost", "127.0.0.1", "::1"})
 MOST_BYTES: Final = 64 * 2**20
@@ -153,12 +154,27 @@ def check_graph_files(graph: Specification, folder: Path | None) -> None:
             where = f"step {step.name!r}: {port.name}"
             given = step.inputs.get(port.name, port.default)
             if folder is None:
-                if port.writes or paths_of(_literal(given, graph)) or is_wired(given):
+                if port.writes or paths_of(_literal(given, graph)) or _is_path_by_wire(given):
                     raise InputError(f"{where}: files are not served; start with --files")
                 continue
-            if port.reads and is_wired(given) and not is_written(given):
+            if port.reads and _is_path_by_wire(given) and not is_written(given):
                 raise InputError(f"{where}: a path that is computed is not read by a server")
             check_paths(_literal(given, graph), folder, where)
+
+
+def _is_path_by_wire(given: Value) -> bool:
+    """Whether a path may come from another step; what comes may also be a mesh."""
+    return any(_may_be_path(each.type) for each in sources(given) if isinstance(each, Wire))
+
+
+def _may_be_path(hint: Hint) -> bool:
+    for member in members(hint):
+        is_text = is_subclass(member.kind, (str, os.PathLike), undecided=False)
+        if is_text or member.kind in (Any, object):
+            return True
+        if member.kind in (list, tuple) and _may_be_path(element_type(member.hint)):
+            return True
+    return False
 
 
 def _literal(given: Value, graph: Specification) -> Value:

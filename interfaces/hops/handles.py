@@ -41,10 +41,9 @@ class Handles:
         self._numbers = itertools.count(1)
         self._lock = Lock()
 
-    @property
-    def is_lasting(self) -> bool:
-        """Whether handles are good after a restart."""
-        return isinstance(self.store, DiskStore)
+    def lasts(self, text: str) -> bool:
+        """Whether a handle is good after a restart."""
+        return isinstance(self.store, DiskStore) and ":here-" not in text
 
     def give(self, kind: str, value: Value) -> str:
         """The text that stands for a value.

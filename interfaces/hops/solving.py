@@ -63,10 +63,20 @@ class Solver:
 
 @dataclass(frozen=True)
 class Solution:
-    """What a request gives: trees in JSON, and what was warned of."""
+    """What a request gives.
+
+    Attributes
+    ----------
+    values : list of dict
+        Trees in JSON.
+    warnings : list of str
+    is_lasting : bool
+        Whether the client may keep it as long as it is open.
+    """
 
     values: list[dict[str, Any]]
     warnings: list[str]
+    is_lasting: bool
 
 
 def solve(
@@ -111,7 +121,8 @@ def solve(
             for index, items in enumerate(several):
                 _add(outputs, _run(run, items), path, index, is_one=len(several) == 1)
     values = [write_tree(name, tree) for name, tree in outputs.items()]
-    return Solution(values, exchange.warnings)
+    is_lasting = exchange.is_lasting and not component.reads_files
+    return Solution(values, exchange.warnings, is_lasting)
 
 
 @dataclass(frozen=True)

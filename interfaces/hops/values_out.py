@@ -35,7 +35,7 @@ from .trees import Item, Tree
 
 UNSET: Final = -1.23432101234321e308
 """What Rhino has for a number that is not set."""
-MOST_SHOWN: Final = 1000
+MOST_SHOWN: Final = 3000
 """Panels or beams that a component shows unasked; the component ``show`` gives more."""
 _LARGEST: Final = float(np.finfo(float).max)
 _MOST_INT32: Final = 2**31
@@ -54,12 +54,15 @@ class Exchange:
         Cuts the panels of a sphere mesh, to show them.
     most_shown : int
     warnings : list of str
+    is_lasting : bool
+        Whether the answer is good as long as Grasshopper is open: handles may not be.
     """
 
     handles: Handles
     panels_of: PanelsOf
     most_shown: int = MOST_SHOWN
     warnings: list[str] = field(default_factory=list[str])
+    is_lasting: bool = True
 
     def warn(self, text: str) -> None:
         """Say something on the component, once."""
@@ -212,7 +215,9 @@ def _coded(value: Value, exchange: Exchange, where: str) -> list[Item]:
     is_small = isinstance(value, np.ndarray) and cast("Any", value).size <= _SMALL
     if is_small and np.isfinite(cast("Any", value)).all():
         return text_items([json.dumps(value.tolist())])
-    return text_items([exchange.handles.give(kind_name(value, where), value)])
+    handle = exchange.handles.give(kind_name(value, where), value)
+    exchange.is_lasting = exchange.is_lasting and exchange.handles.lasts(handle)
+    return text_items([handle])
 
 
 _SMALL: Final = 25
@@ -227,10 +232,10 @@ def kind_name(value: Value, where: str = "") -> str:
     where : str
         The output that gives it, for arrays.
     """
-    kind: type[Any] = getattr(value, "__class__", object)
-    if issubclass(kind, np.ndarray | list | tuple) and not hasattr(kind, "_fields"):
+    is_named = hasattr(value, "_fields")
+    if not is_named and isinstance(value, np.ndarray | list | tuple):
         return re.sub(r"[^a-z0-9_]", "_", where.rpartition(".")[2].lower()) or "list"
-    name = kind.__name__
+    name = str(getattr(value, "__class__", object).__name__)
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower().strip("_")
 
 

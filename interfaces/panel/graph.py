@@ -8,6 +8,7 @@ from ...nodes.graphs.graph import Graph
 from ...nodes.graphs.specification.wires import Param, Step, Wire
 from ...nodes.graphs.stores.entries import Store
 from .options import PanelOptions, SupportKind, fineness, model_units
+from .pattern import add_pattern
 from .support import add_annuli, add_beams
 
 _LAYERS: Final = {"constant": "offset", "power": "power"}
@@ -23,12 +24,28 @@ def feasible_panel_graph(options: PanelOptions, store: Store | None = None) -> G
     """
     graph = panel_graph(options)
     store = graph.cache = store or graph.cache
+    if options.pattern != "as-is":
+        return _feasible_pattern_graph(graph, options, store)
     if options.support != "axis":
         return graph
     may_keep = not (options.target_angle or options.tolerance)
     if may_keep and own_spheres(graph.run(_source(graph))) is not None:
         graph = panel_graph(options, keeps_spheres=True)
     elif graph.run("feasibility")["verdict"] == "no":
+        graph = panel_graph(options, "bisector")
+    graph.cache = store
+    return graph
+
+
+def _feasible_pattern_graph(graph: Graph, options: PanelOptions, store: Store) -> Graph:
+    """The graph of a pattern: a usable net keeps its spheres, a round one has upright beams."""
+    status = graph.run("pattern.report")["status"]
+    may_keep = options.support != "exact" and not (options.target_angle or options.tolerance)
+    if status == "usable" and may_keep:
+        graph = panel_graph(options, keeps_spheres=True)
+    elif options.support == "axis" and (
+        status == "not planarised" or graph.run("feasibility")["verdict"] == "no"
+    ):
         graph = panel_graph(options, "bisector")
     graph.cache = store
     return graph
@@ -52,11 +69,11 @@ def panel_graph(
     -------
     Graph
         Its steps are named mesh, description, start, angles (before an optimum of more than
-        angles), optimum, panels, audit, report, step, rhino, table, list and picture; with a
-        number of moulds also moulds, blanks, mould_drawing and mould_picture, with a bound on
-        angles before these fewest, with `flat_below` flat, with prices cost, with a support
-        also feasibility, annuli, beams, drawing and beam_table, with either plain, the panels
-        without them.
+        angles), optimum, panels, audit, report, step, rhino, table, list, picture and view;
+        with a number of moulds also moulds, blanks, mould_drawing and mould_picture, with a
+        bound on angles before these fewest, with `flat_below` flat, with prices cost, with a
+        support also feasibility, annuli, beams, drawing and beam_table, with either plain, the
+        panels without them. Of a pattern mesh is the surface; gain, pattern and net follow it.
         Its writers write relative to the folder of the run.
 
     Raises
@@ -66,20 +83,20 @@ def panel_graph(
     InputError
         If the units of the file are to be used and it cannot be read.
     """
-    graph = Graph(
-        options.mesh.stem if options.mesh else "roof",
-        units=options.units or model_units(options)[0],
-    )
+    title = options.mesh.stem if options.mesh else "roof"
+    graph = Graph(title, units=options.units or model_units(options)[0])
     thickness = graph.param("thickness", options.thickness, min=0)
     joint_gap = graph.param("joint_gap", options.joint_gap, min=0)
-    mesh = _mesh(graph, options)
+    pattern = add_pattern(graph, options) if options.pattern != "as-is" else None
+    mesh = pattern.mesh if pattern else _mesh(graph, options)
     graph.add("mesh_report", "description", mesh=mesh)
     moves: dict[str, Param] = {}
     if options.tolerance:
         moves = {"tolerance": graph.param("tolerance", options.tolerance, min=0)}
     crease = graph.param("crease", options.crease, min=0, max=180)
     if keeps_spheres:
-        optimum = _kept_spheres(graph, mesh, crease)
+        net = pattern.net if pattern else graph.add("fit_spheres", "start", mesh=mesh, ring=0)
+        optimum = graph.add("keep_spheres", "optimum", sphere_mesh=net, crease=crease)
     else:
         optimum = _optimum(graph, options, mesh, moves, crease)
     design = optimum.sphere_mesh
@@ -111,7 +128,9 @@ def panel_graph(
         cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report, **plain, **cost,
         **(support.report if support else {}),
     )  # fmt: skip
-    _add_writers(graph, mesh, made)
+    _add_writers(graph, pattern.surface if pattern else mesh, made)
+    shown = {"findings": audit.findings, "cut": panels.report, "reference": mesh}
+    graph.add("write_view", "view", **made, **shown, path="view.html", title=title)
     return graph
 
 
@@ -188,12 +207,6 @@ def _mesh(graph: Graph, options: PanelOptions) -> Step | Wire:
     if options.repair:
         return graph.add("repair_mesh", "mesh", mesh=path, layer=options.layer, **rows).mesh
     return graph.add("read_mesh", "mesh", path=path, layer=options.layer, **rows)
-
-
-def _kept_spheres(graph: Graph, mesh: Step | Wire, crease: Param) -> Step:
-    """The spheres that the mesh has already, in place of an optimum."""
-    start = graph.add("fit_spheres", "start", mesh=mesh, ring=0)
-    return graph.add("keep_spheres", "optimum", sphere_mesh=start, crease=crease)
 
 
 def _exact(graph: Graph, options: PanelOptions, mesh: Step | Wire) -> Step:

@@ -104,6 +104,7 @@ def run_job(
             **found,
             "input": {"path": path, **found["input"]},
             **_mesh_reports(graph, run),
+            **_pattern_reports(graph, run),
             "seconds": {
                 "total": time.perf_counter() - began,
                 "optimize": clock.seconds.get("optimum", 0.0),
@@ -137,6 +138,13 @@ def _mesh_reports(graph: Graph, run: Callable[..., Any]) -> dict[str, Any]:
         "mesh": dict(run("description")) if "description" in graph.steps else None,
         "repair": dict(run("mesh.report")) if is_repaired else None,
     }
+
+
+def _pattern_reports(graph: Graph, run: Callable[..., Any]) -> dict[str, Any]:
+    """What a pattern was expected to gain, and how its net was found, where there is one."""
+    if "pattern" not in graph.steps:
+        return {}
+    return {"pattern": {"gain": dict(run("gain.report")), "net": dict(run("pattern.report"))}}
 
 
 def _refuse_unfinished(optimum: Mapping[str, Any]) -> None:

@@ -8,6 +8,7 @@ from ...fabrication.mesh_files.reader import read_content
 from ...kernel.errors import InputError
 
 SupportKind = Literal["axis", "exact", "bisector"]
+PatternKind = Literal["quads", "as-is"]
 
 
 @dataclass(frozen=True)
@@ -23,7 +24,10 @@ class PanelOptions:
     repair : bool
         Whether to repair the mesh first.
     edge_length : float or None
-        Length of the edges of faces on surfaces, in model units.
+        Length of the edges of a pattern, or of faces on surfaces, in model units.
+    pattern : {"quads", "as-is"}
+        Whether the mesh is a surface to be covered by quads of that length, or its faces are
+        the panels.
     rows : (int, int) or None
         Rows of faces along u and v of each surface; neither: as `read_mesh` has it.
     units : str or None
@@ -74,6 +78,7 @@ class PanelOptions:
     layer: str = ""
     repair: bool = False
     edge_length: float | None = None
+    pattern: PatternKind = "as-is"
     rows: tuple[int, int] | None = None
     units: str | None = None
     moulds: int | None = None
@@ -124,6 +129,6 @@ def model_units(options: PanelOptions) -> tuple[str, bool]:
 
 def fineness(options: PanelOptions) -> dict[str, Any]:
     """How finely surfaces are divided, as inputs of `read_mesh`."""
-    if options.edge_length is not None:
+    if options.edge_length is not None and options.pattern == "as-is":
         return {"edge_length": options.edge_length}
     return dict(zip(("n_u", "n_v"), options.rows or (), strict=False))

@@ -42,6 +42,7 @@ def print_report(
         click.echo(line)
     for name in files:
         click.echo(f"  {out / name}")
+    _print_pattern(report.get("pattern"))
     _print_angles(report["angles_deg"], report["creases"])
     click.echo(f"moulds {report['moulds']['count'] or 'not asked for: a radius per panel'}")
     panels = report["panels"]
@@ -80,6 +81,20 @@ def _print_angles(angles: Mapping[str, Any], creases: Mapping[str, Any]) -> None
             f"creases of more than {creases['angle_deg']:g} degrees, not counted: "
             f"{creases['count']}, at {creases['mean_deg']:.2f} ({creases['max_deg']:.1f}) "
             "degrees as built; --crease to change"
+        )
+
+
+def _print_pattern(pattern: Mapping[str, Any] | None) -> None:
+    """What became of a pattern, beside what was expected."""
+    if pattern:
+        net = pattern["net"]
+        angles, faces = net["angles_deg"], net["faces"]["count"]
+        off = net["deviation"]["surface"]
+        click.echo(
+            f"quads {net['status']} ({len(net['tries'])} tried): {faces} faces, "
+            f"edges of {net['edges']['mean']:.3g}, at most {100 * off:.0f} % of one off the "
+            f"surface; {angles['expected']:.2f} degrees expected, {angles['spheres']:.2f} "
+            "reached before moulds"
         )
 
 

@@ -15,7 +15,8 @@ from ..spheres.arcs import (
     sphere_arcs,
 )
 from ..spheres.incidence import normals
-from ..spheres.rows import center_radius, offset
+from ..spheres.minkowski import angle
+from ..spheres.rows import center_radius, offset, recenter
 from .joints import panel_joints
 from .mould_blanks import PanelCaps, panel_caps
 from .panels import Panels, corner_points, opposite_corners, panel_arcs, panel_areas
@@ -101,6 +102,34 @@ def panel_radii(panels: Panels) -> PanelRadii:
     )
 
 
+def edge_angles(panels: Panels) -> FloatArray:
+    """Angles (H,) at which spheres meet those of their neighbours, in radians.
+
+    NaN where there is no neighbour among the panels.
+    """
+    owners, twins = panels.corner_panels, opposite_corners(panels)
+    following = panels.corners[panels.next_corners]
+    middles = (panels.corners + following) / 2
+    beyond = owners[twins]
+    # Both rows seen from the middle of the edge keep their digits.
+    own = recenter(panels.spheres[owners], middles)
+    shifts = middles + panels.origins[owners] - panels.origins[beyond]
+    angles = angle(own, recenter(panels.spheres[beyond], shifts))
+    return np.where(twins >= 0, angles, np.nan)
+
+
+def corner_misses(panels: Panels) -> FloatArray:
+    """How far corners are off the plane through their middle, (P,), at most."""
+    first: IntArray = panels.offsets[:-1]
+    owners = panels.corner_panels
+    middles = np.add.reduceat(panels.corners, first) / panels.degrees[:, None]
+    arms = panels.corners - middles[owners]
+    # The normal of the polygon, whose length is twice its area.
+    up = unit(np.add.reduceat(np.cross(arms, arms[panels.next_corners]), first))
+    misses: FloatArray = np.maximum.reduceat(np.abs(dot(arms, up[owners])), first)
+    return misses
+
+
 def panel_bulges(panels: Panels) -> list[str]:
     """To which side panels bulge, along the face normals: ``out``, ``in`` or ``flat``."""
     words = {-1.0: "out", 0.0: "flat", 1.0: "in"}
@@ -115,7 +144,7 @@ def panel_facts(panels: Panels) -> PanelFacts:
         **vars(panel_radii(panels)),
         areas=panel_areas(panels),
         volumes=panel_volumes(panels),
-        sizes=panel_sizes(panels),
+        sizes=bounding_sizes(panels),
         corners=panels.corners + panels.origins[panels.corner_panels],
         corner_angles=_corner_angles(panels),
         edge_lengths=arc_lengths(arcs),
@@ -172,7 +201,7 @@ def _wall_tilts(panels: Panels) -> FloatArray:
     return np.arcsin(np.clip(np.abs(dot(unit(mean), panels.plane_normals)), 0.0, 1.0))
 
 
-def panel_sizes(panels: Panels) -> FloatArray:
+def bounding_sizes(panels: Panels) -> FloatArray:
     """Length, width and rise (P, 3) of the boxes around the outer faces."""
     first: IntArray = panels.offsets[:-1]
     up = unit(panels.spheres[:, 1:4])

@@ -12,6 +12,7 @@ meshing     Other meshes of the same shape: triangulated, subdivided, remeshed, 
 mobius      Möbius transforms, and the coordinates on which they act.
 models      Sphere meshes with a support structure by construction, and how to recognise them.
 optimise    Spheres that meet smoothly, at a given angle, or along strips.
+patterns    From a design surface to a pattern of panels, and what spheres will gain in it.
 remesh      Nets of spheres with a support structure, along conjugate directions.
 shex        Hexagonal sphere meshes: spheres that touch a triangulation.
 spheres     A sphere for every face to start from, and spheres and planes one by one.

@@ -160,8 +160,8 @@ def hold(
     stages: list[Stage] = []
     unknowns, objective = start, np.inf
     left = {name: _Left() for name in problem.hard}
-    is_settled = False
-    for number in range(MULTIPLIER_ROUNDS):
+    number, is_settled = 0, False
+    while True:
         is_last = number >= len(bound_weights) - 1
         weight = bound_weights[min(number, len(bound_weights) - 1)]
         problem = replace(problem, bound_weight=weight)
@@ -187,9 +187,11 @@ def hold(
         is_settled = is_last and is_held and (is_same or not problem.hard)
         if is_settled and looks:
             return Held(unknowns, tuple(stages), descent.lowest, is_held=True)
-        if not (is_last and is_held) and any(
+        is_stuck = not (is_last and is_held) and any(
             each.slow > (0 if is_used_up else PATIENCE) for each in left.values()
-        ):
+        )
+        number += 1
+        if is_stuck or number == MULTIPLIER_ROUNDS:
             break
         problem = _harder(problem, {name for name, each in left.items() if each.slow})
     # Where conditions depend on each other, multipliers grow on and on, and what is missing

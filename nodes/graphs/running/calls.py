@@ -219,14 +219,16 @@ def _inputs(step: Step, arguments: Mapping[str, Any]) -> dict[str, Any]:
 
     A wire was checked as a type when it was drawn; what has come by it is known only now.
     """
-    ports, inputs = step.node.inputs, dict[str, Any]()
+    ports, inputs, has_arrays = step.node.inputs, dict[str, Any](), False
     for name, value in arguments.items():
         where = f"{step.name}.{name}"
         check_value(ports[name], value, where)
         inputs[name] = convert(ports[name].type, value)
         if isinstance(inputs[name], np.ndarray):
             check_magnitudes(inputs[name], where)
-    check_counts(step.name, {name: ports[name].type for name in inputs}, inputs)
+            has_arrays = True
+    if has_arrays:
+        check_counts(step.name, {name: ports[name].type for name in inputs}, inputs)
     return inputs
 
 

@@ -72,7 +72,7 @@ class EnergyOptimum(NamedTuple):
     report: EnergyReport
 
 
-@node(version="2")
+@node(version="3")
 def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     sphere_mesh: SphereMesh,
     sphericity: Weight = 1.0,

@@ -6,4 +6,5 @@ cost       What a workshop asks for it, and what fewer moulds and flat panels sa
 losses     What moulds and a support cost, and what became of it, in warnings.
 report     The report of a panelling.
 solids     Panels and beams as solids for CadQuery.
+view       A page on which a model turns, shines and answers.
 """

@@ -11,6 +11,7 @@ import spheremesh as sm
 from spheremesh.nodes import (
     cluster_radii,
     fit_spheres,
+    mesh_report,
     read_mesh,
     roof_mesh,
     write_schedule,
@@ -150,6 +151,15 @@ def test_files_of_a_graph_stay_in_the_folder(opened: Callable[..., Any]) -> None
     inner.save(one.graphs / "deep.json")
     with pytest.raises(Exception, match=r"deep.json: step 'read_mesh': path = .* outside"):
         one.gh.solve("deep")
+
+
+def test_a_mesh_by_wire_is_no_path(opened: Callable[..., Any]) -> None:
+    one = opened(files=None)
+    g = sm.Graph()
+    g.add(mesh_report, mesh=g.add(roof_mesh, n_span=g.param("n", 3), n_length=3))
+    g.save(one.graphs / "facts.json")
+    assert json.loads(one.gh.solve("facts")["report"][0])
+    assert one.gh.status == 203  # the node could read a file
 
 
 def test_code_of_a_graph_is_not_imported(opened: Callable[..., Any]) -> None:

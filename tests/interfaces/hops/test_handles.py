@@ -1,12 +1,14 @@
 """Handles: equal for equal values, good after a restart where the store is on disk."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
 import pytest
 
+from spheremesh.interfaces.hops import solving
 from spheremesh.interfaces.hops.handles import Handles
 from spheremesh.nodes import DiskStore, MemoryStore, fit_spheres, vase_mesh
 from spheremesh.nodes.graphs.stores.digests import digest
@@ -44,6 +46,14 @@ def test_without_a_disk_an_answer_with_handles_is_not_kept(gh: Value) -> None:
     assert gh.status == 200
 
 
+def test_only_what_lasts_may_be_kept(opened: Callable[..., Any], tmp_path: Path) -> None:
+    one = opened(DiskStore(tmp_path / "cache"))
+    lasting = one.service.solver.handles
+    assert lasting.lasts(lasting.give("sphere_mesh", fit_spheres(vase_mesh(6, 4))))
+    assert not lasting.lasts(lasting.give("object", object()))
+    assert not Handles(MemoryStore()).lasts("spheremesh:sphere_mesh:0")
+
+
 def test_reports_keep_what_json_has_no_word_for(opened: Callable[..., Any]) -> None:
     one = opened()
     sphere_mesh = fit_spheres(vase_mesh(8, 4))
@@ -70,14 +80,17 @@ def test_what_has_no_content_is_known_by_its_number() -> None:
         handles.take(text, "here")
 
 
-def test_a_handle_shows_all_that_it_stands_for(opened: Callable[..., Any]) -> None:
+def test_a_handle_shows_all_that_it_stands_for(
+    opened: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(solving, "Exchange", partial(solving.Exchange, most_shown=30))
     one = opened()
     give = one.service.solver.handles.give
-    mesh = vase_mesh(40, 30)
+    mesh = vase_mesh(8, 4)
     many = one.gh.solve("face_planes", mesh=one.gh.solve(
-        "vase_mesh", n_around=40, n_across=30)["mesh"])  # fmt: skip
+        "vase_mesh", n_around=8, n_across=4)["mesh"])  # fmt: skip
     assert many["spheres"] == []
-    assert "1200 panels are not shown unasked (1000 at most)" in one.gh.warnings[0]
+    assert "32 panels are not shown unasked (30 at most)" in one.gh.warnings[0]
     shown = one.gh.solve("show", handle=many["sphere_mesh"])
     assert (len(shown["breps"]), len(shown["mesh"])) == (mesh.n_faces, 1)
     assert one.gh.warnings == []

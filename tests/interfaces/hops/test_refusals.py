@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from spheremesh.fabrication.rhino_objects.meshes import mesh_fields
 from spheremesh.nodes import vase_mesh
@@ -171,3 +173,31 @@ def test_a_fault_of_ours_is_json_too(
     monkeypatch.setattr(one.service.catalogue, "find", fail)
     with pytest.raises(Exception, match="ZeroDivisionError: by nothing: a fault of spheremesh"):
         one.gh.describe("fit_spheres")
+
+
+KINDS = st.sampled_from(["System.Double", "System.String", "Rhino.Geometry.Mesh", "", None])
+DATA = st.one_of(
+    st.text(max_size=8),
+    st.sampled_from(["NaN", "null", "{}", "[]", "1e999", "spheremesh:a:b", '"', "true", "-0"]),
+    st.integers(-5, 40),
+    st.none(),
+)
+ITEMS = st.lists(st.fixed_dictionaries({}, optional={"type": KINDS, "data": DATA}), max_size=2)
+PATHS = st.sampled_from(["{0}", "{0;1}", "{9}", "0", "", "{x}"])
+BRANCHES = st.dictionaries(PATHS, ITEMS, max_size=2)
+
+
+@pytest.mark.usefixtures("in_this_process")
+@settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
+@given(st.data())
+def test_whatever_is_asked_the_answer_is_json(shared: Value, data: st.DataObject) -> None:
+    listed = data.draw(st.sampled_from(shared.service.catalogue.all()))
+    pointer, inputs = listed.component.name, [each.name for each in listed.component.inputs]
+    names = data.draw(st.lists(st.sampled_from([*inputs, "x"]), max_size=3))
+    values = [{"ParamName": name, "InnerTree": data.draw(BRANCHES)} for name in names]
+    body = json.dumps({"pointer": pointer, "values": values}).encode()
+    status, kind, content = shared.gh.send("POST", "/solve", body)
+    assert kind == "application/json; charset=utf-8"
+    answer = json.loads(content, parse_constant=pytest.fail)
+    assert (status in {200, 203}) == (answer["errors"] == [])
+    assert "a fault of" not in "".join(answer["errors"])

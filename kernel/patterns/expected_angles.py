@@ -1,0 +1,84 @@
+"""Angles between neighbours that the curvatures of a surface foretell.
+
+For a surface with the principal curvatures k1 >= k2 and panels whose edges measure E. Angles
+are means over the edges around a place, in radians; they are exact to the first order of E.
+"""
+
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+
+from ..arrays import FloatArray
+
+DIRECTIONS = 24
+"""Directions, over half a turn, that angles of hexagons and triangles are averaged over."""
+
+SphereRule = Literal["planes", "spheres", "one-radius"]
+
+
+def quad_angles(
+    first: FloatArray, second: FloatArray, edge: float, curvature: FloatArray | float
+) -> FloatArray:
+    """Quads along the lines of curvature, with spheres of given curvature that touch.
+
+    Notes
+    -----
+    The normals of neighbours in the direction i differ by ``k_i E``; towards their common edge
+    each sphere turns back by ``K E / 2``: what is left is ``|k_i - K| E``.
+    """
+    return (np.abs(curvature - first) + np.abs(curvature - second)) * edge / 2
+
+
+def hexagon_angles(
+    first: FloatArray, second: FloatArray, edge: float, curvature: FloatArray | float
+) -> FloatArray:
+    """Hexagons of touching spheres; their centres are √3 edges apart.
+
+    Notes
+    -----
+    Spheres of the same curvature K that touch at a distance d have an angle of
+    ``|(K - S) d|``, S the shape operator: the twist of the surface counts as well.
+    """
+    one, other = curvature - first, curvature - second
+    return np.sqrt(3) * edge * _mean_over_directions(
+        lambda turn: np.hypot(one * np.cos(turn), other * np.sin(turn))
+    )  # fmt: skip
+
+
+def triangle_angles(
+    first: FloatArray, second: FloatArray, edge: float, curvature: FloatArray | float
+) -> FloatArray:
+    """Equilateral triangles with vertices on the surface, and spheres through these.
+
+    Notes
+    -----
+    Planes of neighbours differ by ``(3 k_n - k_t) E / 2√3``, where n lies across the common
+    edge and t along it; spheres of curvature K take ``K E / √3`` away.
+    """
+    mean, half = (first + second) / 2, (first - second) / 2
+    return edge / np.sqrt(3) * _mean_over_directions(
+        lambda turn: np.abs(mean - curvature + 2 * half * np.cos(2 * turn))
+    )  # fmt: skip
+
+
+def _mean_over_directions(angle: Callable[[float], FloatArray]) -> FloatArray:
+    turns = np.pi * (np.arange(DIRECTIONS) + 0.5) / DIRECTIONS
+    return sum((angle(float(turn)) for turn in turns[1:]), angle(float(turns[0]))) / DIRECTIONS
+
+
+def smoothest(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Curvature (V,) of the spheres that meet most smoothly: the mean curvature.
+
+    In quads any K between the two gives the same sum of angles.
+    """
+    return (first + second) / 2
+
+
+def convex_side(first: FloatArray, second: FloatArray, side: int) -> FloatArray:
+    """Curvature (V,) of the largest spheres to one side whose hexagons are convex.
+
+    The side is 1 for centres where the normals point, -1 for those beyond. On that side spheres
+    have to bend at least as much as the surface does.
+    """
+    return np.maximum(first, 0.0) if side > 0 else np.minimum(second, 0.0)

@@ -1,0 +1,304 @@
+"""The page in a browser: the system's Chromium, drawing in software."""
+
+import base64
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from spheremesh.fabrication.schedules.columns import beam_columns, panel_columns
+from spheremesh.kernel.panels.cutting import cut_panels
+from spheremesh.kernel.parts.findings import Finding
+from spheremesh.kernel.parts.records import select_parts
+from spheremesh.kernel.sphere_meshes.fit import fit_spheres
+from spheremesh.kernel.surfaces.circular_nets import vase_net
+from spheremesh.nodes import beams as cut_beams
+from spheremesh.nodes import bisector_support
+from spheremesh.viewer.page.document import PageTexts, page_text
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+FLAGS = [
+    "--enable-unsafe-swiftshader",
+    "--no-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+]
+SIZE = {"width": 780, "height": 300}
+MISSING = 17
+
+Page = Any
+Browser = Any
+
+
+def write_page(folder: Path) -> Path:
+    """A vase with beams, three moulds, a missing panel and findings, under a wicked title."""
+    net = vase_net(12, 6, 1.0, 2.0, 0.3)
+    spheres = fit_spheres(net)
+    whole, _ = cut_panels(spheres, thickness=0.02, labels=np.arange(72) % 3, joint_gap=0.01)
+    made = select_parts(whole, np.arange(72) != MISSING)
+    carried = cut_beams(
+        bisector_support(spheres, depth=0.1).annuli, thickness=0.02, node_radius=0.05
+    ).beams
+    found = [
+        Finding("P201", "P0000", "a step of 9 mm </script>"),
+        Finding("P102", "P0001", "a corner of 12 degrees", severity="note"),
+    ]
+    columns = panel_columns(made, "m"), beam_columns(carried, made, "m")
+    about = PageTexts('</script><b>"Dächer"', *columns, found)
+    path = folder / "view.html"
+    path.write_text(page_text(made, carried, about, net), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is missing")
+    program = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if program is None:
+        pytest.skip("there is no Chromium: install the package chromium")
+    with playwright.sync_playwright() as play:
+        opened = play.chromium.launch(executable_path=program, args=FLAGS)
+        yield opened
+        opened.close()
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> str:
+    return write_page(tmp_path_factory.mktemp("page")).as_uri()
+
+
+@pytest.fixture(scope="module")
+def shared(browser: Browser, address: str) -> Iterator[Page]:
+    """One page for all tests; whatever it says or asks for is an error."""
+    page = browser.new_page(viewport=SIZE)
+    heard: list[str] = []
+    # What software drawing remarks on its own speed is not said by the page.
+    page.on("console", lambda m: None if "GPU stall" in m.text else heard.append(m.text))
+    page.on("pageerror", lambda error: heard.append(str(error)))
+    page.on("request", lambda request: heard.append(request.url))
+    page.goto(address)
+    page.wait_for_selector("html[data-ready]", state="attached", timeout=30_000)
+    yield page
+    page.close()
+    assert heard == [address]
+
+
+@pytest.fixture
+def page(shared: Page) -> Page:
+    shared.evaluate(
+        """() => { const p = window.spheremesh;
+        p.filter = null; p.select(-1); p.showTable(false);
+        p.set({color: 'mould', shading: 0, flat: 'off', axis: '', depth: 0.5, explode: 0,
+               hidden: new Set()}); p.view.fit(p.home); }"""
+    )
+    return shared
+
+
+def picture(page: Page) -> np.ndarray:
+    """Pixels of the canvas as it is drawn now, (height, width, 4)."""
+    size = page.evaluate(
+        """() => { const v = window.spheremesh.view, g = v.renderer.getContext();
+        v.drawNow();
+        const w = g.drawingBufferWidth, h = g.drawingBufferHeight;
+        const a = new Uint8Array(4 * w * h);
+        g.readPixels(0, 0, w, h, g.RGBA, g.UNSIGNED_BYTE, a);
+        let s = ''; for (let i = 0; i < a.length; i += 8192)
+          s += String.fromCharCode(...a.subarray(i, i + 8192));
+        return [w, h, btoa(s)]; }"""
+    )
+
+    width, height, data = size
+    return np.frombuffer(base64.b64decode(data), np.uint8).reshape(height, width, 4)[::-1]
+
+
+def selected(page: Page) -> str:
+    return page.inner_text("#card h2")
+
+
+def test_title_and_summary_are_shown_as_text(page: Page) -> None:
+    assert page.inner_text("h1") == '</script><b>"Dächer"'
+    assert page.inner_text("#title p") == (
+        "71 panels · 156 beams · 3 moulds · 1 part with errors · 1 missing"
+    )
+    assert "P0017" in page.inner_text("#missing")
+
+
+def test_picking_finds_the_part_that_is_seen(page: Page) -> None:
+    """Middles of panels, in front and seen at a slant, without the beams around them."""
+    page.evaluate("window.spheremesh.set({hidden: new Set(['beams', 'nodes'])})")
+    places = page.evaluate(
+        """() => { const v = window.spheremesh.view; return v.shapes.centers.slice(0, 71).map(
+        (c, i) => [i, v.project(c), v.camera.position.toArray().reduce((s, e, k) =>
+          s + v.shapes.lifts[i][k] * (e - c[k]), 0)]); }"""
+    )
+    ids = page.evaluate("window.spheremesh.model.ids")
+    facing = [(i, at) for i, at, side in places if side > 0.15]
+    assert len(facing) > 15
+    for part, (x, y) in facing[::3] + facing[-2:]:
+        assert page.evaluate(f"window.spheremesh.view.pick({x}, {y})") == part
+    under = "([x, y]) => document.elementFromPoint(x, y).id === 'canvas'"
+    for part, (x, y) in [each for each in facing if page.evaluate(under, each[1])][:3]:
+        page.mouse.click(x, y)
+        assert selected(page) == ids[part]
+    page.mouse.click(8, 150)
+    assert not page.is_visible("#card")
+
+
+def test_beams_and_nodes_are_picked_where_panels_are_hidden(page: Page) -> None:
+    page.evaluate("window.spheremesh.set({hidden: new Set(['panels'])})")
+    found = page.evaluate(
+        """() => { const p = window.spheremesh, v = p.view, n = 71 + 156; let right = 0;
+        for (let i = 71; i < n; i += 4) { const [x, y] = v.project(v.shapes.centers[i]);
+          if (v.pick(x, y) === i) right++; } return right; }"""
+    )
+    assert found > 8
+    page.evaluate("window.spheremesh.select(80)")
+    assert page.inner_text("#card").count("Nodes")
+
+
+def test_every_colour_and_light_draws_another_picture(page: Page) -> None:
+    seen = set()
+    for mode in page.evaluate("window.spheremesh.modes.map(m => m.key)"):
+        page.select_option("#color", mode)
+        seen.add(picture(page).tobytes())
+    assert len(seen) >= 5
+    for light in range(3):
+        page.evaluate(f"window.spheremesh.set({{color: 'none', shading: {light}}})")
+        seen.add(picture(page).tobytes())
+    assert len(seen) >= 8
+
+
+def test_findings_are_red_and_amber(page: Page) -> None:
+    page.select_option("#color", "finding")
+    assert page.inner_text("#scale .kind[data-kind=error] em") == "1"
+    assert page.inner_text("#scale .kind[data-kind=note] em") == "1"
+    colors = page.evaluate("[...window.spheremesh.view.colorData.slice(0, 12)]")
+    assert colors[:3] == [206, 58, 44]
+    assert colors[4:7] == [232, 164, 38]
+    page.evaluate("window.spheremesh.select(0)")
+    assert "a step of 9 mm </script>" in page.inner_text("#card .findings")
+
+
+def test_legend_filters_moulds_and_ranges(page: Page) -> None:
+    page.click("#scale .kind[data-kind='2']")
+    assert page.evaluate("window.spheremesh.left().length") == 24
+    page.click("#all")
+    assert page.evaluate("window.spheremesh.left().length") == 71 + 156 + 84
+    page.select_option("#color", "area")
+    box = page.locator("#scale svg").bounding_box()
+    page.mouse.move(box["x"] + 5, box["y"] + 20)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + 20)
+    page.mouse.up()
+    left = page.evaluate("window.spheremesh.left()")
+    areas = np.array(page.evaluate("window.spheremesh.model.panels.area_m2"))
+    assert 0 < len(left) < 71
+    assert areas[left].max() <= areas[np.setdiff1d(np.arange(71), left)].min()
+
+
+def test_search_takes_names_as_people_type_them(page: Page) -> None:
+    for text, name in (("P0030", "P0030"), ("p30", "P0030"), ("30", "P0030"), ("b7", "B0007")):
+        page.fill("#search input", text)
+        page.press("#search input", "Enter")
+        assert selected(page) == name
+    page.fill("#search input", "P9999")
+    page.press("#search input", "Enter")
+    assert "unknown" in page.get_attribute("#search input", "class")
+
+
+def test_what_is_found_is_turned_to_the_viewer(page: Page) -> None:
+    for part in (5, 29, 50, 70):
+        page.evaluate(f"window.spheremesh.choose({part})")
+        at = page.evaluate(
+            f"window.spheremesh.view.project(window.spheremesh.view.shapes.centers[{part}])"
+        )
+        assert page.evaluate(f"window.spheremesh.view.pick({at[0]}, {at[1]})") == part
+
+
+def test_keys_step_through_panels_and_turn_the_model(page: Page) -> None:
+    page.focus("#canvas")
+    page.keyboard.press("]")
+    assert selected(page) == "P0000"
+    page.keyboard.press("]")
+    page.keyboard.press("]")
+    page.keyboard.press("[")
+    assert selected(page) == "P0001"
+    assert "Mould 2" in page.inner_text("#spoken")
+    eye = page.evaluate("window.spheremesh.view.camera.position.toArray()")
+    page.keyboard.press("ArrowLeft")
+    assert page.evaluate("window.spheremesh.view.camera.position.toArray()") != eye
+    page.keyboard.press("Escape")
+    assert not page.is_visible("#card")
+
+
+def test_sections_hide_what_is_beyond_them(page: Page) -> None:
+    middle = "...window.spheremesh.view.project(window.spheremesh.view.shapes.centers[40])"
+    page.evaluate("window.spheremesh.choose(40)")
+    assert page.evaluate(f"window.spheremesh.view.pick({middle})") == 40
+    # From the side of the viewer all is cut away.
+    page.evaluate("window.spheremesh.set({axis: 'y', depth: 1})")
+    assert page.evaluate(f"window.spheremesh.view.pick({middle})") == -1
+
+
+def test_flat_panels_break_the_reflections_that_spheres_carry(page: Page) -> None:
+    page.evaluate("window.spheremesh.set({shading: 1, color: 'none'})")
+    spheres = picture(page)
+    page.click("#flat [data-value=on]")
+    flat = picture(page)
+    page.click("#flat [data-value=swipe]")
+    both = picture(page)
+    middle = both.shape[1] // 2
+    assert (spheres != flat).any(axis=2).mean() > 0.02
+    np.testing.assert_array_equal(both[:, : middle - 2], flat[:, : middle - 2])
+    np.testing.assert_array_equal(both[:, middle + 2 :], spheres[:, middle + 2 :])
+
+
+def test_table_is_sorted_and_in_step_with_the_picture(page: Page) -> None:
+    page.click("#listing")
+    assert page.locator("#table tbody tr").count() == 200
+    page.click("#table [data-sort='3']")
+    areas = page.evaluate(
+        "[...document.querySelectorAll('#table tbody tr')].map(r => Number(r.dataset.part))"
+    )[:71]
+    values = np.array(page.evaluate("window.spheremesh.model.panels.area_m2"))[areas]
+    assert (np.diff(values) >= 0).all()
+    page.click("#table tbody tr[data-part='30']")
+    assert selected(page) == page.evaluate("window.spheremesh.model.ids[30]")
+    assert page.get_attribute("#table tr[data-part='30']", "aria-selected") == "true"
+
+
+def test_an_address_shows_what_its_sender_saw(browser: Browser, address: str) -> None:
+    page = browser.new_page(viewport={"width": 390, "height": 700})
+    page.goto(
+        f"{address}#color=radius&light=zebra&panels=swipe&cut=z+0.25&part=P0030&hide=beams"
+    )
+    page.wait_for_selector("html[data-ready]", state="attached", timeout=30_000)
+    state = page.evaluate("(s => ({...s, hidden: [...s.hidden]}))(window.spheremesh.state)")
+    assert (state["color"], state["shading"], state["flat"]) == ("radius", 1, "swipe")
+    assert (state["axis"], state["depth"], state["hidden"]) == ("z", 0.25, ["beams"])
+    assert selected(page) == "P0030"
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    page.close()
+
+
+def test_without_webgl_there_is_a_picture_and_the_table(browser: Browser, address: str) -> None:
+    page = browser.new_page(viewport=SIZE)
+    page.add_init_script(
+        """const get = HTMLCanvasElement.prototype.getContext;
+        HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+          return kind.startsWith('webgl') ? null : get.call(this, kind, ...rest); };"""
+    )
+    page.goto(address)
+    page.wait_for_selector("html[data-ready]", state="attached", timeout=30_000)
+    assert "no WebGL" in page.inner_text("#message")
+    assert page.locator("#table tbody tr").count() == 200
+    painted = page.evaluate(
+        """() => { const c = document.getElementById('canvas'), d = c.getContext('2d')
+        .getImageData(0, 0, c.width, c.height).data; let n = 0;
+        for (let i = 3; i < d.length; i += 4) n += d[i] > 0; return n / (d.length / 4); }"""
+    )
+    assert painted > 0.05
+    page.close()

@@ -1,0 +1,343 @@
+// The picture: what is drawn, from where, and which part is under the pointer.
+
+import {
+  BufferAttribute, BufferGeometry, DataTexture, DoubleSide, FloatType, FrontSide, GLSL3,
+  LinearFilter, LineSegments, Mesh, NearestFilter, PerspectiveCamera, PlaneGeometry,
+  RawShaderMaterial, RedFormat, RGBAFormat, Scene, UnsignedByteType, Vector3, Vector4,
+  WebGLRenderer, WebGLRenderTarget,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import {
+  GROUND_FRAGMENT, GROUND_VERTEX, LINE_FRAGMENT, LINE_VERTEX, MESH_FRAGMENT, MESH_VERTEX,
+} from "./shaders.js";
+import { Lines } from "./shapes.js";
+import { add, cross, dot, length, scale, sub, unit } from "./vectors.js";
+
+const FIELD = 24;
+export const NAMED_VIEWS = {
+  home: null, top: [0, -0.001, 1], front: [0, -1, 0.12], side: [1, 0, 0.12], below: [0.5, -0.7, -0.6],
+};
+
+function table(rows, width, perRow) {
+  const height = Math.max(1, Math.ceil((rows.length * perRow) / width));
+  const data = new Float32Array(width * height * 4);
+  rows.forEach((row, i) => data.set(row, i * perRow * 4));
+  return texture(data, width, height, RGBAFormat, FloatType, NearestFilter);
+}
+
+function texture(data, width, height, format, type, filter) {
+  const result = new DataTexture(data, width, height, format, type);
+  result.minFilter = result.magFilter = filter;
+  result.needsUpdate = true;
+  return result;
+}
+
+function meshGeometry(soup) {
+  const result = new BufferGeometry();
+  result.setAttribute("position", new BufferAttribute(soup.positions.all, 3));
+  result.setAttribute("surface", new BufferAttribute(soup.surfaces.all, 1));
+  result.setAttribute("side", new BufferAttribute(soup.sides.all, 1));
+  result.setAttribute("light", new BufferAttribute(soup.lights.all, 2, true));
+  result.setIndex(new BufferAttribute(soup.triangles.all, 1));
+  return result;
+}
+
+function lineGeometry(lines) {
+  const result = new BufferGeometry();
+  result.setAttribute("position", new BufferAttribute(lines.positions.all, 3));
+  result.setAttribute("part", new BufferAttribute(lines.parts.all, 1));
+  return result;
+}
+
+/** Displacement of each part where the model is drawn apart, for an amount of 1. */
+function shiftRows(shapes) {
+  return shapes.centers.map((c, i) => [...add(scale(c, 0.4), shapes.lifts[i], 0.07), 0]);
+}
+
+export class View {
+  constructor(canvas, head, arrays, shapes) {
+    this.canvas = canvas;
+    this.shapes = shapes;
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
+    this.renderer.setClearColor(0xffffff, 0);
+    this.scene = new Scene();
+    this.camera = new PerspectiveCamera(FIELD, 1, 0.02, 60);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = false;
+    this.controls.minDistance = 0.02;
+    this.controls.maxDistance = 20;
+    this.controls.addEventListener("change", () => this.draw());
+    this.fitted = null;
+    this.controls.addEventListener("start", () => { this.fitted = null; });
+    this.flat = "off";
+    this.swipe = 0.5;
+    this.visible = { panels: true, edges: true, beams: true, nodes: true, missing: true };
+    const parts = shapes.centers.length;
+    this.colorData = new Uint8Array(1024 * Math.ceil(Math.max(1, parts) / 1024) * 4).fill(255);
+    this.uniforms = this.makeUniforms(parts);
+    this.edge = meanEdge(shapes.corners);
+    this.build(head, arrays);
+    this.target = new WebGLRenderTarget(1, 1);
+    this.pending = 0;
+  }
+
+  makeUniforms(parts) {
+    const rows = Math.ceil(Math.max(1, parts) / 1024);
+    return {
+      surfaces: { value: table(this.shapes.surfaces, 1536, 3) },
+      shifts: { value: table(shiftRows(this.shapes), 1024, 1) },
+      colors: { value: texture(this.colorData, 1024, rows, RGBAFormat, UnsignedByteType, NearestFilter) },
+      shading: { value: 0 }, selected: { value: -1 }, picking: { value: false },
+      cuts: { value: false }, solid: { value: false }, explode: { value: 0 },
+      eye: { value: new Vector3() }, right: { value: new Vector3(1, 0, 0) },
+      back: { value: new Vector3(0, 1, 0) }, sun: { value: new Vector3(0, 0, 1) },
+      plane: { value: new Vector4(1, 0, 0, 9) },
+    };
+  }
+
+  build(head, arrays) {
+    const { shapes } = this, { uniforms } = this;
+    const material = (solid) => new RawShaderMaterial({
+      vertexShader: MESH_VERTEX, fragmentShader: MESH_FRAGMENT, glslVersion: GLSL3, side: DoubleSide,
+      uniforms: { ...uniforms, solid: { value: solid } },
+      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+    });
+    const line = (ink, only = -1, pull = 0) => new RawShaderMaterial({
+      vertexShader: LINE_VERTEX, fragmentShader: LINE_FRAGMENT, glslVersion: GLSL3, transparent: true,
+      uniforms: { ...uniforms, ink: { value: new Vector4(...ink) }, only: { value: only }, pull: { value: pull } },
+      depthWrite: false,
+    });
+    const mesh = (soup, solid) => new Mesh(meshGeometry(soup), material(solid));
+    this.meshes = {
+      panels: mesh(shapes.panels, head.solid), flat: mesh(shapes.flat, false),
+      beams: mesh(shapes.beams, true), nodes: mesh(shapes.nodes, true),
+    };
+    const ink = [0.13, 0.15, 0.18, 0.5];
+    this.marked = line([0.78, 0.30, 0.02, 1], -1, 0.0006);
+    this.lines = {
+      edges: new LineSegments(lineGeometry(shapes.edges), line(ink)),
+      flatEdges: new LineSegments(lineGeometry(shapes.flatEdges), line(ink)),
+      marked: new LineSegments(lineGeometry(shapes.edges), this.marked),
+      missing: new LineSegments(lineGeometry(outlines(shapes)), line([0.78, 0.16, 0.12, 1], -2)),
+    };
+    this.ground = ground(head, arrays);
+    for (const each of [this.ground, ...Object.values(this.meshes), ...Object.values(this.lines)]) {
+      each.frustumCulled = false;
+      this.scene.add(each);
+    }
+    this.ground.renderOrder = -1;
+  }
+
+  setColors(colors) {
+    this.colorData.set(colors);
+    this.uniforms.colors.value.needsUpdate = true;
+    this.draw();
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / Math.max(1, height);
+    this.camera.updateProjectionMatrix();
+    // What was made to fit fits again; who has turned the model keeps the view.
+    if (this.fitted) this.fit(this.fitted);
+    this.draw();
+  }
+
+  /** The nearest camera from a direction whose pyramid holds the model: `frame_scene`. */
+  fit(direction) {
+    this.fitted = direction;
+    const axes = viewAxes(direction);
+    const t = Math.tan((FIELD * Math.PI) / 360), sides = this.freeSides();
+    // Of each pair of sides the slopes: left and right, below and above.
+    const slopes = [[sides.left, sides.right].map((m) => t * this.camera.aspect * m), [sides.below, sides.above].map((m) => t * m)];
+    const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+    let near = -Infinity, far = Infinity;
+    const points = this.shapes.corners.length ? this.shapes.corners.flat() : this.shapes.centers;
+    for (const p of points) {
+      const z = dot(axes[2], p);
+      near = Math.max(near, z);
+      far = Math.min(far, z);
+      slopes.forEach(([s, r], k) => {
+        const x = dot(axes[k], p);
+        low[k] = Math.min(low[k], x - s * z);
+        high[k] = Math.max(high[k], x + r * z);
+      });
+    }
+    const distance = Math.max(...slopes.map(([s, r], k) => (high[k] - low[k]) / (s + r)));
+    const middle = slopes.map(([s, r], k) => (low[k] + s * distance + high[k] - r * distance) / 2);
+    const eye = [0, 1, 2].map((k) => axes[0][k] * middle[0] + axes[1][k] * middle[1] + axes[2][k] * distance);
+    const target = add(eye, axes[2], (near + far) / 2 - distance);
+    this.camera.position.set(...eye);
+    this.controls.target.set(...target);
+    this.controls.update();
+    this.draw();
+  }
+
+  /** What share of each half of the canvas is left free by title and tools. */
+  freeSides() {
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    const share = (pixels, side, most) => 1 - 2 * Math.min(most, pixels / Math.max(1, side));
+    const across = share(34, width, 0.06);
+    return { left: across, right: across, below: share(84, height, 0.17), above: share(92, height, 0.19) };
+  }
+
+  /** Turn about what is looked at, by angles to the left and upwards. */
+  orbit(left, upward) {
+    this.fitted = null;
+    const away = this.camera.position.clone().sub(this.controls.target), r = away.length();
+    const turn = Math.atan2(away.y, away.x) - left;
+    const rise = Math.max(-1.55, Math.min(1.55, Math.asin(away.z / r) + upward));
+    away.set(Math.cos(turn) * Math.cos(rise), Math.sin(turn) * Math.cos(rise), Math.sin(rise));
+    this.camera.position.copy(this.controls.target).addScaledVector(away, r);
+    this.controls.update();
+    this.draw();
+  }
+
+  /** Turn until a part faces the viewer, if it does not yet. */
+  reveal(part) {
+    const c = this.shapes.centers[part], [x, y] = this.project(c), { camera } = this;
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    const eye = camera.position.toArray(), n = this.shapes.lifts[part];
+    const inside = x > 0 && x < width && y > 0 && y < height;
+    const seen = inside && this.pick(x, y) === part;
+    if (seen) return;
+    const outwards = length(n) ? n : unit(sub(eye, c));
+    this.fit(add(outwards, [0, 0, Math.max(0.35, 0.25 - outwards[2])]));
+  }
+
+  draw() {
+    if (!this.pending) this.pending = requestAnimationFrame(() => this.drawNow());
+  }
+
+  drawNow() {
+    this.pending = 0;
+    this.light();
+    const { renderer } = this, size = this.canvas.parentElement;
+    const width = size.clientWidth, height = size.clientHeight;
+    renderer.setScissorTest(this.flat === "swipe");
+    if (this.flat === "swipe") {
+      const middle = Math.round(this.swipe * width);
+      renderer.setScissor(0, 0, middle, height);
+      this.show(true);
+      renderer.render(this.scene, this.camera);
+      renderer.setScissor(middle, 0, width - middle, height);
+      this.show(false);
+    } else {
+      this.show(this.flat === "on");
+    }
+    renderer.render(this.scene, this.camera);
+  }
+
+  show(flat) {
+    const { meshes, lines, visible } = this;
+    meshes.panels.visible = visible.panels && !flat;
+    meshes.flat.visible = visible.panels && flat;
+    lines.edges.visible = visible.panels && visible.edges && !flat;
+    lines.flatEdges.visible = visible.panels && visible.edges && flat;
+    lines.marked.visible = visible.panels && this.marked.uniforms.only.value >= 0 && !flat;
+    lines.missing.visible = visible.missing;
+    meshes.beams.visible = visible.beams;
+    meshes.nodes.visible = visible.nodes;
+    this.ground.visible = this.uniforms.explode.value === 0;
+  }
+
+  /** The sun stands behind the viewer, at the upper left. */
+  light() {
+    const { camera, uniforms } = this;
+    camera.updateMatrixWorld();
+    const e = camera.matrixWorld.elements;
+    const right = [e[0], e[1], e[2]], back = [e[8], e[9], e[10]];
+    const level = unit(add([back[0], back[1], 0], [right[0], right[1], 0], -1.1));
+    uniforms.eye.value.copy(camera.position);
+    // Small panels get paler edges, lest the picture turns grey.
+    const focal = this.canvas.parentElement.clientHeight / (2 * Math.tan((FIELD * Math.PI) / 360));
+    const pixels = (this.edge * focal) / camera.position.distanceTo(this.controls.target);
+    this.lines.edges.material.uniforms.ink.value.w = 0.42 * Math.min(1, 0.1 + pixels / 26);
+    this.lines.flatEdges.material.uniforms.ink.value.w = this.lines.edges.material.uniforms.ink.value.w;
+    uniforms.right.value.set(...unit(right));
+    uniforms.back.value.set(...unit(cross(unit(right), [0, 0, 1])));
+    uniforms.sun.value.set(...unit(add(level, [0, 0, 1.15])));
+  }
+
+  /** The part under a point of the canvas; -1 for none. */
+  pick(x, y) {
+    const { renderer, camera, scene, uniforms, target } = this;
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    const flat = this.flat === "on" || (this.flat === "swipe" && x < this.swipe * width);
+    this.light();
+    this.show(flat);
+    for (const each of [this.ground, ...Object.values(this.lines)]) each.visible = false;
+    camera.setViewOffset(width, height, Math.floor(x), Math.floor(y), 1, 1);
+    uniforms.picking.value = true;
+    renderer.setScissorTest(false);
+    renderer.setRenderTarget(target);
+    renderer.clear();
+    renderer.render(scene, camera);
+    const pixel = new Uint8Array(4);
+    renderer.readRenderTargetPixels(target, 0, 0, 1, 1, pixel);
+    renderer.setRenderTarget(null);
+    camera.clearViewOffset();
+    uniforms.picking.value = false;
+    this.draw();
+    return pixel[3] ? pixel[0] + 256 * pixel[1] + 65536 * pixel[2] - 1 : -1;
+  }
+
+  /** Where a point of the model appears on the canvas. */
+  project(point) {
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    this.camera.updateMatrixWorld();
+    const v = new Vector3(...point).project(this.camera);
+    return [((v.x + 1) / 2) * width, ((1 - v.y) / 2) * height];
+  }
+
+  select(part) {
+    this.uniforms.selected.value = part;
+    this.marked.uniforms.only.value = part >= 0 && part < this.shapes.parts ? part : -1;
+    this.draw();
+  }
+}
+
+function meanEdge(polygons) {
+  let sum = 0, count = 0;
+  for (const corners of polygons) {
+    corners.forEach((p, k) => { sum += length(sub(corners[(k + 1) % corners.length], p)); });
+    count += corners.length;
+  }
+  return count ? sum / count : 1;
+}
+
+function outlines(shapes) {
+  const lines = new Lines();
+  shapes.outlines.forEach((outline, i) => {
+    if (!outline.length) return;
+    const middle = shapes.centers[shapes.total + i];
+    const corners = outline.map((p) => add(p, add(middle, p, -1), 0.06));
+    const part = shapes.total + i, half = Math.floor(corners.length / 2);
+    corners.forEach((p, k) => lines.add(p, corners[(k + 1) % corners.length], part));
+    corners.slice(0, half).forEach((p, k) => lines.add(p, corners[k + half], part));
+  });
+  return lines;
+}
+
+function ground(head, arrays) {
+  const n = head.ground.points, shade = new Uint8Array(arrays.ground);
+  const map = texture(shade, n, n, RedFormat, UnsignedByteType, LinearFilter);
+  const plane = new PlaneGeometry(head.ground.size, head.ground.size);
+  const material = new RawShaderMaterial({
+    vertexShader: GROUND_VERTEX, fragmentShader: GROUND_FRAGMENT, glslVersion: GLSL3, transparent: true,
+    depthWrite: false, side: FrontSide, uniforms: { shade: { value: map } },
+  });
+  const result = new Mesh(plane, material);
+  result.position.set(...head.ground.middle);
+  return result;
+}
+
+function viewAxes(direction) {
+  const back = unit(direction);
+  const upright = Math.abs(back[2]) < 0.9999 ? [0, 0, 1] : [0, 1, 0];
+  const right = unit(cross(upright, back));
+  return [right, cross(back, right), back];
+}
