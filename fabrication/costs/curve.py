@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -72,14 +73,14 @@ def mould_curve(
     if not counts or min(counts) < 1:
         raise InputError("numbers of moulds must be given, of at least 1")
     wanted, found = set(counts), list[_Spheres]()
-    # The mould of flat panels needs none to be made.
+    # One mould for all would bend panels that are flat; their own costs nothing.
     has_flat = bool((sphere_mesh.local_spheres[:, 0] == 0).any())
     walk = each_clustering(sphere_mesh, options.same_sagitta)
-    for k, (spheres, clusters) in enumerate(walk, 1):
+    for spheres, clusters in islice(walk, int(has_flat), None):
         curved = int(np.isfinite(clusters.radii).sum())
-        if k - has_flat in wanted and (not found or curved > found[-1].moulds):
+        if curved in wanted and (not found or curved > found[-1].moulds):
             found.append(_Spheres(spheres, clusters.labels, curved))
-        if k - has_flat >= max(wanted):
+        if curved >= max(wanted):
             break
     found.append(_Spheres(sphere_mesh, None, 0))
     return [_row(each, prices, options) for each in found]

@@ -18,6 +18,7 @@ from ....kernel.optimization.flat_panels import flatten_shallow
 from ....kernel.panels.panels import Panels
 from ....kernel.reports import Report
 from ....kernel.sphere_meshes.sphere_mesh import SphereMesh
+from ....kernel.tolerances import ROUGHER
 from ...graphs.node import node, warn
 from ...graphs.ports import Length, Port, ReadPath, Units
 from ..arrays import CreaseAngle, FaceMarks
@@ -135,6 +136,12 @@ def flat_panels(
         angles_deg=angle_summary(flattened, is_smooth),
         curved_angles_deg=angle_summary(sphere_mesh, is_smooth),
     )
+    after, before = report.angles_deg["mean"], report.curved_angles_deg["mean"]
+    if after > before * (1 + ROUGHER):
+        warn(
+            f"{report.count} flat panels make neighbours meet at {after:.3g} degrees in the "
+            f"mean instead of {before:.3g}: a bound below {flat_below:g} mm keeps them smoother"
+        )
     return Flattened(flattened, is_flattened, report)
 
 

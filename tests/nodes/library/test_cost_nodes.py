@@ -50,6 +50,7 @@ def rises(sphere_mesh: SphereMesh) -> np.ndarray:
     return curvatures * rims**2 / (1 + np.sqrt(np.maximum(1 - (curvatures * rims) ** 2, 0)))
 
 
+@pytest.mark.filterwarnings("ignore")
 def test_panels_below_the_bound_are_flat_and_no_others(spheres: SphereMesh) -> None:
     heights = 1000 * rises(spheres)
     for bound in (0.0, *np.quantile(heights, [0.2, 0.7]), 1e4):
@@ -92,6 +93,24 @@ def test_the_curve_is_the_cost_of_each_number(spheres: SphereMesh, tmp_path: Pat
     )
     with pytest.raises(InputError, match="of at least 1"):
         cost_curve(spheres, PRICES, (0, 3))
+
+
+def test_flat_panels_that_cost_smoothness_say_so(spheres: SphereMesh) -> None:
+    with pytest.warns(sm.nodes.NodeWarning, match="72 flat panels make neighbours meet at"):
+        flat_panels(spheres, flat_below=1e4)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_flat_mould_is_none_of_those_counted() -> None:
+    """Panels that are flat already, or for the workshop, leave so many moulds that curve."""
+    mesh = roof_mesh(8, 9)
+    smooth = minimize_angles(fit_spheres(mesh)).sphere_mesh
+    middle = float(1000 * np.median(rises(smooth)))
+    level = flat_panels(smooth, flat_below=middle).sphere_mesh
+    for spheres, same in ((level, 0.0), (smooth, 0.2 * middle)):
+        found = cost_curve(spheres, PRICES, (1, 2, 3), same_sagitta=same)
+        assert [row["moulds"] for row in found["rows"][:-1]] == [1, 2, 3]
+        assert found["rows"][0]["parts"]["moulds"] == 1000
 
 
 def test_a_graph_prices_anew_when_the_file_changes(tmp_path: Path) -> None:
