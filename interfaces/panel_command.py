@@ -200,6 +200,7 @@ def panel(  # numpydoc ignore=PR01
     demonstration roof is panelled. Files in the folder are replaced only if spheremesh wrote
     them and nobody changed them since.
     """
+    from ..fabrication.costs.prices import read_prices
     from .panel import (
         PanelOptions,
         feasible_panel_graph,
