@@ -8,7 +8,7 @@ from ...fabrication.mesh_files.reader import read_content
 from ...kernel.errors import InputError
 
 SupportKind = Literal["axis", "exact", "bisector"]
-PatternKind = Literal["quads", "as-is"]
+PatternKind = Literal["quads", "hexagons", "triangles", "as-is"]
 
 
 @dataclass(frozen=True)
@@ -25,8 +25,8 @@ class PanelOptions:
         Whether to repair the mesh first.
     edge_length : float or None
         Length of the edges of a pattern, or of faces on surfaces, in model units.
-    pattern : {"quads", "as-is"}
-        Whether the mesh is a surface to be covered by quads of that length, or its faces are
+    pattern : {"quads", "hexagons", "triangles", "as-is"}
+        Whether the mesh is a surface to be covered by panels of that length, or its faces are
         the panels.
     rows : (int, int) or None
         Rows of faces along u and v of each surface; neither: as `read_mesh` has it.
@@ -37,6 +37,10 @@ class PanelOptions:
     max_angle, max_angle_largest : float or None
         The fewest moulds keep the mean and the largest angle between neighbours below, in
         degrees.
+    flat_below : float
+        Panels that rise by less over their edges are flat, in millimetres.
+    prices : Path or None
+        Price file.
     thickness, joint_gap : float
         In model units.
     side : {"inward", "outward", "centred"}
@@ -80,6 +84,8 @@ class PanelOptions:
     moulds: int | None = None
     max_angle: float | None = None
     max_angle_largest: float | None = None
+    flat_below: float = 0.0
+    prices: Path | None = None
     thickness: float = 0.0
     joint_gap: float = 0.0
     side: Literal["inward", "outward", "centred"] = "inward"
