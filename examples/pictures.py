@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageDraw, ImageFont
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.beams.beams import Beams
@@ -25,6 +25,7 @@ from spheremesh.nodes import (
     catenoid_mesh,
     cluster_radii,
     common_axes,
+    cost_curve,
     ellipsoid_mesh,
     evolve_spheres,
     exact_support,
@@ -216,6 +217,58 @@ def supports() -> Image.Image:
     )
 
 
+PRICES = {
+    "currency": "EUR",
+    "moulds": [
+        {"min_radius_m": 5, "max_diameter_m": 3, "each": 900, "per_m2": 350},
+        {"each": 2400, "per_m2": 800},
+    ],
+    "blanks": {"per_m2": 95, "flat_per_m2": 45},
+    "panels": {"per_m2": 140, "flat_per_m2": 90},
+}
+"""The prices of `14_cost.py` and docs/cost.md; yours are others."""
+
+
+def cost_against_smoothness() -> Image.Image:
+    """Cost over the mean angle of the roof, for every number of moulds."""
+    smooth = minimize_angles(fit_spheres(roof_mesh())).sphere_mesh
+    found = cost_curve(smooth, PRICES, flat_below=5.0, thickness=0.02)
+    image = Image.new("RGB", (1280, 760), "white")
+    draw, font = ImageDraw.Draw(image), ImageFont.load_default(size=22)
+    (left, right), (bottom, top) = (2.28, 2.80), (600, 820)
+
+    def place(mean: float, cost: float) -> tuple[float, float]:
+        x = 110 + 1120 * (mean - left) / (right - left)
+        return x, 660 - 600 * (cost / 1000 - bottom) / (top - bottom)
+
+    for cost in range(bottom, top + 1, 40):
+        x, y = place(left, 1000 * cost)
+        draw.line([(x, y), (1230, y)], "#dddddd")
+        draw.text((x - 12, y), str(cost), "#444444", font, anchor="rm")
+    for mean in np.arange(2.3, right, 0.1):
+        x, y = place(float(mean), 1000 * bottom)
+        draw.line([(x, y), (x, 60)], "#dddddd")
+        draw.text((x, y + 12), f"{mean:.1f}", "#444444", font, anchor="mt")
+    draw.text((20, 16), "cost in 1,000 EUR", "#444444", font)
+    draw.text((1230, 715), "mean angle between neighbours, degrees", "#444444", font, "rt")
+    curves = (
+        (found["rows"][:-1], "#1f5fa8", "all panels curved", 1),
+        (found["flat_rows"][:-1], "#c25a12", "flat below 5 mm", -1),
+    )
+    for i, (rows, color, name, side) in enumerate(curves):
+        points = [place(row["mean_deg"], row["total"]) for row in rows]
+        draw.line(points, color, 3)
+        for row, (x, y) in zip(rows, points, strict=True):
+            draw.ellipse([x - 5, y - 5, x + 5, y + 5], color)
+            if row["moulds"] <= 4:
+                draw.text((x, y + 14), str(row["moulds"]), color, font, anchor="mt")
+            elif row["moulds"] in {5, 16, 24, 32, 48, 64}:
+                anchor = "lm" if side > 0 else "rm"
+                draw.text((x + 14 * side, y), str(row["moulds"]), color, font, anchor=anchor)
+        draw.text((820, 90 + 34 * i), f"number of moulds, {name}", color, font)
+    return image
+
+
 def assemblies() -> Image.Image:
     """Six assemblies from below, and below each one of its nodes."""
     roof, dome = roof_mesh(12, 18), _cut_open(ellipsoid_mesh(16, 9))
@@ -316,6 +369,7 @@ PICTURES = {
     "remeshed-roof": remeshed_roof,
     "quad-pattern": quad_pattern,
     "supports": supports,
+    "cost-curve": cost_against_smoothness,
     "assemblies": assemblies,
 }
 

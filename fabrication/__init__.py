@@ -13,6 +13,7 @@ opennurbs   The byte stream of .3dm files: exact Breps and render meshes.
 step        STEP files as text, and a check of that text.
 drawings    Flat drawings: beams for cutting, moulds with their blanks.
 schedules   Lists of parts with all that a workshop asks for.
+costs       What parts cost by the prices of a workshop.
 audit       Numbered findings before files go out.
 solids      The same parts as shapes of OpenCASCADE and CadQuery.
 model       What every writer writes, and what it gives back.

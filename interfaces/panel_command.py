@@ -39,6 +39,18 @@ class _PanelCommand(click.Command):
     help="The fewest moulds with which no neighbours meet at more degrees; both bounds hold if "
     "both are given.",
 )
+@click.option(
+    "--flat-below",
+    metavar="MM",
+    type=click.FloatRange(min=0),
+    default=0.0,
+    help="Panels that bulge by less are flat and need no mould, in millimetres.",
+)
+@click.option(
+    "--prices",
+    type=click.Path(path_type=Path),
+    help="Price file in TOML; the cost is in the report then.",
+)
 @click.option("--thickness", type=float, default=0.0, help="Thickness, in model units.")
 @click.option("--joint-gap", type=float, default=0.0, help="Joint width, in model units.")
 @click.option(
@@ -188,6 +200,7 @@ def panel(  # numpydoc ignore=PR01
     demonstration roof is panelled. Files in the folder are replaced only if spheremesh wrote
     them and nobody changed them since.
     """
+    from ..fabrication.costs.prices import read_prices
     from .panel import (
         PanelOptions,
         feasible_panel_graph,
@@ -214,6 +227,8 @@ def panel(  # numpydoc ignore=PR01
     _check_exact(options)
     _warn_of_no_beams(options)
     with told_errors(), shown_progress() as progress:
+        if options["prices"] is not None:
+            read_prices(options["prices"])  # its faults are told before anything is computed
         options["units"], is_assumed = model_units(PanelOptions(**options))
         store = chosen_store(cache, no_cache=no_cache)
         if has_pattern:
@@ -233,6 +248,11 @@ def _check_moulds(options: Mapping[str, Any]) -> None:
         raise click.UsageError(
             f"--moulds and {' and '.join(given)} exclude each other: the bound says how many "
             "moulds there are; drop one"
+        )
+    if options["flat_below"] and options["moulds"] == 1:
+        raise click.UsageError(
+            "--flat-below and --moulds 1 exclude each other: flat panels count as a mould; ask "
+            "for 2"
         )
 
 

@@ -73,9 +73,9 @@ def panel_graph(
         Its steps are named mesh, description, start, angles (before an optimum of more than
         angles), optimum, panels, audit, report, step, rhino, table, list, picture and view;
         with a number of moulds also moulds, blanks, mould_drawing and mould_picture, with a
-        bound on angles before these fewest, with a support also feasibility, annuli, beams,
-        drawing and beam_table, with either plain, the panels without them. Of a pattern mesh
-        is the surface; gain, pattern and net follow it.
+        bound on angles before these fewest, with `flat_below` flat, with prices cost, with a
+        support also feasibility, annuli, beams, drawing and beam_table, with either plain, the
+        panels without them. Of a pattern mesh is the surface; gain, pattern and net follow it.
         Its writers write relative to the folder of the run.
 
     Raises
@@ -101,16 +101,8 @@ def panel_graph(
         optimum = graph.add("keep_spheres", "optimum", sphere_mesh=net, crease=crease)
     else:
         optimum = _optimum(graph, options, mesh, moves, crease)
-    design = spheres = optimum.sphere_mesh
-    labels, clusters, blanks = None, None, None
-    count = _mould_count(graph, options, spheres, crease)
-    if count is not None:
-        # Vertices that move make angles smaller in the mean, and may make the largest larger.
-        relaxed = moves if options.max_angle_largest is None else {}
-        moulds = graph.add(
-            "cluster_radii", "moulds", sphere_mesh=spheres, k=count, crease=crease, **relaxed
-        )
-        spheres, labels, clusters = moulds.sphere_mesh, moulds.labels, moulds.report
+    design = optimum.sphere_mesh
+    spheres, labels, clusters = _few_radii(graph, options, design, moves, crease)
     kind = beams or options.support
     layers: dict[str, Any] = {
         "thickness": thickness, "joint_gap": joint_gap, "side": options.side,
@@ -123,23 +115,46 @@ def panel_graph(
     )
     support = add_beams(graph, options, annuli, panels.panels) if annuli else None
     plain = _plain(graph, design, layers) if support or spheres is not design else {}
-    if count is not None:
-        blanks = _add_blanks(graph, panels.panels)
+    blanks = _add_blanks(graph, panels.panels) if clusters else None
     audit = graph.add(
         "audit", "audit", panels=panels.panels, cut=panels.report,
         max_step=options.allow_step, max_gap=options.allow_gap,
         max_twist=options.allow_torsion, **(support.audit if support else {}),
     )  # fmt: skip
+    made = {"panels": panels.panels} | ({"beams": support.beams} if support else {})
+    cost: dict[str, Any] = {}
+    if options.prices is not None:
+        cost["cost"] = graph.add("cost", "cost", **made, prices=str(options.prices.resolve()))
     graph.add(
         "panel_report", "report", sphere_mesh=spheres, optimum=optimum.report,
-        cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report, **plain,
+        cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report, **plain, **cost,
         **(support.report if support else {}),
     )  # fmt: skip
-    made = {"panels": panels.panels} | ({"beams": support.beams} if support else {})
     _add_writers(graph, pattern.surface if pattern else mesh, made)
-    shown = {"findings": audit.findings, "cut": panels.report, "reference": mesh}
+    shown = {"findings": audit.findings, "cut": panels.report, "reference": spheres}
     graph.add("write_view", "view", **made, **shown, path="view.html", title=title)
     return graph
+
+
+def _few_radii(
+    graph: Graph, options: PanelOptions, spheres: Wire, moves: Mapping[str, Param],
+    crease: Param,
+) -> tuple[Wire, Wire | None, Wire | None]:  # fmt: skip
+    """Spheres that are flat or of few radii where asked for, with their labels and report."""
+    if options.flat_below:
+        bound = graph.param("flat_below", options.flat_below, min=0)
+        spheres = graph.add(
+            "flat_panels", "flat", sphere_mesh=spheres, flat_below=bound, crease=crease
+        ).sphere_mesh
+    count = _mould_count(graph, options, spheres, crease)
+    if count is None:
+        return spheres, None, None
+    # Vertices that move make angles smaller in the mean, and may make the largest larger.
+    relaxed: Mapping[str, Param] = moves if options.max_angle_largest is None else {}
+    moulds = graph.add(
+        "cluster_radii", "moulds", sphere_mesh=spheres, k=count, crease=crease, **relaxed
+    )
+    return moulds.sphere_mesh, moulds.labels, moulds.report
 
 
 def _mould_count(

@@ -37,6 +37,10 @@ class PanelOptions:
     max_angle, max_angle_largest : float or None
         The fewest moulds keep the mean and the largest angle between neighbours below, in
         degrees.
+    flat_below : float
+        Panels that rise by less over their edges are flat, in millimetres.
+    prices : Path or None
+        Price file.
     thickness, joint_gap : float
         In model units.
     side : {"inward", "outward", "centred"}
@@ -80,6 +84,8 @@ class PanelOptions:
     moulds: int | None = None
     max_angle: float | None = None
     max_angle_largest: float | None = None
+    flat_below: float = 0.0
+    prices: Path | None = None
     thickness: float = 0.0
     joint_gap: float = 0.0
     side: Literal["inward", "outward", "centred"] = "inward"

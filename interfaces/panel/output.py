@@ -49,6 +49,8 @@ def print_report(
     click.echo(f"panels {panels['written']} written, {len(panels['rejected'])} rejected")
     if report["support"]:
         _print_support(report["support"], report["beams"])
+    if report["cost"]:
+        _print_cost(report["cost"])
     if report["audit"]:
         _print_audit(report["audit"])
     print_verdict(report)
@@ -123,6 +125,14 @@ def _print_support(support: Mapping[str, Any], beams: Mapping[str, Any]) -> None
         radius = support["node_radius"]
         click.echo(f"node cylinders take the torsion up, of a radius of {radius:.3g} at least")
     click.echo(f"beams {beams['written']} written, {len(beams['rejected'])} rejected")
+
+
+def _print_cost(cost: Mapping[str, Any]) -> None:
+    """The total, and what it is made of."""
+    area = f" ({cost['per_m2']:,.0f} a square metre)" if cost["per_m2"] is not None else ""
+    parts = ", ".join(f"{name} {part:,.0f}" for name, part in cost["parts"].items() if part)
+    line = f"cost {cost['total']:,.0f} {cost['currency']}".rstrip()
+    click.echo(f"{line}{area}: {parts}" if parts else f"{line}{area}")
 
 
 def has_errors(report: Mapping[str, Any]) -> bool:

@@ -26,6 +26,7 @@ pencil_newton       Newton's method for them: bounds, negative curvature, saddle
 target_starts       Where to start when neighbours shall meet at an angle.
 strips              Rows of faces whose spheres join smoothly along the row, and only there.
 radius_clustering   Few moulds: the radii of a sphere mesh gathered into clusters.
+flat_panels         Panels that bulge less than an eye can tell, as planes.
 line_clusters       Clusters of numbers on a line with the least sum of squares, exactly.
 comparison          Is an optimum better than doing nothing?
 whole_energy        Energy (6): smooth spheres, upright planes between them, nodes with axes.

@@ -17,5 +17,5 @@ remesh      Nets of spheres with a support structure, along conjugate directions
 shex        Hexagonal sphere meshes: spheres that touch a triangulation.
 spheres     A sphere for every face to start from, and spheres and planes one by one.
 support     Nodes and beams that carry the panels.
-workshop    Identical panels, findings, the report, solids.
+workshop    Identical panels, findings, costs, the report, solids.
 """

@@ -90,7 +90,7 @@ def fewest_moulds(
     >>> from spheremesh.nodes import fewest_moulds, fit_spheres, minimize_angles, vase_mesh
     >>> vase = minimize_angles(fit_spheres(vase_mesh(12, 6))).sphere_mesh
     >>> fewest_moulds(vase, max_angle=15.5).k
-    3
+    2
     """
     if max_angle is None and max_angle_largest is None:
         raise InputError("fewest_moulds needs max_angle, max_angle_largest, or both")

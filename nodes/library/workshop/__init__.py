@@ -2,6 +2,7 @@
 
 audit      Findings before files go out.
 congruent  Panels of one shape.
+cost       What a workshop asks for it, and what fewer moulds and flat panels save.
 losses     What moulds and a support cost, and what became of it, in warnings.
 report     The report of a panelling.
 solids     Panels and beams as solids for CadQuery.

@@ -5,6 +5,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from ....fabrication.costs.cost import CostReport
 from ....fabrication.sizes import model_extents
 from ....kernel.analysis import angle_summary
 from ....kernel.meshes.mesh import mean_edge_length
@@ -58,6 +59,8 @@ class PanellingReport(Report):
         How far vertices moved off the design: ``max`` in model units and
         ``relative_to_edge``; for exact supports also the largest ``height`` off the surface
         and ``slide`` in it, in mean edges.
+    cost : dict or None
+        As in `CostReport`.
     buildable : bool
         Whether no panel or beam is rejected and the audit, if there is one, has no errors.
     """
@@ -74,10 +77,11 @@ class PanellingReport(Report):
     beams: dict[str, Any]
     audit: dict[str, Any] | None
     design_move: dict[str, float]
+    cost: dict[str, Any] | None
     buildable: bool
 
 
-@node(version="2")
+@node(version="3")
 def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     sphere_mesh: SphereMesh,
     optimum: OptimumReport,
@@ -93,6 +97,7 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
     feasibility: FeasibilityReport | None = None,
     support: Literal["axis", "exact", "bisector"] | None = None,
     plain: CutReport | None = None,
+    cost: CostReport | None = None,
 ) -> PanellingReport:
     """Gather the reports of a panelling into one.
 
@@ -125,6 +130,8 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         The kind of support that was asked for.
     plain : CutReport, optional
         Report of panels as they would be without moulds and support, to say what these cost.
+    cost : CostReport, optional
+        Result of `cost`.
 
     Returns
     -------
@@ -177,6 +184,7 @@ def panel_report(  # noqa: PLR0913, PLR0917 - a report of every step
         beams=made_beams,
         audit=dict(audit) if audit is not None else None,
         design_move=_design_move(optimum, moulds, mean_edge_length(mesh)),
+        cost=dict(cost) if cost is not None else None,
         buildable=is_whole and not (audit and audit["errors"]),
     )
 

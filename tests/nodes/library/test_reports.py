@@ -18,6 +18,7 @@ SOURCES = {
     "cluster_radii": ({"sphere_mesh": "fit_spheres.result", "k": 3}, "report"),
     "mould_blanks": ({"panels": "panels.panels"}, "result"),
     "identical_panels": ({"panels": "panels.panels"}, "report"),
+    "cost": ({"panels": "panels.panels", "prices": {"panels": {"each": 1.0}}}, "result"),
     "support_structure": ({"sphere_mesh": "fit_spheres.result"}, "report"),
     "annulus_support": ({"sphere_mesh": "fit_spheres.result"}, "report"),
     "land_nodes": ({"sphere_mesh": "fit_spheres.result"}, "report"),
@@ -40,6 +41,7 @@ FITTING = {
     "beams_report": ("beams", "drilling_marks"),  # older graphs wire either
     "feasibility": (),
     "plain": ("panels",),
+    "cost": ("cost",),
 }
 PLACES = [
     (node, name)
@@ -69,7 +71,7 @@ def _wire(graph: sm.Graph, target: str) -> object:
 
 def test_every_input_that_is_a_report_is_tried() -> None:
     assert {name for _, name in PLACES} == set(FITTING)
-    assert len(PLACES) == 3 + 11
+    assert len(PLACES) == 3 + 12
 
 
 @pytest.mark.parametrize(("node", "name"), PLACES)
