@@ -200,6 +200,7 @@ def panel(  # numpydoc ignore=PR01
     demonstration roof is panelled. Files in the folder are replaced only if spheremesh wrote
     them and nobody changed them since.
     """
+    from ..fabrication.costs.prices import read_prices
     from .panel import (
         PanelOptions,
         feasible_panel_graph,
@@ -226,6 +227,8 @@ def panel(  # numpydoc ignore=PR01
     _check_exact(options)
     _warn_of_no_beams(options)
     with told_errors(), shown_progress() as progress:
+        if options["prices"] is not None:
+            read_prices(options["prices"])  # its faults are told before anything is computed
         options["units"], is_assumed = model_units(PanelOptions(**options))
         store = chosen_store(cache, no_cache=no_cache)
         if has_pattern:
