@@ -85,10 +85,10 @@ class _PanelCommand(click.Command):
 )
 @click.option(
     "--pattern",
-    type=click.Choice(["quads", "as-is"]),
+    type=click.Choice(["quads", "hexagons", "triangles", "as-is"]),
     default="as-is",
-    help="Cover the MESH, or the surfaces of a .3dm, with quads of --edge-length; or take its "
-    "faces for the panels, as they are.",
+    help="Cover the MESH, or the surfaces of a .3dm, with a pattern of --edge-length; or take "
+    "its faces for the panels, as they are.",
 )
 @click.option(
     "--edge-length",

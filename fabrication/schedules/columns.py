@@ -70,7 +70,7 @@ def beam_columns(beams: Beams | None, panels: Panels | None, units: str) -> dict
         names = "id", "panels", "nodes", "length_mm", "depths_mm", "thickness_mm", "tilt_deg"
         return {name: [] for name in names}
     scale, annuli = millimeters_per(units), beams.annuli
-    faces = panels.face_ids.tolist() if panels is not None else []
+    faces: list[int] = panels.face_ids.tolist() if panels is not None else []
     rows = {face: row for row, face in enumerate(faces)}
     return {
         "id": list(beams.ids),

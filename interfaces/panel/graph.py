@@ -41,6 +41,8 @@ def _feasible_pattern_graph(graph: Graph, options: PanelOptions, store: Store) -
     """The graph of a pattern: a usable net keeps its spheres, a round one has upright beams."""
     status = graph.run("pattern.report")["status"]
     may_keep = options.support != "exact" and not (options.target_angle or options.tolerance)
+    # Triangles have spheres of smallest angles already, but no nodes to keep.
+    may_keep = may_keep and options.pattern != "triangles"
     if status == "usable" and may_keep:
         graph = panel_graph(options, keeps_spheres=True)
     elif options.support == "axis" and (
@@ -129,7 +131,7 @@ def panel_graph(
         **(support.report if support else {}),
     )  # fmt: skip
     _add_writers(graph, pattern.surface if pattern else mesh, made)
-    shown = {"findings": audit.findings, "cut": panels.report, "reference": mesh}
+    shown = {"findings": audit.findings, "cut": panels.report, "reference": spheres}
     graph.add("write_view", "view", **made, **shown, path="view.html", title=title)
     return graph
 

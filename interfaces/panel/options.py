@@ -8,7 +8,7 @@ from ...fabrication.mesh_files.reader import read_content
 from ...kernel.errors import InputError
 
 SupportKind = Literal["axis", "exact", "bisector"]
-PatternKind = Literal["quads", "as-is"]
+PatternKind = Literal["quads", "hexagons", "triangles", "as-is"]
 
 
 @dataclass(frozen=True)
@@ -25,8 +25,8 @@ class PanelOptions:
         Whether to repair the mesh first.
     edge_length : float or None
         Length of the edges of a pattern, or of faces on surfaces, in model units.
-    pattern : {"quads", "as-is"}
-        Whether the mesh is a surface to be covered by quads of that length, or its faces are
+    pattern : {"quads", "hexagons", "triangles", "as-is"}
+        Whether the mesh is a surface to be covered by panels of that length, or its faces are
         the panels.
     rows : (int, int) or None
         Rows of faces along u and v of each surface; neither: as `read_mesh` has it.

@@ -90,8 +90,9 @@ def _print_pattern(pattern: Mapping[str, Any] | None) -> None:
         net = pattern["net"]
         angles, faces = net["angles_deg"], net["faces"]["count"]
         off = net["deviation"]["surface"]
+        tried = f" ({len(net['tries'])} tried)" if net["tries"] else ""
         click.echo(
-            f"quads {net['status']} ({len(net['tries'])} tried): {faces} faces, "
+            f"pattern {net['status']}{tried}: {faces} faces, "
             f"edges of {net['edges']['mean']:.3g}, at most {100 * off:.0f} % of one off the "
             f"surface; {angles['expected']:.2f} degrees expected, {angles['spheres']:.2f} "
             "reached before moulds"

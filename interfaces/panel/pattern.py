@@ -15,6 +15,11 @@ FINER: Final = 5.0
 """Edges of the mesh on a surface, as parts of those of the panels."""
 
 
+_NODES: Final = {
+    "quads": "quad_pattern", "hexagons": "hexagon_pattern", "triangles": "triangle_pattern",
+}  # fmt: skip
+
+
 class PatternSteps(NamedTuple):
     """What a pattern adds before the main job.
 
@@ -63,7 +68,7 @@ def add_pattern(graph: Graph, options: PanelOptions) -> PatternSteps:
     length = graph.param("edge_length", options.edge_length, min=0)
     source, shown = _source(graph, options)
     graph.add("sphere_gain", "gain", mesh=source, edge_length=length)
-    pattern = graph.add("quad_pattern", "pattern", mesh=source, edge_length=length)
+    pattern = graph.add(_NODES[options.pattern], "pattern", mesh=source, edge_length=length)
     mesh = graph.add("underlying_mesh", "net", sphere_mesh=pattern.sphere_mesh)
     return PatternSteps(shown, pattern.sphere_mesh, mesh)
 

@@ -11,6 +11,7 @@ dual_patterns       Even triangles on a surface, and the convex hexagons dual to
 expected_angles     Angles between neighbours that the curvatures of a surface foretell.
 gain_report         What spheres gain in each pattern, in numbers and in a sentence.
 net_flaws           What keeps a net from being built, by face and cause.
+polishing           Hexagons without slivers: vertices slide until no dual edge is short.
 quad_pattern        The short list of curvatures: remesh, planarise, judge, keep the best.
 surface_curvatures  Principal curvatures of a mesh or surface, and the area each stands for.
 """

@@ -11,12 +11,14 @@ from ..hexagons.evolution import evolve_spheres
 from ..meshes.isotropic_remeshing import remesh_triangles
 from ..meshes.mesh import Mesh
 from ..optimization.angle_minimization import minimize_angles
+from ..remesh.planar.node_planarity import measure_nodes, node_axis_angles
 from ..sphere_meshes.fit import fit_spheres
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..surfaces.surface import Surface
 from ..tolerances import CREASE, OPENING
 from .gain_report import check_edge
 from .net_flaws import FaceJudgement, judge_faces
+from .polishing import polish
 from .quad_pattern import EVENING_ROUNDS
 
 BOUNDS: Final = (3.0, 5.0, 9.0, 15.0, 20.0, 30.0)
@@ -104,25 +106,29 @@ def hexagon_pattern(
         raise InputError(f"the largest angle of an axis lies between 0 and 90, not {bound:g}")
     triangles = even_triangles(source, np.sqrt(3) * edge)
     bounds = [each for each in BOUNDS if each <= bound] or [bound]
-    tries = [_grown(triangles, each, boundary) for each in bounds]
+    surface = source.mesh if isinstance(source, Surface) else source
+    tries = [_grown(triangles, surface, each, boundary) for each in bounds]
     best = min(tries, key=_badness)
     if best.net is None:
         raise InputError(f"no hexagons can be made on this surface: {best.message}")
     return best, tries
 
 
-def _grown(triangles: Mesh, bound: float, boundary: BoundaryRule) -> DualTry:
+def _grown(triangles: Mesh, surface: Mesh, bound: float, boundary: BoundaryRule) -> DualTry:
+    """Hexagons grown with one bound, and polished."""
     try:
         found = evolve_spheres(triangles, float(np.radians(bound)))
-        net = dual_sphere_mesh(found.mesh, found.spheres, boundary).sphere_mesh
+        mesh, spheres = polish(found, surface)
+        net = dual_sphere_mesh(mesh, spheres, boundary).sphere_mesh
         judgement = judge_faces(
             net, "intersection", convex=True, shortest=SHORTEST_HEXAGON_EDGE
         )
     except (InputError, ConvergenceError) as error:
         return DualTry(bound, None, None, np.inf, np.inf, str(error))
-    angles = found.axis_angles
+    angles = node_axis_angles(net, measure_nodes(net))
+    known = np.append(angles[np.isfinite(angles)], 0.0)
     return DualTry(
-        bound, net, judgement, float(np.percentile(angles, 95)), float(angles.max()), ""
+        bound, net, judgement, float(np.percentile(known, 95)), float(known.max()), ""
     )
 
 

@@ -48,7 +48,7 @@ def test_a_drawn_surface_becomes_panels_and_beams(tmp_path: Path) -> None:
     )  # fmt: skip
     assert code == 0, told
     assert told.startswith("expected angle between neighbours")
-    assert "quads usable" in said
+    assert "pattern usable" in said
     report = json.loads((out / "report.json").read_text())
     assert report["panels"]["rejected"] == report["beams"]["rejected"] == []
     assert report["panels"]["written"] == report["pattern"]["net"]["faces"]["count"] >= 10

@@ -46,7 +46,8 @@ def unpack_arrays(data: bytes) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]
     start = 4 + int.from_bytes(data[:4], "little")
     head: dict[str, Any] = json.loads(data[4:start])
     arrays: dict[str, NDArray[Any]] = {}
-    for name, kind, shape in head.pop("arrays"):
+    entries: list[tuple[str, str, list[int]]] = head.pop("arrays")
+    for name, kind, shape in entries:
         size = int(np.prod(shape)) * int(kind[1])
         arrays[name] = _decode(data[start : start + size], kind, shape)
         start += size

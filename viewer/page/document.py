@@ -76,7 +76,7 @@ def page_text(
 ) -> str:
     """The page of a model as text; with its mesh, faces without a panel are drawn as well.
 
-    Raises InputError if there is nothing to show.
+    Raises InputError if there is nothing to show, or the mesh has too few faces for the panels.
     """
     data = page_data(panels, beams, texts, mesh)
     code = _asset("page.js").encode()
@@ -119,14 +119,15 @@ def page_data(
     outlines = [np.zeros((0, 3)), *(corners for _, corners in missing)]
     arrays["missing"] = grid.steps(np.concatenate(outlines))
     low = (np.min([each.min(axis=0) for each in points], axis=0) - grid.center) / grid.size
-    head = {
+    nothing: Columns = dict.fromkeys(texts.panels, ())
+    head: dict[str, Any] = {
         "title": texts.title,
         "solid": len(faces) == 2,
         "low": low.tolist(),
         "high": (-low).tolist(),
         "home": [0.5, -0.8, 0.5] if low[0] <= low[1] else [0.8, 0.5, 0.5],
         "ground": ground,
-        "panels": texts.panels if faces else {name: [] for name in texts.panels},
+        "panels": texts.panels if faces else nothing,
         "beams": texts.beams,
         "beam_thickness": beams.thickness / grid.size if beams is not None else 0.0,
         "nodes": _node_texts(nodes, texts.millimeters),
@@ -167,8 +168,14 @@ def _missing(
     reasons = {part["id"]: part["reason"] for part in rejected}
     found: list[tuple[_Missing, FloatArray]] = []
     if mesh is not None and panels is not None:
+        if int(panels.face_ids.max(initial=-1)) >= mesh.n_faces:
+            raise InputError(
+                f"the reference has {mesh.n_faces} faces, too few for the panels: give the "
+                "mesh that they were cut from"
+            )
         names = part_ids("P", mesh.n_faces)
-        for face in np.setdiff1d(np.arange(mesh.n_faces), panels.face_ids).tolist():
+        absent: list[int] = np.setdiff1d(np.arange(mesh.n_faces), panels.face_ids).tolist()
+        for face in absent:
             corners = mesh.vertices[mesh.faces[face]]
             reason = reasons.pop(names[face], "cannot be made")
             found.append(

@@ -58,8 +58,10 @@ def ground_openness(points: FloatArray, sky: list[DepthMap]) -> IntArray:
     low, high = points.min(axis=0), points.max(axis=0)
     side = REACH * float((high - low).max()) * np.linspace(-0.5, 0.5, GROUND)
     middle = (low + high) / 2
-    x, y = np.meshgrid(middle[0] + side, middle[1] + side)
-    ground = np.stack([x.ravel(), y.ravel(), np.full(x.size, low[2])], axis=1)
+    ground = np.empty((GROUND, GROUND, 3))
+    ground[..., 0], ground[..., 1] = middle[0] + side, (middle[1] + side)[:, None]
+    ground[..., 2] = low[2]
+    ground = ground.reshape(-1, 3)
     up = np.broadcast_to(np.array([0.0, 0.0, 1.0]), ground.shape)
     open_shares = sky_openness(sky, ground, up)[:, 0].reshape(GROUND, GROUND)
     soft = np.asarray(gaussian_filter(open_shares, 1.2), np.float64)

@@ -54,7 +54,7 @@ def hexagon_pattern(
     Examples
     --------
     >>> from spheremesh.nodes import ellipsoid_mesh, hexagon_pattern
-    >>> report = hexagon_pattern(ellipsoid_mesh(48, 24), 0.3, max_axis_angle=5).report
+    >>> report = hexagon_pattern(ellipsoid_mesh(48, 24), 0.13, max_axis_angle=5).report
     >>> report["convex_share"], [each["bound_deg"] for each in report["tries"]]
     (1.0, [3.0, 5.0])
     """

@@ -6,7 +6,8 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from ....kernel.meshes.mesh import Mesh, mean_edge_length
+from ....kernel.arrays import norm
+from ....kernel.meshes.mesh import Mesh, face_vector_areas, mean_edge_length
 from ....kernel.patterns.deviations import deviations
 from ....kernel.patterns.gain_report import SHARP_TURN, GainMap, gain_map, turn_p95
 from ....kernel.patterns.net_flaws import FaceJudgement, Flaw, flaw_counts
@@ -18,6 +19,12 @@ from ...graphs.node import warn
 from ...graphs.ports import Port
 
 EdgeLength = Annotated[float, Port(min=0)]
+
+SMALLER = 0.75
+"""Share of the length asked for below which panels are smaller, which is told."""
+
+REGULAR_AREAS = {"hexagons": 1.5 * np.sqrt(3), "triangles": np.sqrt(3) / 4}
+"""Areas of regular panels with edges of 1."""
 
 TOLD = 3
 """Flaws that a warning names; all are in the report."""
@@ -42,7 +49,7 @@ class PatternReport(Report):
         ``shortest_edge`` and number of ``flaws``.
     angles_deg : dict
         Mean angle between neighbours: ``planes`` (of the same faces), ``spheres``, and
-        ``expected`` beforehand.
+        ``expected`` of panels of their size.
     gain : float
         Share by which spheres lessen the angle of planes.
     convex_share : float
@@ -116,7 +123,13 @@ def pattern_report(
     """The report of a pattern; warns of flaws, of ribs, and where planes are smoother."""
     surface = source.mesh if isinstance(source, Surface) else source
     found = surface_curvatures(source)
-    expected = found.mean(gain_map(found, edge_length, which))
+    size = _panel_edge(net.mesh, which)
+    if size < SMALLER * edge_length:
+        warn(
+            f"panels have edges of about {size:.3g}, not {edge_length:g}: larger ones would "
+            "leave the surface, which bends too much or is cut too finely at its boundary"
+        )
+    expected = found.mean(gain_map(found, size, which))
     turn = turn_p95(found, edge_length)
     warn_of_ribs(turn, edge_length)
     reason = _reason(judgement)
@@ -150,6 +163,12 @@ def pattern_report(
     )
 
 
+def _panel_edge(mesh: Mesh, which: GainMap) -> float:
+    """Edge of regular panels of the same mean area."""
+    area = float(norm(face_vector_areas(mesh)).mean())
+    return float(np.sqrt(area / REGULAR_AREAS[which]))
+
+
 def _reason(judgement: FaceJudgement) -> str:
     """Why a pattern is not usable, or no better than planes."""
     reasons: list[str] = []
@@ -159,7 +178,8 @@ def _reason(judgement: FaceJudgement) -> str:
     if judgement.angle > judgement.flat_angle:
         reasons.append(
             f"neighbours meet at {np.degrees(judgement.angle):.1f} degrees on average, planes "
-            f"would at {np.degrees(judgement.flat_angle):.1f}: where a surface bends to both "
-            "sides, spheres in this pattern cannot be smoother; quads or planes are"
+            f"would at {np.degrees(judgement.flat_angle):.1f}: convex panels need spheres "
+            "smaller than the surface bends, and here that costs more than it gains; quads or "
+            "planes are smoother, or looser node axes"
         )
     return "; ".join(reasons)

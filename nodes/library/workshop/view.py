@@ -50,7 +50,7 @@ def write_view(
     cut : CutReport, optional
         Report of the node `panels`: what it rejected is listed as missing.
     reference : Mesh or SphereMesh, optional
-        The design mesh: faces without a panel are drawn as outlines.
+        What the panels were cut from: faces without a panel are drawn as outlines.
     title : str
         Heading of the page.
 

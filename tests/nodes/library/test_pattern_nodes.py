@@ -13,11 +13,14 @@ from spheremesh.kernel.remesh.planar.node_planarity import measure_nodes
 from spheremesh.nodes import (
     NodeWarning,
     ellipsoid_mesh,
+    hexagon_pattern,
     intersection_angles,
     panels,
     quad_pattern,
     sphere_gain,
     torus_mesh,
+    triangle_pattern,
+    triangulated_surface,
 )
 
 
@@ -93,9 +96,40 @@ def test_flaws_are_named_and_ribs_are_warned_of() -> None:
     assert {"face", "cause"} == set(report["flaws"]["list"][0])
 
 
+def test_triangles_are_smooth_and_as_large_as_asked_for() -> None:
+    net, report = triangle_pattern(long_hill(), edge_length=0.6)
+    assert (report["status"], set(report["faces"]["degrees"])) == ("usable", {"3"})
+    assert report["edges"]["mean"] == pytest.approx(0.6, rel=0.15)
+    assert report["gain"] > 0.3
+    assert report["angles_deg"]["spheres"] == pytest.approx(
+        report["angles_deg"]["expected"], rel=0.25
+    )
+    assert panels(net).report["rejected"] == []
+
+
+def test_hexagons_are_convex_without_slivers_and_smoother_with_looser_bounds() -> None:
+    surface, means = ellipsoid_mesh(48, 24), []
+    for bound in (3, 9):
+        report = hexagon_pattern(surface, 0.13, max_axis_angle=bound).report
+        assert (report["convex_share"], report["rejected"]) == (1.0, {"panels": 0})
+        assert report["edges"]["min"] >= 0.1
+        assert [each["flaws"] for each in report["tries"]] == [0.0] * len(report["tries"])
+        means.append(report["angles_deg"]["spheres"])
+    assert means[1] < means[0] < report["angles_deg"]["planes"]
+
+
+def test_hexagons_that_planes_surpass_say_so() -> None:
+    saddle = triangulated_surface("hypar", edge_length=0.06).mesh
+    with pytest.warns(NodeWarning, match="planes are smoother"):
+        report = hexagon_pattern(saddle, 0.12, max_axis_angle=5).report
+    assert report["gain"] < 0
+    with pytest.raises(InputError, match="between 0 and 90"):
+        hexagon_pattern(saddle, 0.12, max_axis_angle=90)
+
+
 @pytest.mark.parametrize("length", [0.0, -1.0, float("inf")])
 def test_lengths_that_are_none_are_refused(length: float) -> None:
-    for make in (sphere_gain, quad_pattern):
+    for make in (sphere_gain, quad_pattern, triangle_pattern, hexagon_pattern):
         with pytest.raises(InputError, match="edge"):
             make(torus_mesh(12, 6), length)
 

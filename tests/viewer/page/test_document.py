@@ -194,3 +194,9 @@ def test_columns_are_those_of_the_schedule() -> None:
 def test_nothing_to_show_is_refused() -> None:
     with pytest.raises(InputError, match="no panels or beams to show"):
         page_data(None, None, texts(None))
+
+
+def test_a_mesh_of_other_panels_is_refused() -> None:
+    other = vase_net(4, 3, 1.0, 2.0, 0.3)
+    with pytest.raises(InputError, match="too few for the panels"):
+        page_data(vase(), None, texts(vase()), other)

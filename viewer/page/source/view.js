@@ -138,6 +138,8 @@ export class View {
 
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    if (this.size === `${width} ${height}`) return;
+    this.size = `${width} ${height}`;
     this.renderer.setSize(width, height);
     this.camera.aspect = width / Math.max(1, height);
     this.camera.updateProjectionMatrix();
