@@ -200,7 +200,7 @@ def remeshed_roof() -> Image.Image:
 def quad_pattern() -> Image.Image:
     """Quads on a design surface: flat panels, and spheres on a few moulds."""
     names = ("canopy_planes.png", "canopy_spheres.png")
-    return _beside(*_pictures_of("14_quad_pattern", *names))
+    return _beside(*_pictures_of("15_quad_pattern", *names))
 
 
 def supports() -> Image.Image:
