@@ -132,7 +132,8 @@ def test_a_component_gives_what_its_node_gives(
     component = one.service.catalogue.find(name).component
     handles = one.service.solver.handles
     trees = {}
-    for port, value in call.inputs.items():
+    for port, given in call.inputs.items():
+        value = written(folder, given) if isinstance(given, dict) else given
         found = given_as(component, port, value, lambda x: handles.give("value", x))
         if found is not None:
             trees[found[0].name] = found[1]
@@ -147,6 +148,14 @@ def test_a_component_gives_what_its_node_gives(
         where = f"{name}.{output.name}"
         if name != "cadquery_solids":
             assert_equal(where, got, wanted, handles, folder)
+
+
+def written(folder: Path, tables: dict[str, dict[str, float]]) -> str:
+    """Tables of numbers as a file, which is how they come to a server."""
+    lines = [f"[{name}]\n" + "".join(f"{k} = {v}\n" for k, v in table.items())
+             for name, table in tables.items()]  # fmt: skip
+    (folder / "tables.toml").write_text("".join(lines), encoding="utf-8")
+    return "tables.toml"
 
 
 def given_as(
@@ -171,6 +180,8 @@ def given_as(
         if form.param_type in ("Point", "Vector"):
             return each, np.asarray(value, float).reshape(-1, 3).tolist()
         if form.param_type not in ("Mesh", "Brep", "Curve", "Plane"):
+            if isinstance(value, tuple):
+                return each, list(value)
             return each, value.tolist() if hasattr(value, "tolist") else value
     raise AssertionError(f"{component.name}.{port} takes no {type(value)}: {inputs}")
 

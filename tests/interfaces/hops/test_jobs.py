@@ -88,7 +88,8 @@ def told_to_wait(gh: Value) -> bool:
         try:
             gh.solve("wait_for_gate", number=100.0 + number)
         except Exception as error:  # noqa: BLE001 - what stands on the component
-            return "too many requests wait" in str(error)
+            if "too many requests wait" in str(error):
+                return True
     return False
 
 
@@ -164,7 +165,7 @@ def test_a_run_is_called_off_with_the_server(opened: Callable[..., Any], gate: V
     with pytest.raises(Exception, match="still running"):
         one.gh.solve("wait_for_gate")
     one.service.jobs.close()
-    ends = time.monotonic() + 5
+    ends = time.monotonic() + 60
     while any(t.name.startswith("spheremesh") for t in threading.enumerate()):
         assert time.monotonic() < ends
         time.sleep(0.01)
