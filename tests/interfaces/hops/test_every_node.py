@@ -133,7 +133,7 @@ def test_a_component_gives_what_its_node_gives(
     handles = one.service.solver.handles
     trees = {}
     for port, given in call.inputs.items():
-        value = written(folder, given) if isinstance(given, dict) else given
+        value = plain(folder, given)
         found = given_as(component, port, value, lambda x: handles.give("value", x))
         if found is not None:
             trees[found[0].name] = found[1]
@@ -150,12 +150,19 @@ def test_a_component_gives_what_its_node_gives(
             assert_equal(where, got, wanted, handles, folder)
 
 
-def written(folder: Path, tables: dict[str, dict[str, float]]) -> str:
-    """Tables of numbers as a file, which is how they come to a server."""
-    lines = [f"[{name}]\n" + "".join(f"{k} = {v}\n" for k, v in table.items())
-             for name, table in tables.items()]  # fmt: skip
-    (folder / "tables.toml").write_text("".join(lines), encoding="utf-8")
-    return "tables.toml"
+def plain(folder: Path, value: Value) -> Value:
+    """A value as it comes to a server: tables of numbers as the path of a file."""
+    if isinstance(value, dict):
+        lines = [
+            line
+            for name, table in value.items()
+            for line in (f"[{name}]", *(f"{key} = {number}" for key, number in table.items()))
+        ]
+        (folder / "tables.toml").write_text("\n".join(lines), encoding="utf-8")
+        return "tables.toml"
+    if isinstance(value, tuple) and all(isinstance(each, int) for each in value):
+        return list(value) or None
+    return str(value) if isinstance(value, Path) else value
 
 
 def given_as(
@@ -165,8 +172,6 @@ def given_as(
     inputs = [each for each in component.inputs if each.port.name == port]
     if value is None or (isinstance(value, str | tuple) and not value):
         return None
-    if isinstance(value, Path):
-        value = str(value)
     for each in inputs:
         form = each.carrier.form
         if not any(accepts(member.hint, value) for member in each.carrier.members):
@@ -180,8 +185,6 @@ def given_as(
         if form.param_type in ("Point", "Vector"):
             return each, np.asarray(value, float).reshape(-1, 3).tolist()
         if form.param_type not in ("Mesh", "Brep", "Curve", "Plane"):
-            if isinstance(value, tuple):
-                return each, list(value)
             return each, value.tolist() if hasattr(value, "tolist") else value
     raise AssertionError(f"{component.name}.{port} takes no {type(value)}: {inputs}")
 
