@@ -124,10 +124,10 @@ def flat_panels(
 
     Examples
     --------
-    >>> from spheremesh.nodes import flat_panels, minimize_angles, fit_spheres, vase_mesh
-    >>> spheres = minimize_angles(fit_spheres(vase_mesh(12, 6))).sphere_mesh
+    >>> from spheremesh.nodes import flat_panels, minimize_angles, fit_spheres, roof_mesh
+    >>> spheres = minimize_angles(fit_spheres(roof_mesh(6, 8))).sphere_mesh
     >>> flat_panels(spheres, flat_below=20.0).report["count"]
-    36
+    1
     """
     flattened, is_flattened = flatten_shallow(sphere_mesh, flat_below / millimeters_per(units))
     is_smooth = ~crease_edges(sphere_mesh.mesh, np.radians(crease))
