@@ -11,6 +11,8 @@ mesh_files  OBJ, OFF, PLY and STL, written and read; Rhino files and others as m
 rhino       Rhino .3dm files: a model written, meshes and surfaces read.
 rhino_objects  Single objects of Rhino in JSON, as Grasshopper sends and takes them.
 opennurbs   The byte stream of .3dm files: exact Breps and render meshes.
+breps       Solids of panels, beams and nodes as boundary representations: what all files of
+            solids write.
 step        STEP files as text, and a check of that text.
 drawings    Flat drawings: beams for cutting, moulds with their blanks.
 schedules   Lists of parts with all that a workshop asks for.
