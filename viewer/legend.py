@@ -27,7 +27,8 @@ def _columns(legend: Legend, size: int) -> list[float]:
     font = ImageFont.load_default(size)
     rows = [legend.titles, *(words for _, words in legend.kinds)]
     rows += [(text,) for _, text in legend.scale]
-    ends, place = [], 2.0 * size
+    ends: list[float] = []
+    place = 2.0 * size
     for column in range(len(legend.titles)):
         place += max(font.getlength(row[column]) for row in rows)
         ends.append(place)
@@ -46,6 +47,7 @@ def draw_legend(image: Image.Image, legend: Legend) -> None:
     left, top = image.width - ends[-1] - 2 * size, (image.height - step * (shown + 1)) / 2
 
     def write(line: int, words: tuple[str, ...]) -> None:
+        """Words of a line, the end of each at that of its column."""
         for end, word in zip(ends, words, strict=True):
             draw.text((left + end, top + line * step), word, fill=INK, font=font, anchor="ra")
 

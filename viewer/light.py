@@ -123,8 +123,8 @@ def scatter(points: FloatArray, triangles: IntArray) -> tuple[FloatArray, float]
     if not len(total) or not total[-1] > 0:
         return points, 0.0
     index = np.arange(SCATTERED) + 0.5
-    owners = np.searchsorted(total, index / SCATTERED * total[-1])
-    owners = np.minimum(owners, len(triangles) - 1)
+    places: FloatArray = index / SCATTERED * total[-1]
+    owners: IntArray = np.minimum(np.searchsorted(total, places), len(triangles) - 1)
     # The sequence of the plastic number leaves no holes and no heaps.
     u, v = (index * 0.7548776662466927) % 1, (index * 0.5698402909980532) % 1
     over = u + v > 1

@@ -111,7 +111,9 @@ def gather(shapes: Sequence[Shape]) -> Scene:
 def _all_joints(
     shapes: Sequence[Shape],
 ) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
-    first, degrees, lengths = [], [], []
+    first: list[IntArray] = []
+    degrees: list[IntArray] = []
+    lengths: list[FloatArray] = []
     edges = [np.zeros((0, 8))]
     so_far = 0
     for shape in shapes:
@@ -186,7 +188,7 @@ def look(
     is_inside = product(outwards, rays) > 0
     joints = _joints(scene, surfaces, points, camera.focal * near)
     points += centers
-    towards = np.where(is_inside, -outwards, outwards)
+    towards = outwards * np.where(is_inside, -1.0, 1.0)
     return Sight(x, y, found, surfaces, points, towards, rays, is_inside, joints)
 
 

@@ -282,7 +282,8 @@ def _unit_sphere(steps: int) -> tuple[FloatArray, IntArray]:
     turns: Sequence[tuple[int, int, int, int]] = (
         (0, 1, 2, 1), (1, 2, 0, 1), (2, 0, 1, 1), (0, 1, 2, -1), (1, 2, 0, -1), (2, 0, 1, -1),
     )  # fmt: skip
-    points, triangles = [], []
+    points: list[FloatArray] = []
+    triangles: list[IntArray] = []
     for place, (i, j, k, sign) in enumerate(turns):
         turned = np.empty_like(flat)
         # A half turn about the first axis of the side keeps its orientation.

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from ..kernel.arrays import FloatArray
+from ..kernel.arrays import BoolArray, FloatArray
 from .camera import Camera, pixel_rays
 from .light import DepthMap, blurred, daylight, light_reaches, sky_openness
 from .scene import Scene
@@ -68,7 +68,7 @@ def _grid(width: int, height: int, most: int) -> tuple[int, int]:
 
 def _ground_points(
     camera: Camera, level: float, rows: int, columns: int
-) -> tuple[FloatArray, FloatArray]:
+) -> tuple[FloatArray, BoolArray]:
     """Where the rays of a coarse picture meet the ground (3, n), and whether they do."""
     x, y = np.meshgrid(
         (np.arange(columns) + 0.5) * camera.width / columns,
@@ -77,7 +77,7 @@ def _ground_points(
     rays = pixel_rays(camera, x.ravel(), y.ravel())
     depth = level - camera.eye[2]
     is_ground = rays[2] * depth > 0
-    distance = np.divide(depth, rays[2], out=np.zeros(rays.shape[1]), where=is_ground)
+    distance = np.divide(depth, rays[2], out=np.zeros_like(rays[2]), where=is_ground)
     return camera.eye[:, None] + distance * rays, is_ground
 
 
