@@ -17,5 +17,6 @@ panel_scale         A surface as panels of a size see it: curvatures, convex sph
 polishing           Hexagons without slivers: vertices slide until no dual edge is short.
 quad_pattern        The short list of curvatures: remesh, planarise, judge, keep the best.
 rim_repair          Cells at the boundary lose corners that no other cell needs.
+semiregular         Triangles or quads with corners cut, or drawn apart.
 surface_curvatures  Principal curvatures of a mesh or surface, and the area each stands for.
 """

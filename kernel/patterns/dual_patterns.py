@@ -118,7 +118,7 @@ def _mesh_of(source: Mesh | Surface) -> Mesh:
 def _grown(
     triangles: Mesh, surface: Mesh, bound: float, boundary: BoundaryRule
 ) -> list[DualTry]:
-    """Hexagons grown with one bound and polished; where they pass it, grown anew on these triangles."""
+    """Hexagons grown with one bound and polished; grown anew from there where they pass it."""
     found: list[DualTry] = []
     for _ in range(GROWTHS):
         try:

@@ -7,7 +7,12 @@ from typing import Annotated, Any, Literal, NamedTuple
 import numpy as np
 
 from ....kernel.arrays import norm
-from ....kernel.meshes.mesh import Mesh, face_vector_areas, mean_edge_length
+from ....kernel.meshes.mesh import (
+    Mesh,
+    face_centroids,
+    face_vector_areas,
+    mean_edge_length,
+)
 from ....kernel.patterns.deviations import deviations
 from ....kernel.patterns.gain_report import SHARP_TURN, gain_maps, turn_p95
 from ....kernel.patterns.net_flaws import Flaw, PatternJudgement, flaw_counts
@@ -222,12 +227,23 @@ def _panel_edge(mesh: Mesh, which: DualPattern) -> float:
     return float(np.sqrt(area / REGULAR_AREAS[which]))
 
 
+def neighbor_distance(mesh: Mesh) -> float:
+    """Mean distance of the centres of neighbouring faces."""
+    left, right = face_centroids(mesh)[mesh.topology.edge_faces].transpose(1, 0, 2)
+    return float(norm(left - right).mean())
+
+
+def flaw_reason(judgement: PatternJudgement) -> str:
+    """How many faces have flaws, and the first of these; empty if none has."""
+    if not judgement.flaws:
+        return ""
+    faces = len({flaw.face for flaw in judgement.flaws})
+    return f"{faces} faces have flaws ({first_flaws(judgement.flaws)})"
+
+
 def _dual_reason(judgement: PatternJudgement, which: DualPattern) -> str:
     """Why a pattern is not usable, or no better than planes."""
-    reasons: list[str] = []
-    if judgement.flaws:
-        faces = len({flaw.face for flaw in judgement.flaws})
-        reasons.append(f"{faces} faces have flaws ({first_flaws(judgement.flaws)})")
+    reasons = [flaw_reason(judgement)] if judgement.flaws else []
     if judgement.angle > judgement.flat_angle:
         why = (
             "convex panels need spheres smaller than the surface bends, and here that costs "
