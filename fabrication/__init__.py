@@ -16,6 +16,7 @@ schedules   Lists of parts with all that a workshop asks for.
 costs       What parts cost by the prices of a workshop.
 audit       Numbered findings before files go out.
 solids      The same parts as shapes of OpenCASCADE and CadQuery.
+objects     Meshes, panels and beams as objects of trimesh, pyvista and CadQuery.
 model       What every writer writes, and what it gives back.
 output_folder  The folder of a job: nothing of the user's is overwritten there.
 files       Files written whole or not at all.
