@@ -56,7 +56,7 @@ def notebook_html(shape: Shape) -> str | None:
     if count <= MOST_PARTS:
         page = _PAGE.format(words=words, page=html.escape(_page(panels, beams)))
     return _FRAME.format(
-        width=WIDTH, height=HEIGHT, words=words, picture=_picture(panels), page=page
+        width=WIDTH, height=HEIGHT, words=words, picture=_picture(panels, beams), page=page
     )
 
 
@@ -86,10 +86,8 @@ def _page(panels: Panels | None, beams: Beams | None) -> str:
     return page_text(panels, beams, texts)
 
 
-def _picture(panels: Panels | None) -> str:
-    if panels is None:
-        return ""
-    image = render_image(panels, width=WIDTH, height=HEIGHT)
+def _picture(panels: Panels | None, beams: Beams | None) -> str:
+    image = render_image(panels, beams=beams, width=WIDTH, height=HEIGHT, legend=False)
     file = io.BytesIO()
     image.save(file, "PNG")
     return base64.b64encode(file.getvalue()).decode()
