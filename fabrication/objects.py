@@ -180,7 +180,7 @@ def _annulus_surface(annuli: Annuli) -> _Surface:
     if not annuli.n_annuli:
         raise InputError("there are no annuli")
     count, normals = annuli.n_annuli, annuli.frames[:, 2]
-    steps = np.linspace(0.0, 1.0, _STEPS + 1)
+    steps = np.linspace(-1.0, 1.0, _STEPS + 1)
     rims = [
         arc_points(
             sphere_arcs(rows, -normals, annuli.corners[:, 0, k], annuli.corners[:, 1, k]), steps

@@ -94,6 +94,9 @@ def test_annuli_are_strips_between_their_circles() -> None:
     off = np.abs(radii[:, None] - annuli.radii[places])
     assert np.isfinite(annuli.radii).all()
     assert off.min(axis=1).max() < 1e-6 * radii.max()
+    ends = (annuli.corners + annuli.origins[:, None, None]).reshape(-1, 3)
+    strip = strips.vertices.reshape(annuli.n_annuli, -1, 2, 3)[:, [0, -1]]
+    np.testing.assert_allclose(strip.reshape(-1, 3), ends, atol=1e-9)
 
 
 def test_sphere_meshes_are_given_by_centres_and_radii() -> None:
