@@ -9,7 +9,7 @@ import math
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, TypeAlias
+from typing import Final
 
 import numpy as np
 
@@ -22,13 +22,13 @@ from ...kernel.support.node_axes import node_name
 from ..files import check_suffix, replacing
 from ..model import Model, Written, check_parts
 from ..units import millimeters_per
-from .dxf import drawing_text, fixed_ezdxf, millimeter_drawing, text_width
+from .drawing import Circle, Drawing, Line, Text, text_width
+from .dxf import format_dxf
 
-# What comes from ezdxf is partly untyped.
-_Untyped: TypeAlias = Any
+_LAYERS: Final = ("CUT", "ENGRAVE", "DRILL", "SHEET")
 
-_LAYERS: Final = {"CUT": 1, "ENGRAVE": 3, "DRILL": 5, "SHEET": 8}
-"""Layers of a drawing and their colours, by AutoCAD's index."""
+_DECIMALS: Final = 9
+"""Of coordinates: contours are cut as they stand there."""
 
 _LABEL = 25.0
 """Largest height of a label, in millimetres."""
@@ -61,8 +61,7 @@ def write_dxf(
     ``sheets``. The same beams give the same bytes: the dates in the file are fixed.
 
     Raises InputError if there are no beams, two have one name or one is not finite, the unit is
-    not known, sheet or spacing are no lengths, or the folder does not exist;
-    MissingLibraryError if ezdxf is missing.
+    not known, sheet or spacing are no lengths, or the folder does not exist.
     """
     target = Path(path)
     check_suffix(target, ".dxf")
@@ -78,17 +77,14 @@ def write_dxf(
     places, sheets, oversize = shelves(sizes, sheet, spacing)
     corners = _sheet_corners(sizes, sheets, oversize, sheet, spacing)
     shifts = places - boxes[:, 0] + corners[sheets, 0]
-    with fixed_ezdxf() as library:
-        document = millimeter_drawing(library, _LAYERS)
-        space = document.modelspace()
-        for low, high in corners.tolist():
-            ring = [low, [high[0], low[1]], high, [low[0], high[1]]]
-            space.add_lwpolyline(ring, close=True, dxfattribs={"layer": "SHEET"})
-        _add_contours(space, contours, shifts)
-        _add_labels(space, beams, contours, shifts)
-        if beams.marks is not None:
-            _add_marks(space, beams, beams.marks, shifts)
-        text = drawing_text(document)
+    drawing = Drawing((0.0, 0.0), (float(corners[:, 1, 0].max()), float(corners[-1, 1, 1])))
+    for low, high in corners.tolist():
+        drawing.add_rectangle("SHEET", low, high)
+    drawing.lines += _contour_lines(contours, shifts)
+    drawing.texts += _labels(beams, contours, shifts)
+    if beams.marks is not None:
+        drawing.circles += _holes(beams, beams.marks, shifts)
+    text = format_dxf(drawing, _LAYERS, _DECIMALS)
     with replacing(target) as temporary:
         temporary.write_text(text, encoding="utf-8")
     shown = ", ".join(beams.ids[i] for i in oversize[:8])
@@ -113,17 +109,15 @@ def _sheet_corners(
     return np.stack([low, low + extents], 1)
 
 
-def _add_contours(space: _Untyped, contours: Contours, shifts: FloatArray) -> None:
+def _contour_lines(contours: Contours, shifts: FloatArray) -> list[Line]:
     corners = contours.corners + shifts[:, None]
     rows = np.concatenate([corners, contours.bulges[..., None]], -1)
-    for ring in rows.tolist():
-        space.add_lwpolyline(ring, format="xyb", close=True, dxfattribs={"layer": "CUT"})
+    return [Line("CUT", ring, is_closed=True) for ring in rows.tolist()]
 
 
-def _add_labels(space: _Untyped, beams: Beams, contours: Contours, shifts: FloatArray) -> None:
-    from ezdxf.enums import TextEntityAlignment
-
-    middle = TextEntityAlignment.MIDDLE_CENTER
+def _labels(beams: Beams, contours: Contours, shifts: FloatArray) -> list[Text]:
+    """Id of each beam in its middle, nodes and bevels near its ends."""
+    result: list[Text] = []
     centers = contours.centers + shifts[:, None]
     spans = contours.centers[:, 2, 0] - contours.centers[:, 0, 0]
     nodes: list[list[int]] = beams.annuli.edge_vertices.tolist()
@@ -143,10 +137,11 @@ def _add_labels(space: _Untyped, beams: Beams, contours: Contours, shifts: Float
             _LABEL, _LABEL_SHARE * width, span / sum(lengths),
             _straight_in_bow(max(lengths), width, curvature),
         )  # fmt: skip
-        for (text, share), point, turn in zip(texts, points, along, strict=True):
-            look = {"layer": "ENGRAVE", "rotation": turn}
-            entity = space.add_text(text, height=share * size, dxfattribs=look)
-            entity.set_placement(point, align=middle)
+        result += [
+            Text("ENGRAVE", text, x, y, share * size, "middle", turn)
+            for (text, share), (x, y), turn in zip(texts, points, along, strict=True)
+        ]
+    return result
 
 
 def _turns(points: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -165,7 +160,7 @@ def _straight_in_bow(length: float, width: float, curvature: float) -> float:
     return width / (0.5 + math.sqrt(0.25 + 2 * sagitta * width))
 
 
-def _add_marks(space: _Untyped, beams: Beams, marks: DrillMarks, shifts: FloatArray) -> None:
+def _holes(beams: Beams, marks: DrillMarks, shifts: FloatArray) -> list[Circle]:
     centers = (mark_centers(beams, marks) + shifts[:, None])[marks.fits]
-    for center in centers.reshape(-1, 2).tolist():
-        space.add_circle(center, marks.diameter / 2, dxfattribs={"layer": "DRILL"})
+    radius = marks.diameter / 2
+    return [Circle("DRILL", x, y, radius) for x, y in centers.reshape(-1, 2).tolist()]
