@@ -9,8 +9,8 @@ from typing import Final, Literal, NamedTuple
 from unicodedata import east_asian_width
 
 
-class Layer(NamedTuple):
-    """How a layer looks.
+class Pen(NamedTuple):
+    """What a layer is drawn with.
 
     Attributes
     ----------
@@ -29,23 +29,23 @@ class Layer(NamedTuple):
     is_dashed: bool = False
 
 
-LAYERS: Final = {
-    "CUT": Layer(1, "#c00000", 0.25),
-    "ENGRAVE": Layer(3, "#007000", 0.18),
-    "DRILL": Layer(5, "#2040c0", 0.25),
-    "SHEET": Layer(8, "#808080", 0.25),
-    "OUTER": Layer(7, "#000000", 0.35),
-    "INNER": Layer(8, "#808080", 0.18, is_dashed=True),
-    "BLANK": Layer(5, "#2060c0", 0.18),
-    "TEXT": Layer(3, "#000000", 0.18),
-    "DIMENSION": Layer(4, "#205080", 0.13),
-    "MARK": Layer(1, "#c00000", 0.25),
-    "BEAM": Layer(32, "#705c4a", 0.25),
-    "NODE": Layer(6, "#800080", 0.18),
-    "FRAME": Layer(7, "#000000", 0.5),
-    "TABLE": Layer(8, "#606060", 0.13),
+PENS: Final = {
+    "CUT": Pen(1, "#c00000", 0.25),
+    "ENGRAVE": Pen(3, "#007000", 0.18),
+    "DRILL": Pen(5, "#2040c0", 0.25),
+    "SHEET": Pen(8, "#808080", 0.25),
+    "OUTER": Pen(7, "#000000", 0.35),
+    "INNER": Pen(8, "#808080", 0.18, is_dashed=True),
+    "BLANK": Pen(5, "#2060c0", 0.18),
+    "TEXT": Pen(3, "#000000", 0.18),
+    "DIMENSION": Pen(4, "#205080", 0.13),
+    "MARK": Pen(1, "#c00000", 0.25),
+    "BEAM": Pen(32, "#705c4a", 0.25),
+    "NODE": Pen(6, "#800080", 0.18),
+    "FRAME": Pen(7, "#000000", 0.5),
+    "TABLE": Pen(8, "#606060", 0.13),
 }  # fmt: skip
-"""The layers of all drawings, in the order in which they are named in files."""
+"""Pens of the layers of all drawings, in the order in which they are named in files."""
 
 Point = tuple[float, float]
 Align = Literal["left", "center", "middle", "right"]
@@ -115,7 +115,7 @@ class Drawing:
     def layers(self) -> list[str]:
         """Names of the layers in use."""
         used = {each.layer for each in (*self.lines, *self.circles, *self.texts)}
-        return [name for name in LAYERS if name in used]
+        return [name for name in PENS if name in used]
 
     def add_segments(self, layer: str, *segments: tuple[float, float, float, float]) -> None:
         """Add straight lines, each by the x and y of both ends."""

@@ -9,7 +9,7 @@ from importlib.resources import files
 from itertools import count
 from typing import Final
 
-from .drawing import LAYERS, Align, Circle, Drawing, Line, Text
+from .drawing import PENS, Align, Circle, Drawing, Line, Text
 
 _FIRST_HANDLE: Final = 0x100
 """Numbers below are those of the template."""
@@ -55,12 +55,12 @@ def format_dxf(drawing: Drawing, layers: tuple[str, ...], decimals: int = 4) -> 
         The text.
     """
     handles = count(_FIRST_HANDLE)
-    names = [name for name in LAYERS if name in {*layers, *drawing.layers()}]
+    names = [name for name in PENS if name in {*layers, *drawing.layers()}]
     declared = "".join(
         _LAYER.format(
-            handle=next(handles), name=name, color=LAYERS[name].color,
-            dash="DASHED" if LAYERS[name].is_dashed else "Continuous",
-            width=_line_width(LAYERS[name].width),
+            handle=next(handles), name=name, color=PENS[name].color,
+            dash="DASHED" if PENS[name].is_dashed else "Continuous",
+            width=_line_width(PENS[name].width),
         )
         for name in names
     )  # fmt: skip

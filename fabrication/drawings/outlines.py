@@ -16,7 +16,8 @@ from ...kernel.spheres.arcs import Arcs, arc_points
 CLOSE_MM: Final = 0.01
 """How far arcs on paper may be from what they show, in true size."""
 
-_MOST_PIECES: Final = 32
+_PIECES: Final = (1, 2, 4, 8, 16, 32)
+"""Arcs for an edge: more where the last number was not close enough."""
 
 
 def axis_frames(panels: Panels, axes: FloatArray) -> FloatArray:
@@ -51,28 +52,31 @@ def outline_rings(
         An arc for every edge where that comes as near as `CLOSE_MM`, more of them elsewhere.
     """
     owners = panels.corner_panels
-    misses = _bulges(_flat(arcs, frames[owners], centers[owners], 2))[1][:, 0]
-    # The distance of a curve from the circle through three of its points falls with the cube.
-    pieces = np.ceil(np.cbrt(2 * misses / CLOSE_MM)).astype(np.int64)
-    pieces = np.clip(np.maximum.reduceat(pieces, panels.offsets[:-1]), 1, _MOST_PIECES)
     result = [np.zeros((0, 3))] * panels.n_panels
-    for count in np.unique(pieces).tolist():
-        rows = np.flatnonzero(pieces == count)
-        edges = np.flatnonzero(pieces[owners] == count)
+    left = np.ones(panels.n_panels, bool)
+    for count in _PIECES:
+        edges = np.flatnonzero(left[owners])
         chosen = Arcs(*(values[edges] for values in vars(arcs).values()))
-        points = _flat(chosen, frames[owners[edges]], centers[owners[edges]], 2 * count)
-        bulges, _ = _bulges(points)
+        points = _flat(chosen, frames[owners[edges]], centers[owners[edges]], count)
+        bulges, misses = _bulges(points)
         bulges[chosen.sagittas == 0] = 0.0
+        worst = np.zeros(panels.n_panels)
+        np.maximum.at(worst, owners[edges], misses.max(axis=1))
+        is_close = (worst <= CLOSE_MM) | (count == _PIECES[-1])
         sides = np.concatenate([points[:, :-1:4], bulges[..., None]], -1).reshape(-1, 3)
+        rows = np.flatnonzero(left)
         bounds = [0, *np.cumsum(count * panels.degrees[rows]).tolist()]
         for row, (start, end) in zip(rows.tolist(), pairwise(bounds), strict=True):
             result[row] = sides[start:end]
+        left &= ~is_close
+        if not left.any():
+            break
     return result
 
 
 def _flat(arcs: Arcs, frames: FloatArray, centers: FloatArray, count: int) -> FloatArray:
-    """Points (H, 2 count + 1, 2) of arcs on paper, four steps to a piece."""
-    points = arc_points(arcs, np.linspace(-1, 1, 2 * count + 1))
+    """Points (H, 4 count + 1, 2) of arcs on paper, four steps to a piece."""
+    points = arc_points(arcs, np.linspace(-1, 1, 4 * count + 1))
     return np.einsum("hij,hnj->hni", frames, points - centers[:, None])
 
 

@@ -3,7 +3,7 @@
 from html import escape
 from typing import Final
 
-from .drawing import LAYERS, Align, Circle, Drawing, Line, Text
+from .drawing import PENS, Align, Circle, Drawing, Line, Text
 
 CAPITALS: Final = 0.7
 """Height of the capitals of usual fonts, by the size of the font."""
@@ -54,7 +54,7 @@ def format_svg(drawing: Drawing, *, on_paper: bool = False) -> str:
 
 
 def _group(name: str, shapes: str, texts: str, *, on_paper: bool) -> str:
-    look = LAYERS[name]
+    look = PENS[name]
     letters = f'font-family="sans-serif" fill="{look.stroke}"'
     if not shapes:
         return f'<g id="{name}" {letters}>{texts}</g>'

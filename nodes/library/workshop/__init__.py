@@ -6,5 +6,6 @@ cost       What a workshop asks for it, and what fewer moulds and flat panels sa
 losses     What moulds and a support cost, and what became of it, in warnings.
 report     The report of a panelling.
 solids     Panels and beams as solids for CadQuery.
+tables     Tidy tables of parts.
 view       A page on which a model turns, shines and answers.
 """
