@@ -36,6 +36,7 @@ PENS: Final = {
     "SHEET": Pen(8, "#808080", 0.25),
     "OUTER": Pen(7, "#000000", 0.35),
     "INNER": Pen(8, "#808080", 0.18, is_dashed=True),
+    "PLAN": Pen(7, "#000000", 0.13),
     "BLANK": Pen(5, "#2060c0", 0.18),
     "TEXT": Pen(3, "#000000", 0.18),
     "DIMENSION": Pen(4, "#205080", 0.13),

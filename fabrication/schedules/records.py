@@ -55,3 +55,8 @@ def make_record(columns: Mapping[str, Sequence[Any] | FloatArray]) -> Record:
         name: round_column(name, values) if isinstance(values, np.ndarray) else list(values)
         for name, values in columns.items()
     }
+
+
+def record_rows(table: Record) -> list[dict[str, Any]]:
+    """The rows of a table."""
+    return [dict(zip(table, row, strict=True)) for row in zip(*table.values(), strict=True)]

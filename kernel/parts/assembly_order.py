@@ -27,8 +27,8 @@ def assembly_order(heights: FloatArray, pairs: IntArray) -> IntArray:
 
     Examples
     --------
-    >>> assembly_order(np.array([0.0, 2.0, 1.0, 0.5]), np.array([[0, 1], [1, 2]]))
-    array([1, 3, 4, 2])
+    >>> assembly_order(np.array([0.0, 2.0, 1.0, 0.5]), np.array([[0, 1], [0, 2]]))
+    array([1, 3, 2, 4])
     """
     count = len(heights)
     beside: list[list[int]] = [[] for _ in range(count)]
