@@ -130,14 +130,7 @@ def _beam_view(beams: Beams, nodes: Record, number: int) -> _View:
 
 
 def _view_pages(view: _View, paper: str) -> list[Page]:
-    spread = np.concatenate(
-        [
-            *(ring[:, :2] for ring in view.rings),
-            *view.lines,
-            np.array([name[2:4] for name in view.names]),
-        ]
-    )
-    low, high = spread.min(axis=0), spread.max(axis=0)
+    low, high = _bounds(view)
     whole = _fitting_scale(high - low, paper)
     letter = _letter(view)
     if letter / whole >= _LEAST:

@@ -116,7 +116,7 @@ def _draw_cell(
     outer = placed[0][1]
     corners: list[list[float]] = outer[:: len(outer) // len(edges), :2].tolist()
     _draw_marks(drawing, corners, edges, middle)
-    draw_axes(drawing, (x + 8.0, y + 8.0), axes)
+    draw_axes(drawing, (x + width * (1 - _TABLE) + 12.0, y + 10.0), axes)
     _draw_table(drawing, (x + width * (1 - _TABLE), y + height - _HEAD), width * _TABLE, edges)
 
 
