@@ -131,7 +131,7 @@ def draw_axes(drawing: Drawing, at: Point, frame: FloatArray) -> None:
             back_y = tip_y - (up * 1.2 + side * right * 0.4) / length
             drawing.add_segments("MARK", (tip_x, tip_y, back_x, back_y))
         reach = _ARROW + 1.6 / length
-        while any(hypot(x + reach * right - a, y + reach * up - b) < 1.7 for a, b in labels):
+        while any(hypot(x + reach * right - a, y + reach * up - b) < 2.1 for a, b in labels):
             reach += 1.0 / length
         labels.append((x + reach * right, y + reach * up))
         drawing.texts.append(Text("MARK", name, *labels[-1], 1.6, "middle"))

@@ -267,7 +267,18 @@ def write_schedule(
 
 
 def told_path(written: Written) -> str:
-    """Warn of what differs from what was asked for; the path."""
+    """Warn of what differs from what was asked for.
+
+    Parameters
+    ----------
+    written : Written
+        What a writer says.
+
+    Returns
+    -------
+    str
+        The path.
+    """
     name, rejected = written.path.name, written.rejected
     if rejected:
         shown = "; ".join(f"{part.id}: {part.reason}" for part in rejected[:8])

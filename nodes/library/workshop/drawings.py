@@ -16,7 +16,7 @@ from ...graphs.ports import Length, Units, WritePath
 from ..fabricate import told_path
 
 
-@node
+@node(version="2")
 def write_dxf(
     beams: Beams,
     path: WritePath,
@@ -68,7 +68,7 @@ def write_dxf(
     return told_path(dxf.write_dxf(Model(beams=beams, units=units), path, options))
 
 
-@node
+@node(version="2")
 def write_mould_drawings(panels: Panels, path: WritePath, units: Units = "m") -> str:
     """Draw every panel in the blank of its mould, with radius, sizes and ids, in millimetres.
 

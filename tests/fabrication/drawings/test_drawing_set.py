@@ -151,6 +151,7 @@ def test_dxf_is_sound_and_in_true_size(panels: Panels, beams: Beams, tmp_path: P
 
 
 def test_pdf_has_its_pages_and_svg_all(panels: Panels, tmp_path: Path) -> None:
+    pytest.importorskip("reportlab")
     written = write_drawings(Model(panels), tmp_path / "d.pdf", FIXED)
     data = written.path.read_bytes()
     assert data.startswith(b"%PDF-")
@@ -171,6 +172,7 @@ def test_pdf_has_its_pages_and_svg_all(panels: Panels, tmp_path: Path) -> None:
 def test_the_same_set_has_the_same_bytes_at_the_same_date(
     panels: Panels, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    pytest.importorskip("reportlab")
     few = select_parts(panels, np.arange(panels.n_panels) < 5)
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1000000000")
     for suffix in ("pdf", "dxf", "svg"):
@@ -185,6 +187,7 @@ def test_the_same_set_has_the_same_bytes_at_the_same_date(
 
 
 def test_names_of_all_scripts_stand_in_pdf(panels: Panels, tmp_path: Path) -> None:
+    pytest.importorskip("reportlab")
     few = select_parts(panels, np.arange(panels.n_panels) < 3)
     named = replace(few, ids=("屋根-1", "Крыша", "Dach-Süd"))
     data = write_drawings(Model(named), tmp_path / "d.pdf", FIXED).path.read_bytes()

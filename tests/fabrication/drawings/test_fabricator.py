@@ -6,7 +6,6 @@ from typing import Any
 import cadquery as cq
 import ezdxf
 import numpy as np
-import pandas as pd
 import pytest
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 
@@ -23,6 +22,8 @@ from spheremesh.nodes import (
     panels,
     roof_mesh,
 )
+
+pd = pytest.importorskip("pandas")
 
 CLOSE_MM = 0.01
 

@@ -6,12 +6,9 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
-import rectpack
 from ezdxf.path import make_path
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapely import STRtree
-from shapely.geometry import Polygon, box
 
 from spheremesh.fabrication.drawings.beams import SheetOptions, write_dxf
 from spheremesh.fabrication.drawings.nesting import Nesting, Stock, nest_rectangles
@@ -28,6 +25,10 @@ from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.support.annulus_construction import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
+
+rectpack = pytest.importorskip("rectpack")
+shapely = pytest.importorskip("shapely")
+box, Polygon = shapely.box, shapely.Polygon
 
 
 @pytest.fixture(scope="module")
@@ -119,7 +120,7 @@ def test_nested_beams_do_not_overlap_in_the_file(beams: Beams, tmp_path: Path) -
         for ring in space.query("LWPOLYLINE[layer=='SHEET']")
     ]
     assert len(pieces) == beams.n_beams
-    first, second = STRtree(pieces).query(pieces, predicate="dwithin", distance=4.9)
+    first, second = shapely.STRtree(pieces).query(pieces, predicate="dwithin", distance=4.9)
     assert (first == second).all()
     for piece in pieces:
         assert sum(sheet.buffer(-11.9).contains(piece) for sheet in sheets) == 1

@@ -9,8 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import openpyxl
-import pandas as pd
 import pytest
 
 from spheremesh.fabrication.model import Model
@@ -30,6 +28,10 @@ from spheremesh.kernel.sphere_meshes.central_spheres import central_spheres
 from spheremesh.kernel.sphere_meshes.fit import face_planes
 from spheremesh.kernel.support.annulus_construction import annulus_support
 from spheremesh.kernel.surfaces.circular_nets import vase_net
+
+pd = pytest.importorskip("pandas")
+openpyxl = pytest.importorskip("openpyxl")
+pytest.importorskip("xlsxwriter")
 
 DOCS = Path(__file__).parents[3] / "docs" / "tables.md"
 TEXTS = {
@@ -89,6 +91,7 @@ def test_nothing_is_lost_from_a_workbook_to_csv(panels: Panels, tmp_path: Path) 
 
 
 def test_parquet_says_the_same(panels: Panels, tmp_path: Path) -> None:
+    pytest.importorskip("pyarrow")
     for name in ("panels", "beam_ends"):
         first = pd.read_csv(write_tables(Model(panels, BEAMS), tmp_path / f"{name}.csv").path)
         file = write_tables(Model(panels, BEAMS), tmp_path / f"{name}.parquet").path
