@@ -42,7 +42,7 @@ class _Shape(NamedTuple):
 def beam_pages(
     beams: Beams, units: str, records: Mapping[str, Record], paper: str
 ) -> list[Page]:
-    """Pages of the shapes of beams, seen against w, the outer side up, all in one scale.
+    """Pages of the shapes of beams, seen against w, the outer side up; a page has one scale.
 
     Pieces of one shape are drawn once, with their number and their names. The cuts of both ends
     are drawn as they are seen from the outer side.
@@ -53,15 +53,18 @@ def beam_pages(
     (left, low), (right, high) = paper_area(paper)
     columns = max(1, int((right - left) // _WIDTH))
     width = (right - left) / columns
+    room = np.array([width - 2 * _SIDE, high - low - _HEAD - _TABLE - 10])
     largest = np.max([shape.size for shape in shapes], axis=0)
-    room = width - 2 * _SIDE, high - low - _HEAD - _TABLE - 10
-    scale = usual_scale(float(max(largest[0] / room[0], largest[1] / room[1])))
-    lines = max(1, int((high - low) // (_HEAD + _TABLE + 10 + largest[1] / scale)))
+    least = usual_scale(float((largest / room).max()))
+    lines = max(1, int((high - low) // (_HEAD + _TABLE + 10 + largest[1] / least)))
     size = width, (high - low) / lines
+    room[1] = size[1] - _HEAD - _TABLE - 8
     pages: list[Page] = []
     for start in range(0, len(shapes), columns * lines):
-        page = new_page(paper, "Beams", scale)
-        for place, shape in enumerate(shapes[start : start + columns * lines]):
+        here = shapes[start : start + columns * lines]
+        widest = np.max([shape.size for shape in here], axis=0)
+        page = new_page(paper, "Beams", usual_scale(float((widest / room).max())))
+        for place, shape in enumerate(here):
             line, column = divmod(place, columns)
             corner = left + column * width, high - (line + 1) * size[1]
             first = shape.beams[0]
@@ -167,7 +170,6 @@ def _draw_piece(
         fitted_text(
             "NODE", row["start_node"], (x - half[0] - 1.5, y - 0.9), 2.0, reach
         )._replace(align="right"),
-        Text("DIMENSION", f"{row['width_mm']:.1f}", x, y, min(1.9, half[1]), "middle"),
     ]
 
 
@@ -190,12 +192,16 @@ def _table_lines(row: dict[str, Any], ends: list[dict[str, Any]]) -> list[str]:
     ]
     lines += [
         f"end {end['end']} ({end['node']})   +w: {end['upper_bevel_deg']:.1f}° "
-        f"{end['upper_setback_mm']:+.2f}   ridge w {end['ridge_w_mm']:+.2f}: "
-        f"{end['ridge_setback_mm']:+.2f}   -w: {end['lower_bevel_deg']:.1f}° "
-        f"{end['lower_setback_mm']:+.2f}"
+        f"{_signed(end['upper_setback_mm'])}   ridge w {_signed(end['ridge_w_mm'])}: "
+        f"{_signed(end['ridge_setback_mm'])}   -w: {end['lower_bevel_deg']:.1f}° "
+        f"{_signed(end['lower_setback_mm'])}"
         for end in ends
     ]
     return lines
+
+
+def _signed(length: float) -> str:
+    return f"{round(length, 2) + 0.0:+.2f}"
 
 
 def _panel(name: str) -> str:
