@@ -2,10 +2,11 @@
 
 import csv
 import io
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, Final, TypeAlias, cast
+from types import NoneType
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
@@ -96,14 +97,13 @@ def format_sheets(sheets: Mapping[str, Sequence[Sequence[object]]]) -> bytes:
 
 
 def _cell(value: object) -> str:
-    if isinstance(value, float):
-        return _number(value)
-    if isinstance(value, list):
-        items = cast("list[object]", value)
-        if items and isinstance(items[0], list):
-            return "; ".join(map(_cell, items))
-        return " ".join(_cell(item) or "-" for item in items)
-    return "" if value is None else str(value)
+    return _FORMATS.get(type(value), str)(value)
+
+
+def _list(items: list[object]) -> str:
+    if items and isinstance(items[0], list):
+        return "; ".join(map(_cell, items))
+    return " ".join([_cell(item) or "-" for item in items])
 
 
 def _number(value: float) -> str:
@@ -111,3 +111,13 @@ def _number(value: float) -> str:
     if -LARGE < value < LARGE:
         return f"{value:.9g}"
     return f"{value:.6f}".rstrip("0").rstrip(".")
+
+
+def _nothing(_value: None) -> str:
+    return ""
+
+
+_FORMATS: Final[dict[type, Callable[[Any], str]]] = {
+    float: _number, list: _list, NoneType: _nothing,
+}  # fmt: skip
+"""How values are written that are not text already, by their types."""

@@ -6,12 +6,11 @@ import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray, norm
 from ...kernel.panels.centroids import panel_centroids
-from ...kernel.panels.congruent import congruent_panels
 from ...kernel.panels.facts import PanelFacts, edge_angles, packing_sizes, panel_bulges
 from ...kernel.panels.mould_blanks import mould_blanks
 from ...kernel.panels.panels import Panels, neighbor_ids, opposite_corners
 from ...kernel.parts.assembly_order import assembly_order
-from ..audit.panels import PanelSubject, check_panels, panel_subject
+from ..audit.panels import PanelSubject, check_panels, panel_subject, same_shapes
 from ..audit.subjects import warning_texts
 from ..units import CUBIC_METER, SQUARE_METER
 from .materials import Material
@@ -41,7 +40,7 @@ def panel_records(
 def _panels(subject: PanelSubject, material: Material) -> Record:
     made, facts = subject.parts, subject.facts
     warnings = warning_texts(check_panels(subject))
-    same = congruent_panels(made)
+    same = same_shapes(made)
     first: list[int] = same.representatives[same.labels].tolist()
     bulges, centroids = panel_bulges(made), panel_centroids(made)
     volumes = facts.volumes / CUBIC_METER
@@ -116,7 +115,7 @@ def _edges(made: Panels, facts: PanelFacts) -> Record:
 
 
 def _moulds(made: Panels, facts: PanelFacts) -> Record:
-    blanks = mould_blanks(made, congruent_panels(made), caps=facts.caps)
+    blanks = mould_blanks(made, same_shapes(made), caps=facts.caps)
     areas = [float(facts.areas[made.labels == label].sum()) for label in blanks.labels]
     return make_record(
         {

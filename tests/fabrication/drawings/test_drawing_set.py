@@ -75,7 +75,7 @@ def test_a_set_has_every_part_and_says_where(panels: Panels, beams: Beams) -> No
 
 def test_no_text_leaves_the_frame(panels: Panels, roof: Panels, beams: Beams) -> None:
     long = replace(roof, ids=tuple(f"Dach-Süd-{name}-屋根" for name in roof.ids))
-    for paper in PAPERS:
+    for paper in ("A4", "A2"):
         options = replace(FIXED, paper=paper, project="Haus der Kulturen " * 4)
         for model in (Model(panels, beams), Model(long)):
             for page in drawing_pages(model, options):
