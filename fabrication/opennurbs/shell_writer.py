@@ -7,7 +7,7 @@ of its two panels; how far the other one misses it is the tolerance of the edge.
 from collections import defaultdict
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,10 +17,9 @@ from ...kernel.panels.panels import Panels, panel_arcs
 from ...kernel.spheres.arcs import arc_lengths, arc_points
 from .brep_writer import edge_streams, face_streams
 from .render_meshes import RenderMeshes, mesh_streams
-from .stream_codes import ANONYMOUS, BOUNDARY_TRIM, BREP, OUTER_LOOP
+from .stream_codes import ANONYMOUS, BOUNDARY_TRIM, BREP, MATED_TRIM, OUTER_LOOP
 from .stream_writer import Chunk, class_object, doubles, encode, ints, table
 
-_MATED_TRIM: Final = 2
 _SAMPLES = 5
 
 
@@ -181,7 +180,7 @@ def _trim_records(panels: Panels, joints: _Joints) -> list[tuple[bytes]]:
     is_mated = np.bincount(joints.edges)[joints.edges] > 1
     columns = np.stack([
         joints.edges, joints.vertices, joints.vertices[panels.next_corners],
-        joints.is_reversed, np.where(is_mated, _MATED_TRIM, BOUNDARY_TRIM),
+        joints.is_reversed, np.where(is_mated, MATED_TRIM, BOUNDARY_TRIM),
         0 * joints.edges, panels.corner_panels,
     ], 1)  # fmt: skip
     rows: list[list[int]] = columns.tolist()

@@ -77,8 +77,12 @@ def _assemble_chunk(chunk: Chunk) -> _Template:
         if not isinstance(piece, Chunk):
             own.append((here, len(data)))
     if chunk.typecode & codes.CRC_FLAG:
-        checksums.append(codes.Checksum(len(data), tuple(own)))
-        data += bytes(codes.CRC.size)
+        checksum = codes.Checksum(len(data), tuple(own))
+        if any(isinstance(piece, Slot | PlainBuffer) for piece in chunk.body):
+            checksums.append(checksum)
+            data += bytes(codes.CRC.size)
+        else:
+            data += codes.CRC.pack(checksum.compute(memoryview(bytes(data))))
     codes.CHUNK_HEADER.pack_into(data, 0, chunk.typecode, len(data) - codes.CHUNK_HEADER.size)
     return _Template(bytes(data), tuple(slots), tuple(checksums))
 

@@ -9,7 +9,7 @@ from ...fabrication.drawings import beams as dxf
 from ...fabrication.drawings import moulds as mould_drawings
 from ...fabrication.files import check_suffix, replacing
 from ...fabrication.model import Model, Written
-from ...fabrication.rhino import writer as rhino
+from ...fabrication.rhino_models import writer as rhino
 from ...fabrication.schedules import writer as schedule
 from ...fabrication.step import writer as step
 from ...kernel.beams.beams import Beams

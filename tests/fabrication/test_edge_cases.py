@@ -17,7 +17,7 @@ from spheremesh.fabrication.audit.subjects import USUAL_LIMITS, AuditLimits
 from spheremesh.fabrication.drawings.beams import write_dxf
 from spheremesh.fabrication.drawings.moulds import write_mould_drawings
 from spheremesh.fabrication.model import Model, Written
-from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
+from spheremesh.fabrication.rhino_models.writer import RhinoOptions, write_3dm
 from spheremesh.fabrication.schedules.panels import panel_tables
 from spheremesh.fabrication.schedules.writer import write_schedule
 from spheremesh.fabrication.solids.opencascade_panels import panel_shapes

@@ -25,8 +25,8 @@ from spheremesh.fabrication.opennurbs.render_meshes import (
     mesh_streams,
     panel_meshes,
 )
-from spheremesh.fabrication.rhino import block_writer, panel_writer
-from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
+from spheremesh.fabrication.rhino_models import block_writer, panel_writer
+from spheremesh.fabrication.rhino_models.writer import RhinoOptions, write_3dm
 from spheremesh.fabrication.schedules.panel_text import TEXT_KEYS, panel_text
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import Mesh

@@ -24,9 +24,9 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication.drawings.beams import write_dxf
 from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.opennurbs.render_meshes import MESH_TOLERANCE, gather_meshes
-from spheremesh.fabrication.rhino.beam_writer import with_meshes
-from spheremesh.fabrication.rhino.model import new_model
-from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
+from spheremesh.fabrication.rhino_models.beam_writer import with_meshes
+from spheremesh.fabrication.rhino_models.model import new_model
+from spheremesh.fabrication.rhino_models.writer import RhinoOptions, write_3dm
 from spheremesh.fabrication.solids.cadquery_assembly import beams_to_cadquery
 from spheremesh.fabrication.solids.opencascade_beams import beam_shapes
 from spheremesh.fabrication.step.check import check_part21
