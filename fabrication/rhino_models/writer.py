@@ -170,10 +170,10 @@ def _document(
     warnings = warning_texts(options.findings)
     rejected: tuple[RejectedPart, ...] = ()
     notes: list[str] = []
-    if panels is not None:
+    if panels is not None and panels.ids:
         chosen = PanelOptions(options.shape, options.layers, options.render_meshes)
         rejected, notes = add_panels(document, panels, units, chosen, warnings)
-    if beams is not None:
+    if beams is not None and beams.ids:
         rejected += add_beams(document, beams, units, warnings)
     notes += add_rejected(document, options.reference, options.rejected)
     add_views(document, _points(panels, beams))

@@ -204,7 +204,7 @@ def test_names_of_beams_in_any_script(tmp_path: Path) -> None:
     path = write_3dm(Model(beams=beams), tmp_path / "b.3dm").path
     model: Any = rhino3dm.File3dm.Read(str(path))
     found = [
-        each.Attributes for each in model.Objects if type(each.Geometry).__name__ == "Extrusion"
+        each.Attributes for each in model.Objects if type(each.Geometry).__name__ == "Brep"
     ]
     assert [each.Name for each in found] == list(names)
     assert [each.GetUserString("id") for each in found] == list(names)

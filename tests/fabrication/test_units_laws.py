@@ -123,8 +123,6 @@ def rhino(job: Job, folder: Path) -> FloatArray:
     found: list[float] = []
     for item in model.Objects:
         geometry = item.Geometry
-        if isinstance(geometry, rhino3dm.Extrusion):
-            geometry = geometry.ToBrep(False)  # noqa: FBT003
         if isinstance(geometry, rhino3dm.Brep):
             found += [x for v in geometry.Vertices for x in coordinates(v.Location)]
         elif isinstance(geometry, rhino3dm.ArcCurve):
