@@ -30,7 +30,7 @@ from spheremesh.fabrication.solids.cadquery_assembly import beams_to_cadquery
 from spheremesh.fabrication.solids.opencascade_beams import beam_shapes
 from spheremesh.fabrication.step.check import check_part21
 from spheremesh.fabrication.step.writer import write_step
-from spheremesh.kernel.arrays import FloatArray, dot, norm
+from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.beams import cutting as beam_cutting
 from spheremesh.kernel.beams.beams import Beams, beam_volumes, node_axis_segments
 from spheremesh.kernel.beams.cutting import cut_beams
