@@ -1,0 +1,200 @@
+// The graph as the canvas draws it: nodes, wires, their places, and what fits what.
+
+import dagre from "@dagrejs/dagre";
+import { described, familyOf } from "./store.js";
+
+export const STEP_WIDTH = 232, SLIDER_WIDTH = 196;
+const HEAD = 38, ROW = 25;
+
+/** The wires and sliders in what an input was given. */
+export function sources(value) {
+  if (Array.isArray(value)) return value.flatMap(sources);
+  if (!value || typeof value !== "object") return [];
+  if ("wire" in value) return [{ step: value.wire.split(".")[0], port: value.wire.split(".")[1] ?? "" }];
+  if ("param" in value) return [{ param: value.param }];
+  if ("each" in value) return sources(value.each);
+  return [];
+}
+
+/** Inputs that are worth a row: needed, given, and the first that are given by hand. */
+export function shownInputs(node, entry, isOpen) {
+  if (!node) return [];
+  if (isOpen) return node.inputs;
+  let byHand = 0;
+  return node.inputs.filter((port) => {
+    if (port.required || port.name in entry.inputs) return true;
+    return Boolean(port.field) && !port.graph_units && byHand++ < 2;
+  });
+}
+
+export function sizeOf(s, id) {
+  const name = id.slice(2);
+  if (id.startsWith("p:")) return [SLIDER_WIDTH, 66];
+  const node = described(s, name), entry = s.doc.graph.steps[name];
+  const inputs = node ? shownInputs(node, entry, s.expanded[name]).length : Object.keys(entry.inputs).length;
+  return [STEP_WIDTH, HEAD + ROW * (inputs + (node?.outputs.length ?? 1)) + 22];
+}
+
+/** Where steps and sliders lie: as the file says, else laid out by dagre from left to right. */
+export function placesOf(s) {
+  const { graph } = s.doc, canvas = graph.canvas ?? {};
+  const places = {};
+  for (const name of Object.keys(graph.steps)) if (canvas.steps?.[name]) places[`s:${name}`] = canvas.steps[name];
+  for (const name of Object.keys(graph.params)) if (canvas.params?.[name]) places[`p:${name}`] = canvas.params[name];
+  const ids = [...Object.keys(graph.params).map((n) => `p:${n}`), ...Object.keys(graph.steps).map((n) => `s:${n}`)];
+  const missing = ids.filter((id) => !(id in places));
+  if (!missing.length) return places;
+  const laid = layout(s, ids);
+  if (missing.length === ids.length) return laid;
+  // Newcomers stand below what is there, as they lie to each other.
+  const known = Object.values(places);
+  const left = Math.min(...known.map((p) => p[0])), low = Math.max(...known.map((p) => p[1])) + 240;
+  const x = Math.min(...missing.map((id) => laid[id][0])), y = Math.min(...missing.map((id) => laid[id][1]));
+  for (const id of missing) places[id] = [laid[id][0] - x + left, laid[id][1] - y + low];
+  return places;
+}
+
+export function layout(s, ids) {
+  const graph = new dagre.graphlib.Graph({ multigraph: true });
+  graph.setGraph({ rankdir: "LR", nodesep: 26, ranksep: 66, ranker: "network-simplex" });
+  graph.setDefaultEdgeLabel(() => ({}));
+  for (const id of ids) {
+    const [width, height] = sizeOf(s, id);
+    graph.setNode(id, { width, height });
+  }
+  for (const { source, target } of wiresOf(s)) graph.setEdge(source, target, {}, `${source} ${target}`);
+  dagre.layout(graph);
+  return Object.fromEntries(ids.map((id) => {
+    const { x, y, width, height } = graph.node(id);
+    return [id, [Math.round(x - width / 2), Math.round(y - height / 2)]];
+  }));
+}
+
+export function wiresOf(s) {
+  const found = [];
+  for (const [name, entry] of Object.entries(s.doc.graph.steps)) {
+    for (const [port, value] of Object.entries(entry.inputs)) {
+      for (const from of sources(value)) {
+        const isParam = "param" in from;
+        if (!isParam && !(from.step in s.doc.graph.steps)) continue;
+        const outputs = isParam ? [] : described(s, from.step)?.outputs ?? [];
+        const output = isParam ? "value" : from.port || outputs[0]?.name || "result";
+        const source = isParam ? `p:${from.param}` : `s:${from.step}`;
+        const family = isParam ? "number" : familyOf(s, outputs.find((each) => each.name === output));
+        found.push({ id: `${source}.${output}>${name}.${port}`, source, sourceHandle: output, target: `s:${name}`, targetHandle: port, family,
+          isEach: Boolean(value && typeof value === "object" && "each" in value) });
+      }
+    }
+  }
+  return found;
+}
+
+export const portOf = (ports, name) => ports?.find((port) => port.name === name);
+
+/** Steps that a step needs, itself among them. */
+function ancestors(s, name) {
+  const found = new Set(), pending = [name];
+  while (pending.length) {
+    const next = pending.pop();
+    if (found.has(next) || !s.doc.graph.steps[next]) continue;
+    found.add(next);
+    for (const value of Object.values(s.doc.graph.steps[next].inputs)) for (const each of sources(value)) if (each.step) pending.push(each.step);
+  }
+  return found;
+}
+
+/** Why an output or a slider cannot go into an input; empty if it can. */
+export function whyNot(s, source, output, target, input) {
+  if (!target?.startsWith("s:") || !source) return "wires end at inputs";
+  const to = target.slice(2), node = described(s, to);
+  if (!node) return "";
+  const port = portOf(node.inputs, input);
+  if (!port) return `${to} has no input ${input}`;
+  if (source.startsWith("p:")) return whyNotSlider(s, source.slice(2), to, port);
+  const from = source.slice(2), out = portOf(described(s, from)?.outputs, output);
+  if (from === to || ancestors(s, from).has(to)) return `${from} needs ${to} already: that would be a circle`;
+  if (!out || s.doc.facts[from]?.nesting) return "";
+  if (s.catalogue.fits[out.type].has(port.type)) return "";
+  const { types } = s.catalogue;
+  return `${from}.${output} is ${types[out.type]}; ${to}.${input} takes ${types[port.type]}`;
+}
+
+function whyNotSlider(s, name, to, port) {
+  const { value } = s.doc.graph.params[name];
+  if (!port.field) return `${to}.${port.name} takes ${s.catalogue.types[port.type]}, no value of a slider`;
+  const isNumber = typeof value === "number";
+  if (isNumber && !["number", "whole", "choice", "list"].includes(port.field)) return `slider ${name} is a number; ${to}.${port.name} takes ${s.catalogue.types[port.type]}`;
+  return "";
+}
+
+/** What an input is given when an output or a slider is wired to it. */
+export function given(s, source, output, target, input) {
+  const name = source.slice(2), to = target.slice(2);
+  const value = source.startsWith("p:") ? { param: name } : { wire: `${name}.${output}` };
+  const port = portOf(described(s, to)?.inputs, input);
+  const type = port ? s.catalogue.types[port.type] : "";
+  const isList = /^(list|tuple|Sequence)/.test(type), before = s.doc.graph.steps[to].inputs[input];
+  const gives = source.startsWith("p:") ? Array.isArray(s.doc.graph.params[name].value) : (s.doc.facts[name]?.nesting ?? 0) > 0;
+  if (gives && !isList) return { each: value };
+  if (/^list of/.test(type) && !gives) {
+    const out = portOf(described(s, name)?.outputs, output);
+    if (out && !s.catalogue.types[out.type].startsWith("list")) return [...(Array.isArray(before) ? before : []), value];
+  }
+  return value;
+}
+
+/** All inputs that an output fits, or all outputs that fit an input, for lists. */
+export function partners(s, end) {
+  const found = [];
+  if (end.output !== undefined) {
+    for (const name of Object.keys(s.doc.graph.steps)) {
+      for (const port of described(s, name)?.inputs ?? []) {
+        if (!whyNot(s, end.id, end.output, `s:${name}`, port.name)) found.push({ source: end.id, output: end.output, target: `s:${name}`, input: port.name, label: `${name}.${port.name}`, type: s.catalogue.types[port.type], port });
+      }
+    }
+    return found.sort((a, b) => Number(Boolean(b.port.required)) - Number(Boolean(a.port.required)));
+  }
+  for (const name of Object.keys(s.doc.graph.params)) {
+    if (!whyNot(s, `p:${name}`, "value", end.id, end.input)) found.push({ source: `p:${name}`, output: "value", target: end.id, input: end.input, label: name, type: "slider" });
+  }
+  for (const name of Object.keys(s.doc.graph.steps)) {
+    for (const port of described(s, name)?.outputs ?? []) {
+      if (!whyNot(s, `s:${name}`, port.name, end.id, end.input)) found.push({ source: `s:${name}`, output: port.name, target: end.id, input: end.input, label: `${name}.${port.name}`, type: s.catalogue.types[port.type] });
+    }
+  }
+  return found;
+}
+
+/** Nodes for the palette: by name and words, and by what fits the wire that is held. */
+export function searched(s, text, end) {
+  const words = text.toLowerCase().split(/\s+/).filter(Boolean);
+  const found = [];
+  for (const node of Object.values(s.catalogue.nodes)) {
+    const port = end ? fitting(s, node, end) : null;
+    if (end && !port) continue;
+    const name = node.name.replaceAll("_", " ");
+    let score = 0;
+    for (const word of words) {
+      if (name === word || node.name === word) score += 12;
+      else if (name.startsWith(word)) score += 8;
+      else if (name.includes(word) || node.name.includes(word)) score += 5;
+      else if (node.category.includes(word)) score += 3;
+      else if (node.summary.toLowerCase().includes(word)) score += 2;
+      else { score = -1; break; }
+    }
+    if (score >= 0) found.push({ node, port, score: score + (port?.required ? 1 : 0) });
+  }
+  return found.sort((a, b) => b.score - a.score || a.node.category.localeCompare(b.node.category) || a.node.name.localeCompare(b.node.name));
+}
+
+function fitting(s, node, end) {
+  if (end.output !== undefined) {
+    if (end.id.startsWith("p:")) return node.inputs.find((port) => port.field === "number" || port.field === "whole");
+    const out = portOf(described(s, end.id.slice(2))?.outputs, end.output);
+    if (!out) return null;
+    const ports = node.inputs.filter((port) => s.catalogue.fits[out.type].has(port.type));
+    return ports.find((port) => port.required) ?? ports.find((port) => !port.field) ?? null;
+  }
+  const port = portOf(described(s, end.id.slice(2))?.inputs, end.input);
+  return port ? node.outputs.find((out) => s.catalogue.fits[out.type].has(port.type)) : null;
+}
