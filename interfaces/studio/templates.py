@@ -160,6 +160,6 @@ TEMPLATES: Final[Mapping[str, Template]] = {
     ),
     "study": Template(
         "Parameter study", "One roof with 2, 4, 8 and 16 moulds side by side.", _study,
-        ("angles.result",),
+        ("moulds.sphere_mesh", "angles.result"),
     ),
 }  # fmt: skip

@@ -23,6 +23,7 @@ export function shownInputs(node, entry, isOpen) {
   let byHand = 0;
   return node.inputs.filter((port) => {
     if (port.required || port.name in entry.inputs) return true;
+    if (node.writes) return false;
     return Boolean(port.field) && !port.graph_units && byHand++ < 2;
   });
 }
@@ -64,10 +65,86 @@ export function layout(s, ids) {
   }
   for (const { source, target } of wiresOf(s)) graph.setEdge(source, target, {}, `${source} ${target}`);
   dagre.layout(graph);
-  return Object.fromEntries(ids.map((id) => {
-    const { x, y, width, height } = graph.node(id);
-    return [id, [Math.round(x - width / 2), Math.round(y - height / 2)]];
-  }));
+  const boxes = ids.map((id) => ({ id, ...graph.node(id) }));
+  return folded(boxes, wiresOf(s), canvasShape());
+}
+
+/** Height of the canvas for a width of 1. */
+function canvasShape() {
+  const box = document.querySelector(".canvas")?.getBoundingClientRect();
+  return box?.width ? Math.min(2.5, Math.max(0.4, box.height / box.width)) : 1;
+}
+
+const MOST_FOLDED = 5, ROW_GAP = 58;
+
+/** Columns in as many rows as fill the canvas best, like lines of text, where few wires cross the ends. */
+function folded(boxes, wires, shape) {
+  const columns = [];
+  for (const box of [...boxes].sort((a, b) => a.x - b.x)) {
+    const last = columns[columns.length - 1];
+    if (last && Math.abs(last.x - box.x) < 1) last.boxes.push(box);
+    else columns.push({ x: box.x, boxes: [box] });
+  }
+  for (const column of columns) {
+    column.left = Math.min(...column.boxes.map((b) => b.x - b.width / 2));
+    column.right = Math.max(...column.boxes.map((b) => b.x + b.width / 2));
+  }
+  const column = new Map(columns.flatMap((c, k) => c.boxes.map((b) => [b.id, k])));
+  const crossing = columns.map((_, k) => wires.filter((w) => w.source.startsWith("s:") && column.get(w.source) < k && column.get(w.target) >= k).length);
+  let best = null;
+  for (let rows = 1; rows <= Math.min(4, columns.length); rows++) {
+    const ends = cuts(columns, rows, crossing);
+    if (!ends) continue;
+    const lines = withSliders(ends.slice(0, -1).map((from, k) => columns.slice(from, ends[k + 1])), wires);
+    const width = Math.max(...lines.map((l) => l[l.length - 1].right - l[0].left));
+    const heights = lines.map((l) => span(l));
+    const height = heights.reduce((a, b) => a + b[1] - b[0], 0) + ROW_GAP * (rows - 1);
+    const zoom = Math.min(1 / width, shape / height) / (1 + 0.12 * (rows - 1));
+    if (!best || zoom > best.zoom) best = { zoom, lines, heights };
+  }
+  const places = {};
+  let top = 0;
+  best.lines.forEach((line, k) => {
+    const [low, high] = best.heights[k];
+    for (const box of line.flatMap((c) => c.boxes)) places[box.id] = [Math.round(box.x - box.width / 2 - line[0].left), Math.round(box.y - box.height / 2 - low + top)];
+    top += high - low + ROW_GAP;
+  });
+  return places;
+}
+
+/** Rows with sliders that feed later ones alone moved there, before the first column. */
+function withSliders(rows, wires) {
+  const row = new Map(rows.flatMap((line, k) => line.flatMap((c) => c.boxes.map((b) => [b.id, k]))));
+  const fed = (box) => wires.filter((w) => w.source === box.id).map((w) => w.target);
+  const goal = (box) => (box.id.startsWith("p:") && fed(box).length ? Math.min(...fed(box).map((id) => row.get(id))) : row.get(box.id));
+  return rows.map((line, k) => {
+    const kept = line.map((c) => ({ ...c, boxes: c.boxes.filter((b) => goal(b) === k) })).filter((c) => c.boxes.length);
+    const come = rows.flatMap((other, j) => (j < k ? other.flatMap((c) => c.boxes.filter((b) => goal(b) === k)) : []));
+    if (!come.length || !kept.length) return kept;
+    const all = new Map(kept.flatMap((c) => c.boxes.map((b) => [b.id, b])));
+    const right = kept[0].left - 44, moved = [];
+    for (const box of come) {
+      const target = all.get(fed(box)[0]) ?? kept[0].boxes[0];
+      const y = Math.max(target.y - target.height / 2 + box.height / 2, ...moved.map((b) => b.y + b.height + 14));
+      moved.push({ ...box, x: right - box.width / 2, y });
+    }
+    return [{ x: right - SLIDER_WIDTH / 2, left: right - SLIDER_WIDTH, right, boxes: moved }, ...kept];
+  }).filter((line) => line.length);
+}
+
+const span = (line) => [Math.min(...line.flatMap((c) => c.boxes.map((b) => b.y - b.height / 2))), Math.max(...line.flatMap((c) => c.boxes.map((b) => b.y + b.height / 2)))];
+
+/** Where rows of about the same width begin, each where few wires cross; null if there is no such place. */
+function cuts(columns, rows, crossing) {
+  const total = columns[columns.length - 1].right - columns[0].left, ends = [0];
+  for (let row = 1; row < rows; row++) {
+    const ideal = columns[0].left + (total * row) / rows;
+    const places = columns.map((_, k) => k).filter((k) => k > ends[ends.length - 1] && crossing[k] <= MOST_FOLDED);
+    if (!places.length) return null;
+    ends.push(places.reduce((a, b) => (cost(a) <= cost(b) ? a : b)));
+    function cost(k) { return Math.abs(columns[k].left - ideal) + 60 * crossing[k]; }
+  }
+  return [...ends, columns.length];
 }
 
 export function wiresOf(s) {

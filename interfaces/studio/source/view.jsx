@@ -56,8 +56,9 @@ export function ModelView({ data, target }) {
   const [chosen, setChosen] = useState(0);
   const [part, setPart] = useState(-1);
   const [fault, setFault] = useState("");
-  const [hidden, setHidden] = useState({});
   const { head, arrays } = data;
+  // Beams are shown without the panels on them, which are there to be switched on.
+  const [hidden, setHidden] = useState(() => (head.beams.id.length && head.ghost ? { panels: false } : {}));
   useEffect(() => { viewer().then(setParts, (error) => setFault(error.message)); }, []);
   const mode = Math.min(chosen, Math.max(0, head.colors.length - 1));
   const { colors, legend } = useMemo(() => (parts ? colored(parts, head, arrays, mode) : {}), [parts, data, mode]);
