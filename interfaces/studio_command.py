@@ -18,7 +18,9 @@ _FOLDER: Final = click.Path(path_type=Path, file_okay=False, exists=True)
 
 
 @click.command()
-@click.argument("graph_file", metavar="[GRAPH.json]", required=False, type=click.Path(path_type=Path))
+@click.argument(
+    "graph_file", metavar="[GRAPH.json]", required=False, type=click.Path(path_type=Path)
+)
 @click.option(
     "--port", type=click.IntRange(0, 65535), default=PORT, show_default=True,
     help="0 for any that is free; so it is too where this one is taken.",

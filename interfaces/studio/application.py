@@ -23,8 +23,9 @@ from .session import Session
 ROOT: Final = "/studio"
 MOST_BYTES: Final = 32 * 2**20
 _POLICY: Final = (
-    "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; connect-src 'self'; "
-    "img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
+    "connect-src 'self'; img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'none'"
 )
 _ASSETS: Final = {
     "": ("interfaces.studio", "studio.html", "text/html; charset=utf-8"),
@@ -57,7 +58,9 @@ class Reply:
     keeping: str = "no-store"
 
 
-def studio_application(session: Session, limits: Limits, token: str, hops: Application) -> Application:
+def studio_application(
+    session: Session, limits: Limits, token: str, hops: Application
+) -> Application:
     """The application of a server: the studio below ``/studio``, Hops elsewhere.
 
     Parameters
@@ -97,30 +100,35 @@ def studio_application(session: Session, limits: Limits, token: str, hops: Appli
 
 def _reply(session: Session, limits: Limits, token: str, environ: Environ) -> Reply:
     try:
-        _check(environ, limits)
-        method = str(environ.get("REQUEST_METHOD", "GET"))
-        name = str(environ.get("PATH_INFO", "")).removeprefix(ROOT).strip("/")
-        if name in _ASSETS:
-            if method not in ("GET", "HEAD"):
-                raise RefusedError(405, "the page is asked for with GET")
-            return _asset(name)
-        _check_token(environ, token)
-        route = _ROUTES.get(name.partition("/")[0])
-        if route is None:
-            raise RefusedError(404, f"there is no {name[:80]!r} here")
-        wanted, answer = route
-        if method != wanted:
-            raise RefusedError(405, f"{name[:80]} is asked for with {wanted}")
-        return answer(session, environ)
+        return _answer(session, limits, token, environ)
     except RefusedError as error:
         return _json({"error": str(error)}, error.status)
     except StaleError:
-        return _json({"error": "the graph has been changed since", **session.document.content()}, 409)
+        said = {"error": "the graph has been changed since", **session.present()}
+        return _json(said, 409)
     except (GraphError, SpheremeshError, OSError) as error:
         return _json({"error": str(error)}, 422)
     except Exception as error:  # noqa: BLE001 - whatever it is, the page needs JSON
         text = f"{type(error).__name__}: {error}: a fault of spheremesh, report it"
         return _json({"error": text}, 500)
+
+
+def _answer(session: Session, limits: Limits, token: str, environ: Environ) -> Reply:
+    _check(environ, limits)
+    method = str(environ.get("REQUEST_METHOD", "GET"))
+    name = str(environ.get("PATH_INFO", "")).removeprefix(ROOT).strip("/")
+    if name in _ASSETS:
+        if method not in ("GET", "HEAD"):
+            raise RefusedError(405, "the page is asked for with GET")
+        return _asset(name)
+    _check_token(environ, token)
+    route = _ROUTES.get(name.partition("/")[0])
+    if route is None:
+        raise RefusedError(404, f"there is no {name[:80]!r} here")
+    wanted, answer = route
+    if method != wanted:
+        raise RefusedError(405, f"{name[:80]} is asked for with {wanted}")
+    return answer(session, environ)
 
 
 def _check(environ: Environ, limits: Limits) -> None:
@@ -178,10 +186,11 @@ def _word(environ: Environ, name: str) -> str:
 
 def _edit(session: Session, environ: Environ) -> Reply:
     body = _body(environ)
-    operations = body.get("ops")
+    operations = cast("object", body.get("ops"))
     if not isinstance(operations, list) or not isinstance(body.get("rev"), int):
         raise RefusedError(400, "an edit has a revision (rev) and a list of operations (ops)")
-    return _json(session.edit(body["rev"], operations, str(body.get("gesture", ""))))
+    several = cast("list[Any]", operations)
+    return _json(session.edit(body["rev"], several, str(body.get("gesture", ""))))
 
 
 def _events(session: Session, environ: Environ) -> Reply:
@@ -201,7 +210,9 @@ def _blob(session: Session, environ: Environ) -> Reply:
     return Reply(200, data, "application/octet-stream", keeping)
 
 
-def _told(answer: Callable[[Session, Mapping[str, Any]], Any]) -> Callable[[Session, Environ], Reply]:
+def _told(
+    answer: Callable[[Session, Mapping[str, Any]], Any],
+) -> Callable[[Session, Environ], Reply]:
     return lambda session, environ: _json(answer(session, _body(environ)))
 
 

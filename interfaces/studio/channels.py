@@ -1,6 +1,7 @@
 """Events for all pages that are open: each has a queue of its own."""
 
 import json
+import time
 from collections.abc import Callable, Iterator
 from queue import Empty, Full, Queue
 from threading import Lock
@@ -43,12 +44,15 @@ class Channels:
             self._queues.append(queue)
         return self._stream(queue, first, has_gone)
 
-    def close(self) -> None:
-        """End all lines."""
+    def close(self, patience: float = 3.0) -> None:
+        """End all lines, and wait for that a little."""
         with self._lock:
             self._is_closed = True
             for queue in self._queues:
                 queue.put(None)
+        until = time.monotonic() + patience
+        while self._queues and time.monotonic() < until:
+            time.sleep(0.02)
 
     def _stream(
         self, queue: "Queue[str | None]", first: dict[str, Any], has_gone: Callable[[], bool]

@@ -72,7 +72,8 @@ def _sliders(graph: Specification, names: Mapping[tuple[str, str], str]) -> list
         given = [f"{key}={limit!r}" for key, limit in limits.items() if limit is not None]
         value = _value(graph.values[name], names)
         lines.append(
-            f"{names['param', name]} = " + _call("graph.param", [repr(name), value or "None", *given])
+            f"{names['param', name]} = "
+            + _call("graph.param", [repr(name), value or "None", *given])
         )
     return lines
 
@@ -92,25 +93,34 @@ def _step(step: Step, names: Mapping[tuple[str, str], str]) -> str:
 
 def _value(value: Value, names: Mapping[tuple[str, str], str]) -> str:
     """A value as code; empty for what has none."""
-    if isinstance(value, Wire):
-        step = names["step", value.step.name]
-        return step if len(value.step.wires) == 1 else f"{step}.{value.port.name}"
-    if isinstance(value, Param):
-        return names["param", value.name]
+    if isinstance(value, Wire | Param):
+        return _source(value, names)
     if isinstance(value, Each):
         rules = {"match": value.match, "axis": value.axis}
         items = [_value(value.items, names), *(f"{k}={x!r}" for k, x in rules.items() if x)]
         return f"sm.each({', '.join(items)})" if items[0] else ""
+    if isinstance(value, list | tuple):
+        several = [_value(item, names) for item in cast("list[Value]", value)]
+        return f"[{', '.join(several)}]" if all(several) else ""
+    return _literal(value)
+
+
+def _source(value: Wire | Param, names: Mapping[tuple[str, str], str]) -> str:
+    if isinstance(value, Param):
+        return names["param", value.name]
+    step = names["step", value.step.name]
+    return step if len(value.step.wires) == 1 else f"{step}.{value.port.name}"
+
+
+def _literal(value: Value) -> str:
     if isinstance(value, np.ndarray):
         array = cast("np.ndarray[Any, Any]", value)
         short = array.size <= _MOST_NUMBERS and bool(np.isfinite(array).all())
         return f"np.array({array.tolist()!r}, {array.dtype.name!r})" if short else ""
-    if isinstance(value, list | tuple):
-        several = [_value(item, names) for item in cast("list[Value]", value)]
-        return f"[{', '.join(several)}]" if all(several) else ""
     if isinstance(value, float) and not np.isfinite(value):
         return f'float("{value}")'
-    return repr(value) if value is None or isinstance(value, bool | int | float | str | dict) else ""
+    is_plain = value is None or isinstance(value, bool | int | float | str | dict)
+    return repr(cast("object", value)) if is_plain else ""
 
 
 def _call(function: str, arguments: list[str], indent: int = 0) -> str:
@@ -119,7 +129,9 @@ def _call(function: str, arguments: list[str], indent: int = 0) -> str:
     if len(line) + indent <= _LONGEST:
         return line
     space = " " * indent
-    return f"{function}(\n" + "".join(f"{space}    {each},\n" for each in arguments) + f"{space})"
+    return (
+        f"{function}(\n" + "".join(f"{space}    {each},\n" for each in arguments) + f"{space})"
+    )
 
 
 def _ends(graph: Specification) -> list[str]:

@@ -23,7 +23,7 @@ def inside(folder: Path, name: str) -> Path:
         raise RefusedError(403, f"{name[:80]!r} can be no path") from error
     if not name or path == root or not path.is_relative_to(root):
         raise RefusedError(
-            403, f"{name[:80]!r} is outside of the folder of the studio (--files); name a file in it"
+            403, f"{name[:80]!r} is outside of the studio's folder (--files); name a file in it"
         )
     return path
 

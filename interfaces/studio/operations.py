@@ -1,5 +1,6 @@
 """Edits as the page sends them: JSON in, another graph out, or one sentence why not."""
 
+import json
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -74,7 +75,9 @@ def applied(
     for operation in operations:
         kind = operation.get("op")
         if kind not in _OPERATIONS:
-            raise GraphError(f"no operation {str(kind)[:40]!r}; {nearest(str(kind), _OPERATIONS)}")
+            raise GraphError(
+                f"no operation {str(kind)[:40]!r}; {nearest(str(kind), _OPERATIONS)}"
+            )
         try:
             _OPERATIONS[kind](draft, operation)
         except (KeyError, TypeError, AttributeError, IndexError) as error:
@@ -101,7 +104,9 @@ def real_node(step: Step) -> Node | None:
     """The node that a step stands for, finished or not; None if it is not known."""
     if step.node.is_known:
         return step.node
-    return step.node.inner if isinstance(step.node.inner, Node) else REGISTRY.get(step.node.name)
+    return (
+        step.node.inner if isinstance(step.node.inner, Node) else REGISTRY.get(step.node.name)
+    )
 
 
 def _add(draft: Draft, operation: Operation) -> None:
@@ -178,7 +183,9 @@ def _slider(draft: Draft, operation: Operation) -> None:
 
 
 def _limits(limits: Mapping[str, Any]) -> dict[str, Any]:
-    return {key: limits[key] for key in ("min", "max", "choices") if limits.get(key) is not None}
+    return {
+        key: limits[key] for key in ("min", "max", "choices") if limits.get(key) is not None
+    }
 
 
 def _change_slider(draft: Draft, name: str, value: Value, limits: Mapping[str, Any]) -> None:
@@ -257,8 +264,8 @@ def _paste(draft: Draft, operation: Operation) -> None:
     content["version"] = 2
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of steps of other versions
-        text = _text(content)
-        draft.editor = Editor(Graph.from_json(text, unfinished=True).specification)
+        made = Graph.from_json(json.dumps(content), unfinished=True)
+    draft.editor = Editor(made.specification)
     dx, dy = operation.get("by", (0, 0))
     places = cast("Mapping[str, Any]", fragment.get(CANVAS, {}))
     for kind, renamed in (("steps", step_names), ("params", slider_names)):
@@ -271,7 +278,9 @@ _NOTHING: Final = object()
 """In place of a wire that leads nowhere."""
 
 
-def _new_names(entries: Mapping[str, Any], taken: Mapping[str, Any], what: str) -> dict[str, str]:
+def _new_names(
+    entries: Mapping[str, Any], taken: Mapping[str, Any], what: str
+) -> dict[str, str]:
     found: dict[str, str] = {}
     used = dict(taken)
     for old in entries:
@@ -291,26 +300,15 @@ def _renamed(
     if not isinstance(value, dict):
         return value
     tagged = dict(cast("dict[str, Value]", value))
-    if "wire" in tagged:
-        step, dot, port = str(tagged["wire"]).partition(".")
-        if step not in names["step"] and step not in known["step"]:
-            return _NOTHING
-        return {"wire": f"{names['step'].get(step, step)}{dot}{port}"}
-    if "param" in tagged:
-        slider = str(tagged["param"])
-        if slider not in names["param"] and slider not in known["param"]:
-            return _NOTHING
-        return {"param": names["param"].get(slider, slider)}
     if "each" in tagged:
         tagged["each"] = _renamed(tagged["each"], names, known)
         return _NOTHING if tagged["each"] is _NOTHING else tagged
+    for tag, kind in (("wire", "step"), ("param", "param")):
+        if tag in tagged:
+            name, dot, port = str(tagged[tag]).partition(".")
+            is_there = name in names[kind] or name in known[kind]
+            return {tag: f"{names[kind].get(name, name)}{dot}{port}"} if is_there else _NOTHING
     return tagged
-
-
-def _text(content: Mapping[str, Any]) -> str:
-    import json
-
-    return json.dumps(content)
 
 
 _OPERATIONS: Final[dict[str, Callable[[Draft, Operation], None]]] = {

@@ -1,4 +1,4 @@
-"""What is shown of a value: a picture, a table, a histogram, or a text, as bytes of the page."""
+"""What is shown of a value: a picture, a table, a histogram or a text, as bytes."""
 
 import json
 from collections.abc import Callable, Mapping, Sequence
@@ -87,7 +87,9 @@ def preview_node(port: Port, n_carriers: int) -> Node:
     version = f"{port.name} {port.unit} {_origin()}"
     result = Port("result", type=np.ndarray)
     # A function of this place has a module whose code the store knows.
-    return Node("preview", _preview, version, "", "", "", inputs, {"result": result}, np.ndarray)
+    return Node(
+        "preview", _preview, version, "", "", "", inputs, {"result": result}, np.ndarray
+    )
 
 
 def _origin() -> str:
@@ -144,7 +146,7 @@ def _annuli(value: Annuli, carriers: Carriers) -> Scene:
 
 
 def _arcs(value: Arcs, carriers: Carriers) -> Scene:
-    points = arc_points(value, 8)
+    points = arc_points(value, np.linspace(-1, 1, 9))
     starts, ends = points[:, :-1].reshape(-1, 3), points[:, 1:].reshape(-1, 3)
     return _lines(starts, ends, carriers, f"{len(points):,} arcs")
 
@@ -177,9 +179,7 @@ def _array(array: NDArray[Any], carriers: Carriers, name: str, unit: str) -> byt
     return _numbers(array, name, unit)
 
 
-def _array_scene(
-    array: NDArray[Any], carriers: Carriers, name: str, unit: str
-) -> Scene | None:
+def _array_scene(array: NDArray[Any], carriers: Carriers, name: str, unit: str) -> Scene | None:
     words = f"{len(array):,} {name.replace('_', ' ')}" if array.ndim else name
     if array.ndim == 3 and array.shape[1:] == (2, 3) and len(array):
         return _lines(array[:, 0], array[:, 1], carriers, words)
@@ -224,7 +224,9 @@ def _numbers(array: NDArray[Any], name: str, unit: str) -> bytes:
         "rows": plain(array[:MOST_ROWS]) if array.ndim else [plain(array)],
     }  # fmt: skip
     if flat.dtype.kind not in "biuf":
-        return pack_arrays({**head, "kind": "text", "text": "\n".join(map(str, flat[:MOST_ROWS]))}, {})
+        return pack_arrays(
+            {**head, "kind": "text", "text": "\n".join(map(str, flat[:MOST_ROWS]))}, {}
+        )
     finite = flat[np.isfinite(flat)].astype(float)
     return pack_arrays(head, {"values": finite[:200_000]})
 

@@ -206,7 +206,9 @@ class Runs:
         for step, known in self._states.items():
             if known.get("state") in ("running", "progress", "queued"):
                 known["state"] = "cancelled"
-                self._tell({**_about(order), "type": "step", "step": step, "state": "cancelled"})
+                self._tell(
+                    {**_about(order), "type": "step", "step": step, "state": "cancelled"}
+                )
         self._tell({**_about(order), **(told or {}), "type": "run", "state": state})
         following, self._next = self._next, None
         if following is not None:

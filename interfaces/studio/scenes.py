@@ -260,7 +260,9 @@ def beams_scene(beams: Beams, panels: Panels | None, words: str) -> Scene:
     )  # fmt: skip
 
 
-def lines_scene(starts: FloatArray, ends: FloatArray, polygons: Polygons | None, words: str) -> Scene:
+def lines_scene(
+    starts: FloatArray, ends: FloatArray, polygons: Polygons | None, words: str
+) -> Scene:
     """Straight lines as thin rods, over a pale mesh if there is one."""
     lengths = norm(ends - starts)
     size = float(np.ptp(np.concatenate([starts, ends]), axis=0).max()) or 1.0
@@ -295,7 +297,10 @@ def mesh_scene(mesh: Mesh | SphereMesh, words: str, colors: Sequence[Colors] = (
 def vertex_scene(mesh: Mesh, colors: Colors, words: str) -> Scene:
     """Values of vertices: each corner of a face has the colour of its vertex."""
     topology = mesh.topology
-    starts, ends = mesh.vertices[mesh.corners], mesh.vertices[mesh.corners[topology.next_corners]]
+    starts, ends = (
+        mesh.vertices[mesh.corners],
+        mesh.vertices[mesh.corners[topology.next_corners]],
+    )
     middles = (starts + ends) / 2
     before = np.empty_like(topology.next_corners)
     before[topology.next_corners] = np.arange(len(before))
@@ -309,7 +314,10 @@ def vertex_scene(mesh: Mesh, colors: Colors, words: str) -> Scene:
 def edge_scene(mesh: Mesh, colors: Colors, words: str) -> Scene:
     """Values of interior edges: the triangles beside an edge have its colour."""
     topology = mesh.topology
-    starts, ends = mesh.vertices[mesh.corners], mesh.vertices[mesh.corners[topology.next_corners]]
+    starts, ends = (
+        mesh.vertices[mesh.corners],
+        mesh.vertices[mesh.corners[topology.next_corners]],
+    )
     edges = np.full(len(starts), -1)
     ids: IntArray = np.arange(len(topology.edge_corners))
     edges[topology.edge_corners] = ids
@@ -317,14 +325,16 @@ def edge_scene(mesh: Mesh, colors: Colors, words: str) -> Scene:
     triangles = np.stack([starts, ends, face_centroids(mesh)[topology.corner_faces]], axis=1)
     known = np.append(colors.values.astype(float), np.nan)
     names = [f"edge {i}" if i >= 0 else "boundary" for i in edges.tolist()]
-    return _pieces(mesh, triangles, Colors(colors.name, known[edges], colors.unit), names, words)
+    return _pieces(
+        mesh, triangles, Colors(colors.name, known[edges], colors.unit), names, words
+    )
 
 
 def _pieces(
     mesh: Mesh, corners: FloatArray, colors: Colors, ids: Sequence[str], words: str
 ) -> Scene:
     """Pieces (H, n, 3) of the faces of a mesh, one for each corner."""
-    count, degree = corners.shape[:2]
+    count, degree = len(corners), int(corners.shape[1])
     offsets: IntArray = np.arange(count + 1) * degree
     outwards = face_normals(mesh)[mesh.topology.corner_faces]
     polygons = Polygons(
@@ -348,17 +358,27 @@ def row_scene(meshes: Sequence[Mesh | SphereMesh], words: str) -> Scene:
     starts = [float(each.points[:, 0].min()) for each in polygons]
     shifts = np.cumsum([0.0, *widths[:-1]]) * 1.12 - np.array(starts)
     moves = [np.array([shift, 0.0, 0.0]) for shift in shifts.tolist()]
+    moved = list(zip(polygons, moves, strict=True))
     counts = np.cumsum([0, *(len(each.points) for each in polygons)]).tolist()
+    offsets: IntArray = np.concatenate(
+        [[0], *(each.offsets[1:] + n for each, n in zip(polygons, counts, strict=False))]
+    )
+    curvatures: FloatArray = np.concatenate([each.curvatures for each in polygons])
     joined = Polygons(
-        np.concatenate([each.points + move for each, move in zip(polygons, moves, strict=True)]),
-        np.concatenate([
-            [0], *(each.offsets[1:] + n for each, n in zip(polygons, counts, strict=False)),
-        ]),
-        np.concatenate([each.middles + move for each, move in zip(polygons, moves, strict=True)]),
+        np.concatenate([each.points + move for each, move in moved]),
+        offsets,
+        np.concatenate([each.middles + move for each, move in moved]),
         np.concatenate([each.normals for each in polygons]),
-        np.concatenate([each.curvatures for each in polygons]),
-    )  # fmt: skip
-    ids = [f"{k + 1}: P{i:04d}" for k, each in enumerate(polygons) for i in range(len(each.middles))]
+        curvatures,
+    )
+    ids = [
+        f"{k + 1}: P{i:04d}"
+        for k, each in enumerate(polygons)
+        for i in range(len(each.middles))
+    ]
     return Scene(
-        polygons=joined, colors=[Colors("Curvature", 2 * joined.curvatures)], ids=ids, words=words
+        polygons=joined,
+        colors=[Colors("Curvature", 2 * curvatures)],
+        ids=ids,
+        words=words,
     )

@@ -56,7 +56,7 @@ class Session:
         }
 
     def _facts(self) -> dict[str, Any]:
-        """What the graph file does not say of steps: what is unfinished, and ports of others."""
+        """What the file does not say of steps: what is unfinished, and ports of others."""
         found: dict[str, Any] = {}
         for name, step in self.document.specification.steps.items():
             facts: dict[str, Any] = {}
@@ -81,19 +81,20 @@ class Session:
         self._check_files(operations)
         self._name_file()
         self.document.edit(rev, operations, gesture)
-        return self._answer()
+        return self.present()
 
     def undo(self) -> dict[str, Any]:
         """Take back the last edit."""
         self.document.undo()
-        return self._answer()
+        return self.present()
 
     def redo(self) -> dict[str, Any]:
         """Do again what was taken back."""
         self.document.redo()
-        return self._answer()
+        return self.present()
 
-    def _answer(self) -> dict[str, Any]:
+    def present(self) -> dict[str, Any]:
+        """The graph as it is, for a page that knows the rest."""
         return {**self.document.content(), "facts": self._facts()}
 
     def run(self, targets: list[str]) -> dict[str, Any]:
@@ -140,7 +141,9 @@ class Session:
             name = file if file.endswith(".json") else f"{file}.json"
             path = inside(self.folder, name)
             if path.exists() and path != self.document.path:
-                raise RefusedError(409, f"there is a file {name!r} already; choose another name")
+                raise RefusedError(
+                    409, f"there is a file {name!r} already; choose another name"
+                )
             self.document.path = path
         self._name_file()
         self.document.save()

@@ -90,9 +90,7 @@ def _beams() -> Graph:
 def _hexagons() -> Graph:
     graph = Graph("Hexagons")
     length = graph.param("edge_length", 0.35, min=0.15, max=1)
-    surface = graph.add(
-        "triangulated_surface", "surface", shape="ellipsoid", edge_length=0.12
-    )
+    surface = graph.add("triangulated_surface", "surface", shape="ellipsoid", edge_length=0.12)
     net = graph.add(
         "hexagon_pattern", "hexagons", mesh=surface.mesh, edge_length=length, boundary="drop"
     )

@@ -145,7 +145,9 @@ def _show(graph: Graph, order: Told, context: Context) -> str:
             reason = error.reason if isinstance(error, NodeError) else str(error)
             if step.startswith(PREVIEW):
                 step, reason = target.partition(".")[0], f"cannot be shown: {reason}"
-            context.tell(_said(order, {"type": "fault", "target": target, "step": step, "text": reason}))
+            context.tell(
+                _said(order, {"type": "fault", "target": target, "step": step, "text": reason})
+            )
     return state
 
 
@@ -180,7 +182,9 @@ def _show_one(graph: Graph, target: str, order: Told, context: Context) -> None:
         context.tell(_said(order, {"type": "messages", "messages": said}))
     data = array.tobytes()
     digest = xxhash.xxh3_128_hexdigest(data)
-    context.tell(_said(order, {"type": "preview", "target": target, "digest": digest, "data": data}))
+    context.tell(
+        _said(order, {"type": "preview", "target": target, "digest": digest, "data": data})
+    )
 
 
 def _event(event: Event) -> Told:
@@ -212,7 +216,9 @@ def _carriers(graph: Graph, wire: Wire) -> list[Wire]:
     while pending and len(found) < MOST_CARRIERS:
         step = graph.steps[pending.pop(0)]
         if not step.is_mapped:
-            found += [w for w in step.wires if has_kind(w.type, kinds) and w.port is not wire.port]
+            found += [
+                w for w in step.wires if has_kind(w.type, kinds) and w.port is not wire.port
+            ]
         fresh = [name for name in step.parents if name not in seen]
         seen.update(fresh)
         pending += fresh

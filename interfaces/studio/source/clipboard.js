@@ -1,7 +1,7 @@
 // Steps and sliders as text: copied from one graph, pasted into another.
 
 import { edit, now, toast } from "./store.js";
-import { placesOf } from "./graph.js";
+import { anchored, placesOf } from "./graph.js";
 
 const FORMAT = "spheremesh fragment";
 let last = "";
@@ -51,5 +51,5 @@ export function paste(fragment, middle) {
   if (!Object.keys(fragment.steps ?? {}).length && !Object.keys(fragment.params ?? {}).length) { toast("there is nothing to paste"); return; }
   const mean = [0, 1].map((k) => at.reduce((sum, place) => sum + place[k], 0) / (at.length || 1));
   const by = middle ? [Math.round(middle.x - mean[0] - 100), Math.round(middle.y - mean[1] - 40)] : [40, 40];
-  return edit([{ op: "paste", graph: fragment, by }]);
+  return edit(anchored(now(), [{ op: "paste", graph: fragment, by }]));
 }

@@ -36,23 +36,37 @@ export function sizeOf(s, id) {
   return [STEP_WIDTH, HEAD + ROW * (inputs + (node?.outputs.length ?? 1)) + 22];
 }
 
-/** Where steps and sliders lie: as the file says, else laid out by dagre from left to right. */
+let kept = { opening: -1, places: {} };
+
+/** Where steps and sliders lie: as the file says, else laid out by dagre, and then they stay. */
 export function placesOf(s) {
-  const { graph } = s.doc, canvas = graph.canvas ?? {};
-  const places = {};
-  for (const name of Object.keys(graph.steps)) if (canvas.steps?.[name]) places[`s:${name}`] = canvas.steps[name];
-  for (const name of Object.keys(graph.params)) if (canvas.params?.[name]) places[`p:${name}`] = canvas.params[name];
+  if (kept.opening !== s.opening) kept = { opening: s.opening, places: {} };
+  const { graph } = s.doc, canvas = graph.canvas ?? {}, places = {};
   const ids = [...Object.keys(graph.params).map((n) => `p:${n}`), ...Object.keys(graph.steps).map((n) => `s:${n}`)];
+  for (const id of ids) {
+    const place = (id.startsWith("s:") ? canvas.steps : canvas.params)?.[id.slice(2)] ?? kept.places[id];
+    if (place) places[id] = place;
+  }
   const missing = ids.filter((id) => !(id in places));
-  if (!missing.length) return places;
-  const laid = layout(s, ids);
-  if (missing.length === ids.length) return laid;
-  // Newcomers stand below what is there, as they lie to each other.
-  const known = Object.values(places);
-  const left = Math.min(...known.map((p) => p[0])), low = Math.max(...known.map((p) => p[1])) + 240;
-  const x = Math.min(...missing.map((id) => laid[id][0])), y = Math.min(...missing.map((id) => laid[id][1]));
-  for (const id of missing) places[id] = [laid[id][0] - x + left, laid[id][1] - y + low];
+  if (missing.length) {
+    const laid = layout(s, ids), known = Object.values(places);
+    // Newcomers stand below what is there, as they lie to each other.
+    const [x, y] = [0, 1].map((k) => Math.min(...missing.map((id) => laid[id][k])));
+    const left = known.length ? Math.min(...known.map((p) => p[0])) : x;
+    const low = known.length ? Math.max(...Object.keys(places).map((id) => places[id][1] + sizeOf(s, id)[1])) + 40 : y;
+    for (const id of missing) places[id] = [laid[id][0] - x + left, laid[id][1] - y + low];
+  }
+  kept.places = places;
   return places;
+}
+
+/** Operations that place something, with the places of all others before: what was laid out stays so. */
+export function anchored(s, ops) {
+  const { canvas } = s.doc.graph;
+  if (canvas?.steps || canvas?.params) return ops;
+  const steps = {}, params = {};
+  for (const [id, at] of Object.entries(placesOf(s))) (id.startsWith("s:") ? steps : params)[id.slice(2)] = at;
+  return Object.keys(steps).length || Object.keys(params).length ? [{ op: "move", steps, params }, ...ops] : ops;
 }
 
 export function layout(s, ids) {

@@ -1,7 +1,7 @@
 // Lists to choose from: nodes to add, and ends to connect to.
 
 import { useEffect, useMemo, useRef, useState } from "react";
-import { given, partners, searched, sources } from "./graph.js";
+import { anchored, given, partners, placesOf, searched, sources } from "./graph.js";
 import { described, edit, familyOf, now, set, useStudio } from "./store.js";
 
 /** A list under a search field: arrows choose, Enter takes. */
@@ -51,7 +51,7 @@ export function Palette({ at, end }) {
       ops.push({ op: "give", step: end.id.slice(2), port: end.input, value: { wire: `${name}.${port.name}` } });
     }
     set({ dialog: null });
-    edit(ops).then((ok) => {
+    edit(anchored(s, ops)).then((ok) => {
       if (!ok) return;
       set({ selected: [`s:${name}`] });
       setTimeout(() => document.querySelector(`.react-flow__node[data-id="s:${name}"]`)?.focus({ preventScroll: true }), 60);
@@ -61,7 +61,7 @@ export function Palette({ at, end }) {
     set({ dialog: null });
     let name = "slider", number = 2;
     while (name in now().doc.graph.params) name = `slider_${number++}`;
-    edit([{ op: "slider", name, value: 1, limits: { min: 0, max: 10 }, at: [Math.round(at.x), Math.round(at.y)] }]);
+    edit(anchored(now(), [{ op: "slider", name, value: 1, limits: { min: 0, max: 10 }, at: [Math.round(at.x), Math.round(at.y)] }]));
   };
   const type = end && (end.output !== undefined ? (end.id.startsWith("p:") ? "a slider" : `${end.id.slice(2)}.${end.output}`) : `${end.id.slice(2)}.${end.input}`);
   return (
@@ -122,8 +122,8 @@ function newSlider(step, port) {
   while (name in s.doc.graph.params) name = `${port.name}_${number++}`;
   const present = entry.inputs[port.name] ?? port.default ?? port.min ?? 1, value = typeof present === "number" ? present : port.min ?? 1;
   const min = port.min ?? (value < 0 ? 2 * value : 0), max = port.max ?? Math.max(2 * Math.abs(value), min + (port.field === "whole" ? 20 : 1));
-  const at = s.doc.graph.canvas?.steps?.[step];
-  edit([{ op: "slider", name, value, limits: { min, max }, feeds: [[step, port.name]], ...(at ? { at: [at[0] - 240, at[1]] } : {}) }]);
+  const [x, y] = placesOf(s)[`s:${step}`];
+  edit(anchored(s, [{ op: "slider", name, value, limits: { min, max }, feeds: [[step, port.name]], at: [x - 230, y] }]));
 }
 
 /** Which end of a step is meant. */

@@ -6,7 +6,7 @@ import { get, listen, post, Refusal } from "./api.js";
 let state = {
   ready: false, online: true, fatal: "", catalogue: null, doc: null, steps: {}, previews: {}, running: 0,
   runText: "", lastRun: null, shown: "", selected: [], expanded: {}, dialog: null, toast: null, refusal: "",
-  fit: 0, linked: true, templates: [], versions: [], folder: "", exported: null,
+  fit: 0, opening: 0, linked: true, templates: [], versions: [], folder: "", exported: null,
 };
 const listeners = new Set();
 
@@ -76,7 +76,7 @@ export async function load() {
 
 function opened(content) {
   // Nobody is told of what is half open.
-  state = { ...state, doc: null, steps: content.runs.steps, previews: content.runs.previews, running: content.runs.running,
+  state = { ...state, doc: null, opening: state.opening + 1, steps: content.runs.steps, previews: content.runs.previews, running: content.runs.running,
     templates: content.templates, versions: content.versions, folder: content.folder, selected: [], shown: "", expanded: {} };
   take(content);
   const pins = pinsOf(content.graph);

@@ -44,11 +44,13 @@ class Studio:
 
     @property
     def address(self) -> str:
+        """Of the page, with its token."""
         return f"http://127.0.0.1:{self.port}/studio#{TOKEN}"
 
     def ask(
         self, method: str, path: str, body: Value = None, **headers: str
     ) -> tuple[int, Value]:
+        """Status and content of an answer."""
         line = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
         sent = {"Authorization": f"Bearer {TOKEN}", "Content-Type": "application/json"}
         sent |= {name.replace("_", "-"): text for name, text in headers.items()}
@@ -61,6 +63,7 @@ class Studio:
         return answer.status, json.loads(content) if is_json else content
 
     def edit(self, *operations: Value, gesture: str = "") -> tuple[int, Value]:
+        """Change the present graph."""
         rev = self.session.document.rev
         body = {"rev": rev, "ops": operations, "gesture": gesture}
         return self.ask("POST", "/studio/edit", body)
@@ -80,11 +83,14 @@ class Studio:
         return self.ended(said["run"])
 
     def ended(self, run: int, seconds: float = 60.0) -> dict[str, Value]:
+        """The event that ends a run."""
         return self.event(
-            lambda e: e["type"] == "run" and e["run"] == run and e["state"] != "running", seconds
+            lambda e: e["type"] == "run" and e["run"] == run and e["state"] != "running",
+            seconds,
         )
 
     def event(self, is_meant: Value, seconds: float = 60.0) -> dict[str, Value]:
+        """The first event that is meant, once it has come."""
         until = time.monotonic() + seconds
         while time.monotonic() < until:
             found = next(filter(is_meant, list(self.heard)), None)
@@ -123,6 +129,7 @@ def studio(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
     session.runs._tell = told
     yield found
     session.close()
+    time.sleep(0.1)  # what was being sent is
     server.close()
 
 

@@ -1,7 +1,6 @@
 """The studio in a browser: the system's Chromium, drawing in software."""
 
 import json
-import os
 import time
 from collections.abc import Iterator
 from typing import Any
@@ -21,6 +20,7 @@ Browser = Any
 def shared(browser: Browser, studio: Studio) -> Iterator[Page]:
     """One page for all tests; whatever it says or asks for elsewhere is an error."""
     page = browser.new_page(viewport=SIZE)
+    page.set_default_timeout(40_000)
     heard: list[str] = []
     page.on("console", lambda m: None if _is_usual(m.text) else heard.append(m.text))
     page.on("pageerror", lambda error: heard.append(str(error)))
@@ -51,12 +51,18 @@ def opened(page: Page, studio: Studio) -> None:
     page.goto(studio.address)
     page.wait_for_selector("html[data-ready]", state="attached", timeout=30_000)
     count = len(studio.session.document.specification.steps)
-    page.wait_for_function(f"document.querySelectorAll('.step').length === {count}")
+    until(page, f"document.querySelectorAll('.step').length === {count}")
 
 
 def settled(page: Page) -> None:
-    """The page and the server agree, and nothing waits."""
-    page.wait_for_function("!window.studio.now().running")
+    """The last result is shown, and nothing runs."""
+    until(page, "Boolean(document.querySelector('.tile')?.dataset.digest)")
+    until(page, "!window.studio.now().running")
+
+
+def until(page: Page, expression: str) -> None:
+    """Wait for something to be true on the page, whose policy forbids to do so there."""
+    soon(lambda: page.evaluate(expression))
 
 
 def graph(studio: Studio) -> dict[str, Any]:
@@ -64,7 +70,9 @@ def graph(studio: Studio) -> dict[str, Any]:
 
 
 def port(page: Page, step: str, name: str) -> tuple[float, float]:
-    box = page.locator(f'.react-flow__node[data-id="{step}"] [data-handleid="{name}"]').bounding_box()
+    box = page.locator(
+        f'.react-flow__node[data-id="{step}"] [data-handleid="{name}"]'
+    ).bounding_box()
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
 
@@ -75,7 +83,7 @@ def drag(page: Page, start: tuple[float, float], end: tuple[float, float]) -> No
     page.mouse.move(*end, steps=4)
 
 
-def soon(check: Any, seconds: float = 10.0) -> None:  # noqa: ANN401
+def soon(check: Any, seconds: float = 40.0) -> None:  # noqa: ANN401
     until = time.monotonic() + seconds
     while not check() and time.monotonic() < until:
         time.sleep(0.02)
@@ -84,7 +92,7 @@ def soon(check: Any, seconds: float = 10.0) -> None:  # noqa: ANN401
 
 def test_a_graph_opens_laid_out_with_its_last_result_beside(page: Page, studio: Studio) -> None:
     page.wait_for_selector(".tile[data-target='panels.panels'] .model canvas")
-    page.wait_for_function("window.studioDrawn > 0")
+    until(page, "window.studioDrawn > 0")
     assert "50 panels" in page.inner_text(".words")
     assert page.locator(".react-flow__edge").count() == 5
     boxes = [each.bounding_box() for each in page.locator(".step").all()]
@@ -97,13 +105,15 @@ def test_a_wire_is_drawn_and_a_wrong_one_refused_with_its_reason(
 ) -> None:
     drag(page, port(page, "s:mesh", "result"), port(page, "s:panels", "labels"))
     page.wait_for_selector("#refusal")
-    assert "mesh.result is Mesh; panels.labels takes labels of faces" in page.inner_text("#refusal")
+    assert "mesh.result is Mesh; panels.labels takes labels of faces" in page.inner_text(
+        "#refusal"
+    )
     page.mouse.up()
     assert graph(studio)["steps"]["panels"]["inputs"]["labels"] == {"wire": "few.labels"}
     drag(page, port(page, "s:fit", "result"), port(page, "s:panels", "sphere_mesh"))
     page.mouse.up()
     soon(lambda: graph(studio)["steps"]["panels"]["inputs"]["sphere_mesh"] == {"wire": "fit"})
-    drag(page, port(page, "s:panels", "panels"), port(page, "s:fit", "mesh"))
+    drag(page, port(page, "s:few", "labels"), port(page, "s:fit", "mesh"))
     page.wait_for_selector("#refusal")
     assert "that would be a circle" in page.inner_text("#refusal")
     page.mouse.up()
@@ -121,11 +131,11 @@ def test_a_slider_runs_what_depends_on_it_and_undo_gives_the_same_bytes(
     for _ in range(3):
         page.keyboard.press("ArrowRight")
     soon(lambda: graph(studio)["params"]["moulds"]["value"] == 6)
-    page.wait_for_function(f"document.querySelector('.tile').dataset.digest !== '{drawn}'")
+    until(page, f"document.querySelector('.tile').dataset.digest !== '{drawn}'")
     settled(page)
     assert set(studio.made()) <= {"few", "panels"}
     assert "few" in studio.made()
-    page.wait_for_function("document.querySelector('.words').innerText.includes('6 moulds')")
+    until(page, "document.querySelector('.words').innerText.includes('6 moulds')")
     page.locator(".canvas").press("Escape")
     while studio.session.document.content()["undo"]:
         rev = studio.session.document.rev
@@ -162,7 +172,7 @@ def test_steps_are_searched_by_name_and_by_what_fits_a_wire(page: Page, studio: 
 def test_steps_are_copied_grouped_and_said_something_of(page: Page, studio: Studio) -> None:
     page.click(".step[data-step=fit] header")
     page.click(".step[data-step=few] header", modifiers=["Shift"])
-    page.wait_for_function("window.studio.now().selected.length === 2")
+    until(page, "window.studio.now().selected.length === 2")
     page.keyboard.press("g")
     soon(lambda: graph(studio).get("groups") == {"Group 1": ["fit", "few"]})
     page.wait_for_selector(".grouptitle")
@@ -186,13 +196,14 @@ def test_keys_do_all_that_the_mouse_does(page: Page, studio: Studio) -> None:
     page.keyboard.press("a")
     page.keyboard.type("planarity")
     page.keyboard.press("Enter")
-    page.wait_for_function(
-        "document.activeElement?.closest('.react-flow__node')?.dataset.id === 's:planarity'"
+    until(
+        page,
+        "document.activeElement?.closest('.react-flow__node')?.dataset.id === 's:planarity'",
     )
     page.keyboard.press("c")
     page.keyboard.type("sphere")
     page.keyboard.press("Enter")
-    page.wait_for_function("document.querySelector('[role=dialog] h2').innerText.includes('from')")
+    until(page, "document.querySelector('[role=dialog] h2').innerText.includes('from')")
     page.keyboard.type("few")
     page.keyboard.press("Enter")
     wired = {"sphere_mesh": {"wire": "few.sphere_mesh"}}
@@ -220,7 +231,12 @@ def test_a_step_that_fails_says_so_and_an_unknown_node_is_kept(
     page: Page, studio: Studio, vase: Graph
 ) -> None:
     text = json.loads(vase.to_json())
-    text["steps"]["odd"] = {"node": "gone_node", "version": "7", "inputs": {"x": 1.5}, "note": 1}
+    text["steps"]["odd"] = {
+        "node": "gone_node",
+        "version": "7",
+        "inputs": {"x": 1.5},
+        "note": 1,
+    }
     text["steps"]["read"] = {"node": "read_mesh", "version": "1", "inputs": {"path": "no.obj"}}
     path = studio.folder / "odd.json"
     path.write_text(json.dumps(text))
@@ -243,10 +259,10 @@ def test_two_pages_agree_and_a_reload_keeps_everything(
     opened(other, studio)
     page.focus('[aria-label="moulds, slider"]')
     page.keyboard.press("ArrowRight")
-    other.wait_for_function("window.studio.now().doc.graph.params.moulds.value === 4")
+    until(other, "window.studio.now().doc.graph.params.moulds.value === 4")
     other.evaluate("document.activeElement.blur()")
     other.keyboard.press("Control+z")
-    page.wait_for_function("window.studio.now().doc.graph.params.moulds.value === 3")
+    until(page, "window.studio.now().doc.graph.params.moulds.value === 3")
     other.close()
     page.click(".tile .pin")
     page.click(".step[data-step=fit] .eye")
@@ -270,6 +286,7 @@ def test_fingers_on_a_phone_wire_slide_and_add(
         viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True
     )
     page = phone.new_page()
+    page.set_default_timeout(40_000)
     opened(page, studio)
     assert page.evaluate("document.documentElement.scrollWidth") == 390
     top, low = (page.locator(name).bounding_box() for name in (".preview", ".canvas"))
@@ -281,7 +298,7 @@ def test_fingers_on_a_phone_wire_slide_and_add(
     page.tap("[role=option] >> nth=0")
     soon(lambda: "circularity" in graph(studio)["steps"])
     page.wait_for_selector(".step[data-step=circularity]")
-    page.evaluate("window.studioTest = document.querySelector('.step[data-step=circularity] .row.in .label').click()")
+    page.tap(".step[data-step=circularity] .row.in .label")
     page.tap("[role=option] >> nth=0")
     soon(lambda: graph(studio)["steps"]["circularity"]["inputs"] != {})
     page.locator('[aria-label="moulds, slider"]').fill("5")
@@ -292,16 +309,18 @@ def test_fingers_on_a_phone_wire_slide_and_add(
 def test_a_graph_of_200_steps_is_dragged_without_long_frames(
     page: Page, studio: Studio
 ) -> None:
-    """What scripts and layout take of a frame; how long this machine lets us wait is not ours."""
+    """What a frame takes of the processor; how long others keep it busy is not ours."""
     big = Graph("Big")
     for chain in range(20):
         step = big.add("vase_mesh", f"mesh_{chain}")
         step = big.add("fit_spheres", f"fit_{chain}", mesh=step)
         for k in range(8):
-            step = big.add("cluster_radii", f"few_{chain}_{k}", sphere_mesh=step, k=3).sphere_mesh
+            step = big.add(
+                "cluster_radii", f"few_{chain}_{k}", sphere_mesh=step, k=3
+            ).sphere_mesh
     studio.open(big)
     opened(page, studio)
-    page.wait_for_function("document.querySelector('.canvas').dataset.nodes === '200'")
+    until(page, "document.querySelector('.canvas').dataset.nodes === '200'")
     client = page.context.new_cdp_session(page)
     client.send("Performance.enable", {"timeDomain": "threadTicks"})
 
@@ -328,6 +347,4 @@ def test_a_graph_of_200_steps_is_dragged_without_long_frames(
         page.evaluate("new Promise(requestAnimationFrame)")
         costs.append(busy() - before)
     page.mouse.up()
-    if "SHOW_FRAMES" in os.environ:
-        print(sorted(round(cost, 1) for cost in costs))
     assert sorted(costs)[-3] < 100
