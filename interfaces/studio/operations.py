@@ -80,7 +80,9 @@ def applied(
             )
         try:
             _OPERATIONS[kind](draft, operation)
-        except (KeyError, TypeError, AttributeError, IndexError) as error:
+        except GraphError:
+            raise
+        except (LookupError, TypeError, ValueError, AttributeError) as error:
             raise GraphError(f"operation {kind!r} misses or mistakes {error}") from error
     if draft.canvas == _copied(before.extra.get(CANVAS)):
         return draft.now
@@ -92,12 +94,11 @@ def applied(
 def _copied(canvas: object) -> dict[str, Any]:
     """The entry of a file, as far as it is one of ours."""
     found = cast("dict[str, Any]", canvas) if isinstance(canvas, dict) else {}
-    places = {
-        name: dict(cast("dict[str, Any]", found[name]))
-        for name in ("steps", "params")
-        if isinstance(found.get(name), dict)
-    }
-    return {"steps": {}, "params": {}, **found, **places}
+    return {**found, **{kind: _places(found.get(kind)) for kind in ("steps", "params")}}
+
+
+def _places(places: object) -> dict[str, Any]:
+    return dict(cast("dict[str, Any]", places)) if isinstance(places, dict) else {}
 
 
 def real_node(step: Step) -> Node | None:

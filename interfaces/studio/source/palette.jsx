@@ -54,7 +54,7 @@ export function Palette({ at, end }) {
     edit(anchored(s, ops)).then((ok) => {
       if (!ok) return;
       set({ selected: [`s:${name}`] });
-      setTimeout(() => document.querySelector(`.react-flow__node[data-id="s:${name}"]`)?.focus({ preventScroll: true }), 60);
+      focusStep(name);
     });
   };
   const slider = () => {
@@ -79,6 +79,13 @@ export function Palette({ at, end }) {
       </Chooser>
     </>
   );
+}
+
+/** The focus on a step, as soon as it stands on the canvas. */
+function focusStep(name, tries = 60) {
+  const node = document.querySelector(`.react-flow__node[data-id="s:${name}"]`);
+  if (node && getComputedStyle(node).visibility === "visible") node.focus({ preventScroll: true });
+  else if (tries) requestAnimationFrame(() => focusStep(name, tries - 1));
 }
 
 /** "Connect to …": every end that fits, for keys and for fingers; what is wired can be cut. */

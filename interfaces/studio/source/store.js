@@ -170,7 +170,7 @@ export function show(output) {
   runSoon();
 }
 
-let timer = 0, lastAsked = "";
+let timer = 0, lastAsked = "", ended = 0;
 export function runSoon(force = false) {
   if (force) lastAsked = "";
   clearTimeout(timer);
@@ -185,7 +185,8 @@ async function run() {
   lastAsked = key;
   try {
     const { run: number } = await post("run", { targets });
-    if (number > state.running) set({ running: number });
+    // Its end may have been heard before this answer.
+    if (number > Math.max(state.running, ended)) set({ running: number });
   } catch (error) {
     toast(error.message);
   }
@@ -219,7 +220,8 @@ function takeHeard() {
     } else if (event.type === "preview") previews = { ...previews, [event.target]: event };
     else if (event.type === "run") {
       if (event.state === "running") { running = Math.max(running, event.run); runText = "running"; }
-      else if (event.run === running || event.run > running) { running = 0; runText = event.state === "failed" ? event.text : ""; lastRun = event; }
+      else ended = Math.max(ended, event.run);
+      if (event.state !== "running" && event.run >= running) { running = 0; runText = event.state === "failed" ? event.text : ""; lastRun = event; }
       if (exported && event.run === exported.run && event.state !== "running") exported = { state: event.state, text: event.text, run: event.run };
     } else if (event.type === "doc" || event.type === "hello") {
       if (state.doc && event.rev > state.doc.rev) again = true;

@@ -293,7 +293,7 @@ def test_fingers_on_a_phone_wire_slide_and_add(
     assert top["y"] < low["y"]
     assert low["height"] > 250
     page.wait_for_selector(".model canvas")
-    page.tap("text=Step")
+    page.tap("[title^='add a step']")
     page.fill("[role=combobox]", "circularity")
     page.tap("[role=option] >> nth=0")
     soon(lambda: "circularity" in graph(studio)["steps"])
