@@ -61,6 +61,10 @@ function Flow() {
   const flow = useReactFlow(), held = useRef(null), moving = useRef(null), fitted = useRef(-1), box = useRef(null);
   useEffect(() => { setNodes((before) => nodesOf(now(), before)); }, [doc, expanded]);
   const edges = useMemo(() => edgesOf(now()).map((edge) => (picked.has(edge.id) ? { ...edge, selected: true } : edge)), [doc, picked]);
+  useEffect(() => {
+    const selected = nodes.filter((node) => node.selected).map((node) => node.id);
+    if (selected.join() !== now().selected.join()) set({ selected });
+  }, [nodes]);
   const measured = nodes.length > 0 && nodes.every((node) => node.type === "group" || node.measured?.width);
   useEffect(() => {
     if (fitted.current === fit || (!measured && nodes.length)) return;
@@ -75,10 +79,6 @@ function Flow() {
   const onNodesChange = useCallback((changes) => {
     setNodes((before) => {
       const after = applyNodeChanges(changes.filter((change) => change.type !== "remove"), before);
-      if (changes.some((change) => change.type === "select")) {
-        const selected = after.filter((node) => node.selected).map((node) => node.id);
-        queueMicrotask(() => set({ selected }));
-      }
       return changes.some((change) => change.type === "position" || change.type === "dimensions") && after.some((node) => node.type === "group") ? withGroups(after) : after;
     });
     keptByKeys(changes, flow);

@@ -52,9 +52,7 @@ export function Palette({ at, end }) {
     }
     set({ dialog: null });
     edit(anchored(s, ops)).then((ok) => {
-      if (!ok) return;
-      set({ selected: [`s:${name}`] });
-      focusStep(name);
+      if (ok) focusStep(name);
     });
   };
   const slider = () => {

@@ -321,6 +321,7 @@ def test_a_graph_of_200_steps_is_dragged_without_long_frames(
     studio.open(big)
     opened(page, studio)
     until(page, "document.querySelector('.canvas').dataset.nodes === '200'")
+    settled(page)
     client = page.context.new_cdp_session(page)
     client.send("Performance.enable", {"timeDomain": "threadTicks"})
 
