@@ -1,9 +1,10 @@
-"""Ways in: the command line.
+"""Ways in: the command line, notebooks, Grasshopper.
 
 cache_option    Where commands keep results between runs.
 cli             The commands; their docstrings are their help.
 console         How commands end and what they say meanwhile: errors, exit codes, progress.
 hops            The server for Grasshopper.
+notebook        What a notebook shows of meshes, panels and beams.
 option_values   Values of options that are more than a number or a word.
 panel           The main job.
 panel_command   The command panel: the main job, option by option.
