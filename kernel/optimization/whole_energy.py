@@ -32,7 +32,7 @@ from .energies.table import TERMS, EnergyWeights
 
 Corners = Literal["soft", "common", "own"]
 
-HARD = {"sphericity": 10.0, "support": 300.0}
+HARD = {"sphericity": 10.0, "support": 100.0}
 """Factors on the weights of what has to hold exactly; its multipliers do the rest."""
 BOUND_WEIGHTS = (1e-2, 3e-3, 1e-3)
 """Weights of the displacements, from round to round. What costs nothing else moves least."""

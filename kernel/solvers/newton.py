@@ -236,6 +236,7 @@ def newton(
     found = None if last is None else _chord(last, model.gradient)
     escapes, lowest, is_refused = 0, -np.inf, False
     status: Status = "exhausted"
+    iteration = 0
     for iteration in range(1, max_iterations + 1):
         tell_progress(iteration - 1, max_iterations)
         energy = float(history[-1].sum())
