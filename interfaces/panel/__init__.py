@@ -10,7 +10,7 @@ verdict  Whether the model can be built; if not, why not, and what would do.
 """
 
 from .graph import feasible_panel_graph, panel_graph
-from .job import is_panel_job, run_job
+from .job import is_panel_job, run_job, said_to
 from .options import PanelOptions, model_units
 from .pattern import say_gain
 
@@ -21,5 +21,6 @@ __all__ = [
     "model_units",
     "panel_graph",
     "run_job",
+    "said_to",
     "say_gain",
 ]
