@@ -21,6 +21,7 @@ from .console import GATE_FAILED, shown_progress, told_errors
 from .option_values import plain_value, setting
 from .panel_command import panel
 from .serve_command import serve
+from .studio_command import studio
 from .sweep_command import sweep
 
 if TYPE_CHECKING:
@@ -139,4 +140,5 @@ def graph(graph_file: Path) -> None:  # numpydoc ignore=PR01
 
 main.add_command(panel)
 main.add_command(serve)
+main.add_command(studio)
 main.add_command(sweep)

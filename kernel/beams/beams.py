@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, norm
+from ..display import Shown, brief, counted, radii_text, size_text
 from ..parts.records import MAY_BE_NAN
 from ..spheres.arcs import Arcs, segment_areas, sphere_arcs
 from ..spheres.incidence import meet_lines
@@ -46,8 +47,8 @@ class DrillMarks:
         return self.centers.reshape(n_beams, n_ends * count, 3)
 
 
-@dataclass(frozen=True)
-class Beams:
+@dataclass(frozen=True, repr=False)
+class Beams(Shown):
     """Beams that can be made, in the order of their edges.
 
     Attributes
@@ -86,6 +87,34 @@ class Beams:
     node_radius: float
     marks: DrillMarks | None = field(default=None, metadata=MAY_BE_NAN)
     cylinder_tops: FloatArray | None = field(default=None, metadata=MAY_BE_NAN)
+
+    def __repr__(self) -> str:
+        annuli = self.annuli
+        corners = self.corners.reshape(len(self.corners), -1, 3) + annuli.origins[:, None]
+        return brief(
+            "Beams",
+            [
+                counted(self.n_beams, "beam"),
+                size_text(corners.reshape(-1, 3)),
+                radii_text(annuli.radii[:, 0]),
+                f"thickness {self.thickness:.3g}",
+            ],
+        )
+
+    @property
+    def radii(self) -> FloatArray:
+        """Radii of the outer and the inner circles, (B, 2); infinite for straight beams."""
+        return self.annuli.radii
+
+    @property
+    def centers(self) -> FloatArray:
+        """Centres of the outer circles in model coordinates, (B, 3); infinite if straight."""
+        return self.annuli.centers
+
+    @property
+    def planes(self) -> FloatArray:
+        """Middle planes ``n·x = d`` in model coordinates, (B, 4): n and d."""
+        return self.annuli.planes
 
     @property
     def ids(self) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 
 from ...fabrication.model import Model, Written
-from ...fabrication.rhino import writer as rhino
+from ...fabrication.rhino_models import writer as rhino
 from ...fabrication.schedules import writer as schedule
 from ...fabrication.step import writer as step
 from ...kernel.beams.beams import Beams
