@@ -1,4 +1,4 @@
-"""One canopy in all patterns, side by side: quads, hexagons, triangles and semi-regular ones."""
+"""One canopy in all patterns, side by side: quads, hexagons, triangles, semi-regular ones."""
 
 import warnings
 
