@@ -5,11 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, norm
 from ..errors import InputError
 from ..hexagons.tangent_offsets import CLOSEST, grow_offsets, tangent_surface
 from ..meshes.isotropic_remeshing import remesh_triangles
-from ..meshes.mesh import Mesh, mean_edge_length
+from ..meshes.mesh import Mesh, face_vector_areas, mean_edge_length
 from ..surfaces.surface import Surface
 from ..tolerances import CREASE
 from .curved_refinement import refined
@@ -20,6 +20,9 @@ FINENESS = 2.4
 
 EVENING_ROUNDS = 10
 """How often the triangles are evened out."""
+
+MOST_TRIANGLES = 10_000
+"""More triangles are not made to tell curvatures: the mesh itself tells them."""
 
 USUAL_BOUND = np.radians(15)
 """Largest angle of the node axes of hexagons, unless another is asked for."""
@@ -65,16 +68,25 @@ def at_panel_scale(
     InputError
         If the curvature is known nowhere.
     """
-    if isinstance(source, Surface):
-        mesh, found = source.mesh, surface_curvatures(source)
+    mesh = source.mesh if isinstance(source, Surface) else source
+    if isinstance(source, Surface) or _count(mesh, edge / FINENESS) > MOST_TRIANGLES:
+        found = surface_curvatures(source)
     else:
-        mesh = even_triangles(source, edge / FINENESS)
+        mesh = even_triangles(mesh, edge / FINENESS)
         found = curvatures_on(source, mesh)
+    dual_edge = float(np.sqrt(3)) * edge
+    if _count(mesh, dual_edge) > MOST_TRIANGLES:
+        return PanelScale(mesh, found, None)
     try:
-        convex = _convex_spheres(even_triangles(mesh, np.sqrt(3) * edge), mesh, bound)
+        convex = _convex_spheres(even_triangles(mesh, dual_edge), mesh, bound)
     except InputError:  # panels too large for the surface: their own pattern says so
         convex = None
     return PanelScale(mesh, found, convex)
+
+
+def _count(mesh: Mesh, edge: float) -> float:
+    """How many triangles of an edge cover a mesh."""
+    return float(norm(face_vector_areas(mesh)).sum()) / (np.sqrt(3) / 4 * edge**2)
 
 
 def curvatures_on(source: Mesh | Surface, triangles: Mesh) -> SurfaceCurvatures:

@@ -21,7 +21,7 @@ class SphereGain(NamedTuple):
     angles: VertexAngles
 
 
-@node(version=2)
+@node(version="2")
 def sphere_gain(
     mesh: Mesh | Surface, edge_length: EdgeLength, pattern: GainMap = "spheres"
 ) -> SphereGain:

@@ -20,7 +20,7 @@ class HexagonPattern(NamedTuple):
     report: PatternReport
 
 
-@node(version=2)
+@node(version="2")
 def hexagon_pattern(
     mesh: Mesh | Surface,
     edge_length: EdgeLength,
@@ -54,7 +54,7 @@ def hexagon_pattern(
     Examples
     --------
     >>> from spheremesh.nodes import ellipsoid_mesh, hexagon_pattern
-    >>> report = hexagon_pattern(ellipsoid_mesh(24, 12), 0.25, max_axis_angle=5).report
+    >>> report = hexagon_pattern(ellipsoid_mesh(48, 24), 0.13, max_axis_angle=5).report
     >>> report["convex_share"], sorted({each["bound_deg"] for each in report["tries"]})
     (1.0, [2.0, 3.0, 5.0])
     """

@@ -28,7 +28,7 @@ class QuadPattern(NamedTuple):
     report: PatternReport
 
 
-@node(version=2)
+@node(version="2")
 def quad_pattern(
     mesh: Mesh | Surface, edge_length: EdgeLength, *, insist: bool = False
 ) -> QuadPattern:

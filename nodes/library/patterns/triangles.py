@@ -17,7 +17,7 @@ class TrianglePattern(NamedTuple):
     report: PatternReport
 
 
-@node(version=2)
+@node(version="2")
 def triangle_pattern(mesh: Mesh | Surface, edge_length: EdgeLength) -> TrianglePattern:
     """Cover a surface with triangles of nearly one size, and spheres that meet smoothly.
 
