@@ -199,7 +199,7 @@ def _to_conic(span: FloatArray, points: FloatArray) -> FloatArray:
 
 # Volumes
 
-_NODES, _LENGTHS = np.polynomial.legendre.leggauss(10)
+_NODES, _LENGTHS = np.polynomial.legendre.leggauss(8)
 _SHARES, _WEIGHTS = (_NODES + 1) / 2, _LENGTHS / 2
 
 
@@ -242,7 +242,9 @@ def _along_u(
     )
     basis, slopes = spline_basis(knots[1], uv[..., 1], surface.orders[1] - 1)
     # Curves in u through the points, and how they change with v: (n, q, k, 4).
-    curves, turns = (np.einsum("nqj,nkjd->nqkd", part, net) for part in (basis, slopes))
+    flat = net.transpose(0, 2, 1, 3).reshape(len(net), net.shape[2], -1)
+    shape = (*uv.shape[:2], net.shape[1], 4)
+    curves, turns = (np.matmul(part, flat).reshape(shape) for part in (basis, slopes))
     breaks = knots[0][:, :: surface.orders[0] - 1]
     total = np.zeros(uv.shape[:2])
     for low, high in zip(breaks.T[:-1], breaks.T[1:], strict=True):

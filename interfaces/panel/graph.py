@@ -131,8 +131,9 @@ def panel_graph(
         cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report, **plain, **cost,
         **(support.report if support else {}),
     )  # fmt: skip
-    _add_writers(graph, pattern.surface if pattern else mesh, made)
-    shown = {"findings": audit.findings, "cut": panels.report, "reference": spheres}
+    checked = {"findings": audit.findings, "cut": panels.report}
+    _add_writers(graph, pattern.surface if pattern else mesh, made, checked)
+    shown = {**checked, "reference": spheres}
     graph.add("write_view", "view", **made, **shown, path="view.html", title=title)
     return graph
 
@@ -181,11 +182,16 @@ def _add_blanks(graph: Graph, panels: Wire) -> Step:
     return graph.add("mould_blanks", "blanks", panels=panels)
 
 
-def _add_writers(graph: Graph, mesh: Step | Wire, made: Mapping[str, Wire]) -> None:
+def _add_writers(
+    graph: Graph,
+    mesh: Step | Wire,
+    made: Mapping[str, Wire],
+    checked: Mapping[str, Wire],
+) -> None:
     """Files of the parts; those of moulds and beams stand beside what they show."""
     panels = made["panels"]
     graph.add("write_step", "step", **made, path="panels.step")
-    graph.add("write_3dm", "rhino", **made, path="model.3dm", reference=mesh)
+    graph.add("write_3dm", "rhino", **made, **checked, path="model.3dm", reference=mesh)
     graph.add("write_schedule", "table", panels=panels, path="schedule.csv")
     graph.add("write_schedule", "list", **made, path="schedule.json")
     graph.add("render", "picture", **made, path="preview.png")
