@@ -21,6 +21,7 @@ from ...kernel.spheres.minkowski import minkowski
 from ...kernel.tolerances import BREP_VOLUME, EPSILON, EXACT_BREP
 from .brep_evaluation import (
     brep_volumes,
+    checksum_defects,
     distances_to_edge,
     edge_points,
     stream_numbers,
@@ -31,10 +32,8 @@ from .brep_evaluation import (
 from .brep_layout import BrepLayout, Face, Side, Surface
 from .brep_reader import parse_brep
 from .render_mesh_audit import audit_render_meshes
-from .stream_codes import ARC_CURVE, CRC, PLANE_SURFACE, Checksum
+from .stream_codes import ARC_CURVE, PLANE_SURFACE
 from .stream_reader import UnreadableError
-
-_WRONG = "the checksum at byte {} is wrong"
 
 _AT_A_TIME = 512
 """Streams that are judged together: more do not fit the cache, and need memory."""
@@ -212,32 +211,10 @@ def _defects(streams: NDArray[np.uint8], layout: BrepLayout) -> list[str]:
     ]
     for face in layout.faces:
         found += _surface_defects(streams, face.surface)
-    result = _checksum_defects(streams, layout)
+    result = checksum_defects(streams, layout)
     for defect, is_bad in found:
         for i in np.flatnonzero(is_bad.any(1)):
             result[i] = result[i] or defect
-    return result
-
-
-def _checksum_defects(streams: NDArray[np.uint8], layout: BrepLayout) -> list[str]:
-    """Checksums of bytes that are the same in all streams are computed for the first alone."""
-    result = [""] * len(streams)
-    varying: list[Checksum] = []
-    first = memoryview(streams[0].tobytes())
-    for checksum in layout.checksums:
-        if not all(layout.fixed[start:stop].all() for start, stop in checksum.ranges):
-            varying.append(checksum)
-            continue
-        stored = streams[:, checksum.place : checksum.place + CRC.size]
-        computed = np.frombuffer(CRC.pack(checksum.compute(first)), np.uint8)
-        for i in np.flatnonzero((stored != computed).any(axis=1)).tolist():
-            result[i] = result[i] or _WRONG.format(checksum.place)
-    for i, row in enumerate(streams):
-        data = memoryview(row.tobytes())
-        for checksum in varying:
-            if CRC.unpack_from(data, checksum.place)[0] != checksum.compute(data):
-                result[i] = result[i] or _WRONG.format(checksum.place)
-                break
     return result
 
 
