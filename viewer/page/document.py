@@ -123,6 +123,8 @@ def page_data(
     head: dict[str, Any] = {
         "title": texts.title,
         "solid": len(faces) == 2,
+        "tight": panels is not None and panels.joint_gap == 0,
+        "size_mm": grid.size * texts.millimeters,
         "low": low.tolist(),
         "high": (-low).tolist(),
         "home": [0.5, -0.8, 0.5] if low[0] <= low[1] else [0.8, 0.5, 0.5],
