@@ -1,7 +1,7 @@
 """Figures of the viewer: what pictures and pages cost, and whether they agree.
 
 python benchmarks/viewer.py            all but the browser in a few seconds
-python benchmarks/viewer.py browser    pages in the system's Chromium, drawing in software as well
+python benchmarks/viewer.py browser    with pages in the system's Chromium, drawing in software
 """
 
 import resource
@@ -23,7 +23,15 @@ from spheremesh.kernel.panels.tessellation import tessellate
 from spheremesh.kernel.sphere_meshes.fit import fit_spheres
 from spheremesh.kernel.surfaces.circular_nets import roof_net
 from spheremesh.nodes import beams as cut_beams
-from spheremesh.nodes import bisector_support, render, write_report, write_view
+from spheremesh.nodes import (
+    bisector_support,
+    minimize_angles,
+    panel_report,
+    panels,
+    render,
+    write_report,
+    write_view,
+)
 
 Result = TypeVar("Result")
 FLAGS = [
@@ -46,11 +54,11 @@ def model(rows: int, columns: int, *, carried: bool = True) -> tuple[Panels, Bea
     """A roof of panels in eight moulds, with beams and node cylinders or without."""
     spheres = fit_spheres(roof_net(rows, columns, 80.0))
     labels = np.arange(rows * columns) % 8
-    panels, _ = cut_panels(spheres, thickness=0.02 if carried else 0.0, labels=labels)
+    made, _ = cut_panels(spheres, thickness=0.02 if carried else 0.0, labels=labels)
     if not carried:
-        return panels, None
+        return made, None
     annuli = bisector_support(spheres, depth=0.1).annuli
-    return panels, cut_beams(annuli, thickness=0.02, node_radius=0.05).beams
+    return made, cut_beams(annuli, thickness=0.02, node_radius=0.05).beams
 
 
 def pictures(folder: Path) -> None:
@@ -58,43 +66,50 @@ def pictures(folder: Path) -> None:
     for rows, columns in ((8, 12), (50, 100)):
         for carried in ("", "beams"):
             command = [sys.executable, __file__, "picture", str(rows), str(columns), carried]
-            print(subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True).stdout.strip())  # noqa: S603
+            subprocess.run(command, cwd=folder, check=True)
 
 
 def picture(rows: int, columns: int, carried: str) -> None:
     """One picture of 1600 by 1000, file included, as a job draws it: in a fresh process."""
-    panels, beams = model(rows, columns)
+    made, beams = model(rows, columns)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     shown = beams if carried else None
-    _, seconds = timed(lambda: render(panels, "picture.png", beams=shown))
+    _, seconds = timed(lambda: render(made, "picture.png", beams=shown))
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     print(
-        f"picture of {panels.n_panels} panels{' with beams' * bool(carried)}: "
+        f"picture of {made.n_panels} panels{' with beams' * bool(carried)}: "
         f"{seconds:.2f} s CPU, {peak:.0f} MB in all, {peak - before:.0f} more than before"
     )
 
 
 def triangles() -> None:
     """Seconds of triangles, and whether panels are closed to the bit."""
-    panels, _ = model(50, 100)
-    skin, seconds = timed(lambda: tessellate(panels))
-    print(f"triangles of {panels.n_panels} panels: {seconds:.2f} s CPU, {len(skin.triangles)}")
+    made, _ = model(50, 100)
+    skin, seconds = timed(lambda: tessellate(made))
+    print(f"triangles of {made.n_panels} panels: {seconds:.2f} s CPU, {len(skin.triangles)}")
 
 
 def pages(folder: Path, *, browser: bool) -> None:
     """Sizes of pages and seconds to write them; in a browser also those until they answer."""
     for rows, columns, carried in ((50, 100, True), (50, 100, False), (100, 200, False)):
-        panels, beams = model(rows, columns, carried=carried)
+        made, beams = model(rows, columns, carried=carried)
         path = folder / "view.html"
-        _, seconds = timed(lambda: write_view(panels, str(path), beams=beams))  # noqa: B023
-        words = f"page of {panels.n_panels} {'solids with beams' if carried else 'surfaces'}"
+        _, seconds = timed(lambda: write_view(made, str(path), beams=beams))  # noqa: B023
+        words = f"page of {made.n_panels} {'solids with beams' if carried else 'surfaces'}"
         print(f"{words}: {path.stat().st_size / 1e6:.2f} MB, written in {seconds:.2f} s CPU")
         if browser:
             opened(path)
-        if carried:
-            report = folder / "report.html"
-            _, seconds = timed(lambda: write_report(panels, str(report), beams=beams))  # noqa: B023
-            print(f"  report: {report.stat().st_size / 1e6:.2f} MB, {seconds:.2f} s CPU")
+
+
+def report(folder: Path) -> None:
+    """Size of a report and seconds to write it."""
+    optimum = minimize_angles(fit_spheres(roof_net(50, 100, 80.0)))
+    cut = panels(optimum.sphere_mesh, thickness=0.02)
+    found = panel_report(optimum.sphere_mesh, optimum.report, cut.report)
+    path = folder / "report.html"
+    _, seconds = timed(lambda: write_report(found, cut.panels, optimum.sphere_mesh, str(path)))
+    size = path.stat().st_size / 1e6
+    print(f"report of {cut.panels.n_panels} panels: {size:.2f} MB, {seconds:.2f} s CPU")
 
 
 def opened(path: Path) -> None:
@@ -122,5 +137,6 @@ if __name__ == "__main__":
     else:
         with tempfile.TemporaryDirectory() as name:
             triangles()
+            report(Path(name))
             pictures(Path(name))
             pages(Path(name), browser="browser" in words)

@@ -14,6 +14,7 @@ import { Lines } from "./soup.js";
 import { add, cross, dot, length, scale, sub, unit } from "./vectors.js";
 
 const FIELD = 24, MANY = 2000;
+const PULL = 4e-6; // of lines before the surfaces that they lie on, in depth
 export const NAMED_VIEWS = {
   home: null, top: [0, -0.001, 1], front: [0, -1, 0.12], side: [1, 0, 0.12], below: [0.5, -0.7, -0.6],
 };
@@ -99,9 +100,8 @@ export class View {
     const material = (solid) => new RawShaderMaterial({
       vertexShader: MESH_VERTEX, fragmentShader: MESH_FRAGMENT, glslVersion: GLSL3, side: DoubleSide,
       uniforms: { ...uniforms, solid: { value: solid } },
-      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     });
-    const line = (ink, only = -1, pull = 0) => new RawShaderMaterial({
+    const line = (ink, only = -1, pull = PULL) => new RawShaderMaterial({
       vertexShader: LINE_VERTEX, fragmentShader: LINE_FRAGMENT, glslVersion: GLSL3, transparent: true,
       uniforms: { ...uniforms, ink: { value: new Vector4(...ink) }, only: { value: only }, pull: { value: pull } },
       depthWrite: false,
