@@ -24,7 +24,7 @@ from spheremesh.fabrication.opennurbs.render_meshes import (
     mesh_streams,
     panel_meshes,
 )
-from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
+from spheremesh.fabrication.rhino_models.writer import RhinoOptions, write_3dm
 from spheremesh.fabrication.schedules.writer import write_schedule
 from spheremesh.fabrication.step.check import check_part21
 from spheremesh.fabrication.step.writer import StepOptions, write_step

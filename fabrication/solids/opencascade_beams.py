@@ -25,8 +25,8 @@ from ...kernel.arrays import FloatArray, dot, norm
 from ...kernel.beams.beams import Beams, scale_beams
 from ...kernel.beams.end_edges import EndEdges
 from ...kernel.spheres.arcs import circle_axes
+from ..breps.beam_geometry import LEVELS, BeamGeometry, beam_geometry
 from . import opencascade_parts as occ
-from .beam_geometry import LEVELS, BeamGeometry, beam_geometry
 
 _SPAN = 0.05
 """Longest span, in radians, of a spline for an ellipse in the parameters of a cylinder."""

@@ -24,8 +24,8 @@ from ...kernel.arrays import FloatArray, IntArray, norm
 from ...kernel.panels.panels import Panels, panel_arcs
 from ...kernel.spheres.arcs import ArcCircles, Arcs, arc_circles, circle_axes
 from ...kernel.spheres.rows import center_radius
+from ..breps.panel_geometry import CONFUSION, panel_tolerances, panels_in_place, surface_frames
 from . import opencascade_parts as occ
-from .panel_geometry import CONFUSION, panel_tolerances, panels_in_place, surface_frames
 
 
 @dataclass(frozen=True)

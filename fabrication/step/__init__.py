@@ -1,17 +1,13 @@
 """STEP files (ISO 10303-21), written as text and checked without a CAD kernel.
 
 OpenCASCADE would write the same eight times as slowly. `bodies` lays out the entities of
-bodies of one topology once and fills them with numbers; panels, beams and nodes say topology
-and numbers; `assembly` is the tree of groups and parts around them, where a part may stand in
-several places. OpenCASCADE repairs what it reads, so `check` judges the text of files without
-it.
+bodies of one topology once and fills them with numbers, both from `fabrication.breps`;
+`assembly` is the tree of groups and parts around them, where a part may stand in several
+places. OpenCASCADE repairs what it reads, so `check` judges the text of files without it.
 
-assembly      Bodies with names, layers and colours: assemblies of parts.
-beam_bodies   Beams as solids: planes, cylinders, lines, circles and ellipses, all exact.
-bodies        Solids, surfaces and lines as entities.
-check         A check of the structure of a file.
-node_bodies   Cylinders about node axes as solids.
-panel_bodies  Panels as faces or solids: spheres, planes, circles and lines, all exact.
-values        Numbers, strings and references.
-writer        Writes a file of panels and beams.
+assembly  Bodies with names, layers and colours: assemblies of parts.
+bodies    Solids, surfaces and lines as entities.
+check     A check of the structure of a file.
+values    Numbers, strings and references.
+writer    Writes a file of panels and beams.
 """

@@ -1,58 +1,23 @@
 """Solids, surfaces and lines as entities of STEP files, text without a CAD kernel.
 
-Bodies of the same topology differ in their numbers alone. A batch says the topology once, and
-gives the numbers of its curves and surfaces as arrays; its text is laid out once and filled for
-each body. All geometry is elementary: no curve is written in the parameters of a surface.
+Bodies of the same topology differ in their numbers alone (`fabrication.breps`): the text of a
+batch is laid out once and filled for each body. No curve is written in the parameters of a
+surface.
 """
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Final, Literal, TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray, norm, unit
-from ...kernel.spheres.arcs import ArcCircles, Arcs, circle_axes
+from ..breps.records import BrepBatch, Ring
 from .values import real, references
 
-Ring: TypeAlias = tuple[tuple[int, bool], ...]
-"""Edges of a closed chain, each with whether it is run from its start to its end."""
-
 _SENSES: Final = {True: ".T.", False: ".F."}
-
-
-@dataclass(frozen=True)
-class EdgeBatch:
-    """The same edge of m bodies.
-
-    Circles and ellipses run counter-clockwise about their axes. The numbers (m, n) are the unit
-    direction of a line, which leaves its start; or centre, unit axis, unit vector to parameter
-    0, and one or two radii, the larger first.
-    """
-
-    start: int
-    end: int
-    kind: Literal["LINE", "CIRCLE", "ELLIPSE"]
-    numbers: FloatArray
-
-
-@dataclass(frozen=True)
-class FaceBatch:
-    """The same face of m bodies.
-
-    Normals of surfaces point away from centres and axes. The numbers (m, n) are the unit normal
-    and x axis of a plane, which passes through the corner; or origin, unit z and x axes, and
-    the radius. The ring runs counter-clockwise about the normal of the face, out of a solid,
-    which `is_along` that of the surface or against it.
-    """
-
-    kind: Literal["PLANE", "SPHERICAL_SURFACE", "CYLINDRICAL_SURFACE"]
-    numbers: FloatArray
-    ring: Ring
-    is_along: bool = True
-    corner: int = 0
 
 
 @dataclass(frozen=True)
@@ -86,45 +51,29 @@ class Body:
         return filled % tuple((self.layout.references + first).tolist())
 
 
-def bodies(
-    corners: Iterable[FloatArray],
-    edges: Iterable[EdgeBatch],
-    faces: Iterable[FaceBatch],
-    *,
-    is_solid: bool = True,
-) -> list[Body]:
-    """Bodies of one topology with corners (m, 3) each; solids if the faces are closed."""
-    corners, edges, faces = list(corners), list(edges), list(faces)
-    layout = _layout(
-        len(corners),
-        tuple((edge.start, edge.end, edge.kind) for edge in edges),
-        tuple((face.kind, face.ring, face.is_along, face.corner) for face in faces),
-        is_solid=is_solid,
-    )
-    parts = [*corners, *(edge.numbers for edge in edges), *(face.numbers for face in faces)]
-    # Negative zeros would be written as such.
-    return [Body(layout, numbers) for numbers in np.concatenate(parts, axis=1) + 0.0]
-
-
-def bodies_by_kind(kinds: FloatArray, make: Callable[[IntArray], Iterable[Body]]) -> list[Body]:
-    """Bodies of several topologies, in the order of the rows of kinds.
-
-    Bodies of equal rows have one topology: `make` makes those of some ids, all of one topology.
-    """
-    if not len(kinds):
-        return []
-    _, groups = np.unique(kinds, axis=0, return_inverse=True)
-    order = np.argsort(groups.ravel(), kind="stable")
+def step_bodies(batches: Iterable[BrepBatch]) -> list[Body]:
+    """Bodies of boundary representations, in the order of their rows."""
     result: dict[int, Body] = {}
-    for ids in np.split(order, np.flatnonzero(np.diff(groups.ravel()[order])) + 1):
-        result.update(zip(ids.tolist(), make(ids), strict=True))
-    return [result[i] for i in range(len(kinds))]
-
-
-def circle_numbers(arcs: Arcs, circles: ArcCircles) -> FloatArray:
-    """What tells the circles of arcs in an `EdgeBatch`: (n, 10), parameter 0 at the start."""
-    x, _ = circle_axes(arcs, circles)
-    return np.column_stack([circles.centers, circles.axes, x, circles.radii])
+    for batch in batches:
+        layout = _layout(
+            batch.corners.shape[1],
+            tuple((edge.start, edge.end, edge.kind) for edge in batch.edges),
+            tuple(
+                (face.kind, (face.ring, *face.holes), face.is_along, face.corner)
+                for face in batch.faces
+            ),
+            is_solid=batch.is_solid,
+        )
+        flat = batch.corners.reshape(len(batch.rows), -1)
+        curves = [edge.numbers for edge in batch.edges]
+        parts = [flat, *curves, *(face.numbers for face in batch.faces)]
+        # Negative zeros would be written as such.
+        numbers = np.concatenate(parts, axis=1) + 0.0
+        result.update(
+            (row, Body(layout, own))
+            for row, own in zip(batch.rows.tolist(), numbers, strict=True)
+        )
+    return [result[row] for row in sorted(result)]
 
 
 def line_body(segments: FloatArray) -> Body:
@@ -135,7 +84,7 @@ def line_body(segments: FloatArray) -> Body:
 
 
 _Edge: TypeAlias = tuple[int, int, str]
-_Face: TypeAlias = tuple[str, Ring, bool, int]
+_Face: TypeAlias = tuple[str, tuple[Ring, ...], bool, int]
 
 
 class _Entities:
@@ -168,6 +117,14 @@ class _Entities:
         radii = "%s,%s" if kind == "ELLIPSE" else "%s"
         return self.add(f"{kind}('',#{self.placement(self.point())},{radii})")
 
+    def bound(self, ring: Ring, edges: list[int], kind: str) -> int:
+        uses = [
+            self.add(f"ORIENTED_EDGE('',*,*,#{edges[edge]},{_SENSES[is_forward]})")
+            for edge, is_forward in ring
+        ]
+        loop = self.add(f"EDGE_LOOP('',({references(uses)}))")
+        return self.add(f"{kind}('',#{loop},.T.)")
+
     def surface(self, kind: str, corner: int) -> int:
         if kind == "PLANE":
             return self.add(f"PLANE('',#{self.placement(corner)})")
@@ -190,15 +147,13 @@ def _layout(
         for start, end, kind in edges
     ]
     shell: list[int] = []
-    for kind, ring, is_along, corner in faces:
-        uses = [
-            entities.add(f"ORIENTED_EDGE('',*,*,#{edge_curves[edge]},{_SENSES[is_forward]})")
-            for edge, is_forward in ring
+    for kind, rings, is_along, corner in faces:
+        bounds = [
+            entities.bound(ring, edge_curves, "FACE_BOUND" if i else "FACE_OUTER_BOUND")
+            for i, ring in enumerate(rings)
         ]
-        loop = entities.add(f"EDGE_LOOP('',({references(uses)}))")
-        bound = entities.add(f"FACE_OUTER_BOUND('',#{loop},.T.)")
         surface = entities.surface(kind, points[corner])
-        face = f"ADVANCED_FACE('',(#{bound}),#{surface},{_SENSES[is_along]})"
+        face = f"ADVANCED_FACE('',({references(bounds)}),#{surface},{_SENSES[is_along]})"
         shell.append(entities.add(face))
     body, shell_kind, representation = (
         ("MANIFOLD_SOLID_BREP('',#1)", "CLOSED_SHELL", "ADVANCED_BREP")

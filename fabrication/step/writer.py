@@ -22,22 +22,22 @@ from ...kernel.parts.colors import (
     mould_color,
     mould_name,
 )
-from ..files import check_suffix, check_target, replacing
-from ..model import Model, Written, check_model
-from ..solids.beam_geometry import beam_geometry
-from ..solids.panel_geometry import (
+from ..breps.beam_geometry import beam_geometry
+from ..breps.beams import beam_batches
+from ..breps.nodes import cylinder_batch
+from ..breps.panel_geometry import (
     CONFUSION,
     copy_places,
     panel_tolerances,
     panels_in_place,
     rounded_origins,
 )
+from ..breps.panels import panel_batches
+from ..files import check_suffix, check_target, replacing
+from ..model import Model, Written, check_model
 from ..units import millimeters_per
 from .assembly import Group, Instance, Part, StepHeader, StepSchema, assembly_lines
-from .beam_bodies import beam_bodies
-from .bodies import line_body
-from .node_bodies import cylinder_bodies
-from .panel_bodies import panel_bodies
+from .bodies import line_body, step_bodies
 
 StepCopies = Literal["shapes", "instances"]
 
@@ -116,7 +116,7 @@ def _panel_parts(panels: Panels, scale: float, confusion: float) -> list[Part]:
     return [
         Part(body, name, *mould, tolerance, (Instance(name, tuple(place)),))
         for body, name, mould, tolerance, place in zip(
-            panel_bodies(panels), panels.ids, _moulds(panels), tolerances,
+            step_bodies(panel_batches(panels)), panels.ids, _moulds(panels), tolerances,
             panels.origins.tolist(), strict=True,
         )
     ]  # fmt: skip
@@ -146,8 +146,8 @@ def _beam_parts(beams: Beams, scale: float, confusion: float) -> list[Part]:
     return [
         Part(body, name, "Beams", BEAM_COLOR, tolerance, (Instance(name, tuple(place)),))
         for body, name, tolerance, place in zip(
-            beam_bodies(numbers), beams.annuli.ids, tolerances, numbers.places.tolist(),
-            strict=True,
+            step_bodies(beam_batches(numbers)), beams.annuli.ids, tolerances,
+            numbers.places.tolist(), strict=True,
         )
     ]  # fmt: skip
 
@@ -159,12 +159,14 @@ def _support_parts(beams: Beams, scale: float, confusion: float) -> list[Group |
     found = node_cylinders(scaled)
     if found.n_nodes:
         places = rounded_origins(found.origins)
-        made = cylinder_bodies(
+        made = cylinder_batch(
             found.origins - places, found.directions, found.heights, found.radius
         )
         nodes = [
             Part(body, name, "Nodes", NODE_COLOR, confusion, (Instance(name, tuple(place)),))
-            for body, name, place in zip(made, found.ids, places.tolist(), strict=True)
+            for body, name, place in zip(
+                step_bodies([made]), found.ids, places.tolist(), strict=True
+            )
         ]
         groups.append(Group("Nodes", nodes))
     _, segments = node_axis_segments(scaled)

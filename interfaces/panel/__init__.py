@@ -4,6 +4,7 @@ graph    The job as a graph.
 job      The job run: all of its files, or none.
 options  What the job is asked to do.
 output   What the command line says of it.
+papers   Tables and drawings that are asked for besides.
 pattern  From a design surface to the net that is panelled.
 support  The beams of the job: which annuli, and what is made of them.
 verdict  Whether the model can be built; if not, why not, and what would do.

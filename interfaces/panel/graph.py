@@ -8,6 +8,7 @@ from ...nodes.graphs.graph import Graph
 from ...nodes.graphs.specification.wires import Param, Step, Wire
 from ...nodes.graphs.stores.entries import Store
 from .options import PanelOptions, SupportKind, fineness, model_units
+from .papers import add_papers
 from .pattern import add_pattern
 from .support import add_annuli, add_beams
 
@@ -75,8 +76,9 @@ def panel_graph(
         with a number of moulds also moulds, blanks, mould_drawing and mould_picture, with a
         bound on angles before these fewest, with `flat_below` flat, with prices cost, with a
         support also feasibility, annuli, beams, drawing and beam_table, with either plain, the
-        panels without them. Of a pattern mesh is the surface; gain, pattern and net follow it.
-        Its writers write relative to the folder of the run.
+        panels without them; tables and drawing sets if asked for. Of a pattern mesh is the
+        surface; gain, pattern and net follow it. Its writers write relative to the folder of
+        the run.
 
     Raises
     ------
@@ -85,7 +87,8 @@ def panel_graph(
     InputError
         If the units of the file are to be used and it cannot be read.
     """
-    title = options.mesh.stem if options.mesh else "roof"
+    # Names of files may be no text; what shows them is.
+    title = options.mesh.stem.encode(errors="replace").decode() if options.mesh else "roof"
     graph = Graph(title, units=options.units or model_units(options)[0])
     thickness = graph.param("thickness", options.thickness, min=0)
     joint_gap = graph.param("joint_gap", options.joint_gap, min=0)
@@ -131,6 +134,7 @@ def panel_graph(
         **(support.report if support else {}),
     )  # fmt: skip
     _add_writers(graph, pattern.surface if pattern else mesh, made)
+    add_papers(graph, options, made, has_moulds=clusters is not None)
     shown = {"findings": audit.findings, "cut": panels.report, "reference": spheres}
     graph.add("write_view", "view", **made, **shown, path="view.html", title=title)
     graph.add(

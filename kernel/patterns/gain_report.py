@@ -23,7 +23,7 @@ SHARP_TURN = 1.0
 ROUND_GAP = 0.1
 """Ranges of k1 and k2 that lie nearer, in inverse edges, leave K no room between them."""
 
-ROUND_SHARE = 0.25
+ROUND_SHARE = 0.4
 """Difference of k1 and k2, relative to the larger, of a surface that is all but a sphere."""
 
 WORTH = 0.1
@@ -98,6 +98,14 @@ def gain_map(found: SurfaceCurvatures, edge: float, which: GainMap) -> FloatArra
     return quad_angles(first, second, edge, choices[which])
 
 
+def gain_maps(
+    found: SurfaceCurvatures, edge: float, which: Literal["hexagons", "triangles"]
+) -> tuple[FloatArray, FloatArray]:
+    """Expected angles (V,) with planes and with spheres, in radians."""
+    flat = {"hexagons": hexagon_angles, "triangles": triangle_angles}[which]
+    return flat(found.first, found.second, edge, 0.0), gain_map(found, edge, which)
+
+
 def _side(found: SurfaceCurvatures) -> int:
     return 1 if found.mean(found.first + found.second) >= 0 else -1
 
@@ -134,19 +142,9 @@ def gain_report(found: SurfaceCurvatures, edge: float) -> GainReport:
         "planes": planes, "spheres": spheres, "one_radius": one,
         "gain": _gain(planes, spheres), "one_radius_gain": _gain(planes, one),
     }  # fmt: skip
-    pairs = {
-        "hexagons": (
-            hexagon_angles(first, second, edge, 0.0),
-            gain_map(found, edge, "hexagons"),
-        ),
-        "triangles": (
-            triangle_angles(first, second, edge, 0.0),
-            gain_map(found, edge, "triangles"),
-        ),
-    }
     others: dict[str, Any] = {}
-    for name, (flat, bent) in pairs.items():
-        before, after = _mean(flat), _mean(bent)
+    for name in ("hexagons", "triangles"):
+        before, after = (_mean(each) for each in gain_maps(found, edge, name))
         others[name] = {"planes": before, "spheres": after, "gain": _gain(before, after)}
     largest = np.maximum(np.abs(first), np.abs(second))
     angles = {"quads": spheres, **{name: each["spheres"] for name, each in others.items()}}

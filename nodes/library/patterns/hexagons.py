@@ -10,7 +10,7 @@ from ....kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ....kernel.surfaces.surface import Surface
 from ...graphs.node import node
 from ...graphs.ports import Port
-from .reports import EdgeLength, PatternReport, pattern_report
+from .reports import EdgeLength, PatternReport, dual_report
 
 
 class HexagonPattern(NamedTuple):
@@ -20,7 +20,7 @@ class HexagonPattern(NamedTuple):
     report: PatternReport
 
 
-@node
+@node(version=2)
 def hexagon_pattern(
     mesh: Mesh | Surface,
     edge_length: EdgeLength,
@@ -65,13 +65,12 @@ def hexagon_pattern(
         {
             "bound_deg": each.bound,
             "spheres_deg": float(np.degrees(each.judgement.angle)),
-            "node_axis_p95_deg": float(np.degrees(each.lean_p95)),
+            "node_axis_p95_deg": float(np.degrees(each.judgement.lean_p95)),
             "shortest_edge": each.judgement.shortest,
             "flaws": float(len(each.judgement.flaws)),
         }
         for each in tries
         if each.judgement is not None
     ]
-    axes = {"p95": float(np.degrees(best.lean_p95)), "max": float(np.degrees(best.lean_max))}
-    report = pattern_report(mesh, edge_length, "hexagons", best.net, best.judgement, told, axes)
+    report = dual_report(mesh, edge_length, "hexagons", best.net, best.judgement, told)
     return HexagonPattern(best.net, report)

@@ -13,6 +13,7 @@ from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Shape
 
+from spheremesh.fabrication.breps.nodes import cylinder_batch
 from spheremesh.fabrication.step.assembly import (
     Group,
     Instance,
@@ -20,9 +21,8 @@ from spheremesh.fabrication.step.assembly import (
     StepHeader,
     assembly_lines,
 )
-from spheremesh.fabrication.step.bodies import Body, line_body
+from spheremesh.fabrication.step.bodies import Body, line_body, step_bodies
 from spheremesh.fabrication.step.check import check_part21
-from spheremesh.fabrication.step.node_bodies import cylinder_bodies
 from spheremesh.kernel.arrays import unit
 
 HEADER = StepHeader("AP214IS", "mm", 1.0, 1e-7, "Nodes", "test")
@@ -47,7 +47,7 @@ def test_cylinders(tmp_path: Path) -> None:
     rng = np.random.default_rng(5)
     bases, heights = rng.uniform(-50, 50, (9, 3)), rng.uniform(1, 300, 9)
     directions = np.vstack([np.eye(3), -np.eye(3), unit(rng.normal(size=(3, 3)))])
-    made = cylinder_bodies(bases, directions, heights, 30.0)
+    made = step_bodies([cylinder_batch(bases, directions, heights, 30.0)])
     solids = read_back(tmp_path / "n.step", made, TopAbs_ShapeEnum.TopAbs_SOLID)
     assert len(solids) == 9
     for i, solid in enumerate(solids):
@@ -62,7 +62,7 @@ def test_cylinders(tmp_path: Path) -> None:
 
 def test_lines(tmp_path: Path) -> None:
     segments = np.random.default_rng(6).uniform(-50, 50, (7, 2, 3))
-    cylinder = cylinder_bodies(np.zeros((1, 3)), np.eye(3)[:1], np.ones(1), 1.0)
+    cylinder = step_bodies([cylinder_batch(np.zeros((1, 3)), np.eye(3)[:1], np.ones(1), 1.0)])
     made = [*cylinder, line_body(segments)]
     edges = read_back(tmp_path / "a.step", made, TopAbs_ShapeEnum.TopAbs_EDGE)
     assert len(edges) == 7

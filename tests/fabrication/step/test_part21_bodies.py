@@ -6,7 +6,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from spheremesh.fabrication.step.bodies import EdgeBatch, FaceBatch, bodies, line_body
+from spheremesh.fabrication.breps.records import EdgeBatch, FaceBatch, brep_batch
+from spheremesh.fabrication.step.bodies import line_body, step_bodies
 from spheremesh.fabrication.step.values import real, string
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
@@ -47,9 +48,8 @@ def test_law_references_move_with_the_first_entity(first: int) -> None:
     edges = [EdgeBatch(i, (i + 1) % 3, "LINE", corners[i]) for i in range(3)]
     ring = ((0, True), (1, True), (2, True))
     face = FaceBatch("PLANE", np.concatenate(corners[:2], axis=1), ring)
-    for body in (
-        *bodies(corners, edges, [face], is_solid=False), line_body(np.eye(3)[None, :2]),
-    ):  # fmt: skip
+    batch = brep_batch(np.arange(1), corners, edges, [face], is_solid=False)
+    for body in (*step_bodies([batch]), line_body(np.eye(3)[None, :2])):
         text = body.text(first)
         defined = [int(x) for x in re.findall(r"^#(\d+)=", text, re.MULTILINE)]
         assert sorted(defined) == list(range(first, first + body.layout.n_entities))
@@ -61,8 +61,9 @@ def test_bodies_of_one_topology_share_a_layout() -> None:
     corners = [np.full((2, 3), float(i)) for i in range(2)]
     edges = [EdgeBatch(0, 1, "LINE", np.ones((2, 3)))]
     face = FaceBatch("PLANE", np.ones((2, 6)), ((0, True), (0, False)))
-    first, second = bodies(corners, edges, [face])
-    (third, _) = bodies(corners, edges, [face])
+    batch = brep_batch(np.arange(2), corners, edges, [face])
+    first, second = step_bodies([batch])
+    (third, _) = step_bodies([batch])
     assert first.layout is second.layout is third.layout
 
 

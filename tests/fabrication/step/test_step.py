@@ -27,10 +27,11 @@ from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_LayerTool
 
 from spheremesh import Mesh, SphereMesh
+from spheremesh.fabrication.breps.panel_geometry import panels_in_place
+from spheremesh.fabrication.breps.panels import panel_batches
 from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.solids.cadquery_assembly import to_cadquery
 from spheremesh.fabrication.solids.opencascade_panels import panel_shapes
-from spheremesh.fabrication.solids.panel_geometry import panels_in_place
 from spheremesh.fabrication.step.assembly import (
     Group,
     Instance,
@@ -39,8 +40,8 @@ from spheremesh.fabrication.step.assembly import (
     StepSchema,
     assembly_lines,
 )
+from spheremesh.fabrication.step.bodies import step_bodies
 from spheremesh.fabrication.step.check import check_part21
-from spheremesh.fabrication.step.panel_bodies import panel_bodies
 from spheremesh.fabrication.step.writer import StepOptions, write_step
 from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.errors import InputError, MissingLibraryError
@@ -387,7 +388,7 @@ def test_groups_are_assemblies_within_the_assembly(panels: Panels, tmp_path: Pat
     parts = [
         Part(body, name, "Layer", (200, 100, 0), 1e-6, (Instance(name, tuple(place)),))
         for body, name, place in zip(
-            panel_bodies(placed), placed.ids, placed.origins.tolist(), strict=True
+            step_bodies(panel_batches(placed)), placed.ids, placed.origins.tolist(), strict=True
         )
     ]
     first, second = Group("Panels", parts), Group("Beams", parts)

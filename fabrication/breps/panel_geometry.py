@@ -1,4 +1,4 @@
-"""Where panels stand, their tolerances and axes: for OpenCASCADE and for STEP files alike."""
+"""Where panels stand, their tolerances and axes: for all solids alike."""
 
 from collections.abc import Sequence
 

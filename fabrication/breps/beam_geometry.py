@@ -1,4 +1,4 @@
-"""Corners, faces, circles and cuts of beams: for OpenCASCADE and for STEP files alike."""
+"""Corners, faces, circles and cuts of beams: for all solids alike."""
 
 from dataclasses import dataclass, replace
 

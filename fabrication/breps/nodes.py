@@ -1,19 +1,19 @@
-"""Cylinders about node axes as solids of STEP files."""
+"""Cylinders about node axes as boundary representations."""
 
 import numpy as np
 
 from ...kernel.arrays import FloatArray, unit
-from .bodies import Body, EdgeBatch, FaceBatch, Ring, bodies
+from .records import BrepBatch, EdgeBatch, FaceBatch, Ring, brep_batch
 
 
-def cylinder_bodies(
+def cylinder_batch(
     bases: FloatArray, directions: FloatArray, heights: FloatArray, radius: float
-) -> list[Body]:
+) -> BrepBatch:
     """Closed solids of n cylinders: a cylinder, whose two ends meet in a line, and two discs.
 
     They begin at discs about the bases (n, 3) and run along unit directions (n, 3).
     """
-    x = _across(directions)
+    x = perpendiculars(directions)
     discs = [bases, bases + heights[:, None] * directions]
     corners = [disc + radius * x for disc in discs]
     radii = np.full((len(bases), 1), radius)
@@ -29,10 +29,10 @@ def cylinder_bodies(
         FaceBatch("PLANE", np.concatenate([-directions, x], axis=1), ((0, False),), corner=0),
         FaceBatch("PLANE", around, ((1, True),), corner=1),
     ]
-    return bodies(corners, edges, faces)
+    return brep_batch(np.arange(len(bases)), corners, edges, faces)
 
 
-def _across(directions: FloatArray) -> FloatArray:
+def perpendiculars(directions: FloatArray) -> FloatArray:
     """Unit vectors at right angles to others."""
     least = np.eye(3)[np.abs(directions).argmin(axis=1)]
     return unit(np.cross(directions, least))

@@ -1,6 +1,6 @@
-"""Panels as bodies of STEP files: spheres, planes, circles and lines, all exact.
+"""Panels as boundary representations: spheres, planes, circles and lines, all exact.
 
-Every body is made about the rounded origin of its panel, wherever the model stands on the site:
+Every part is made about the rounded origin of its panel, wherever the model stands on the site:
 the remainder is in its own numbers, and no digit is lost. The sphere of a face has its axes
 turned so that the panel lies away from the seam and the poles.
 """
@@ -11,11 +11,19 @@ from ...kernel.arrays import FloatArray, IntArray, unit
 from ...kernel.panels.panels import Panels, panel_arcs
 from ...kernel.spheres.arcs import Arcs, arc_circles
 from ...kernel.spheres.rows import center_radius
-from ..solids.panel_geometry import surface_frames
-from .bodies import Body, EdgeBatch, FaceBatch, Ring, bodies, bodies_by_kind, circle_numbers
+from .panel_geometry import surface_frames
+from .records import (
+    BrepBatch,
+    EdgeBatch,
+    FaceBatch,
+    Ring,
+    batches_by_kind,
+    brep_batch,
+    circle_numbers,
+)
 
 
-def panel_bodies(panels: Panels) -> list[Body]:
+def panel_batches(panels: Panels) -> list[BrepBatch]:
     """A face per panel, or a closed solid where panels have a thickness, about their origins.
 
     Panels need finite numbers. Faces are oriented along N, solids outwards: a solid has the
@@ -23,9 +31,9 @@ def panel_bodies(panels: Panels) -> list[Body]:
     """
     outer = _Layer(panels, panels.spheres, panel_arcs(panels))
     if not panels.thickness > 0:
-        return bodies_by_kind(_kinds(panels, [outer]), lambda ids: _surfaces(outer, ids))
+        return batches_by_kind(_kinds(panels, [outer]), lambda ids: _surfaces(outer, ids))
     inner = _Layer(panels, panels.inner_spheres, panel_arcs(panels, "inner"))
-    return bodies_by_kind(
+    return batches_by_kind(
         _kinds(panels, [outer, inner]), lambda ids: _solids(panels, outer, inner, ids)
     )
 
@@ -80,15 +88,16 @@ def _ring(degree: int) -> list[tuple[int, int]]:
     return [(i, (i + 1) % degree) for i in range(degree)]
 
 
-def _surfaces(outer: _Layer, ids: IntArray) -> list[Body]:
+def _surfaces(outer: _Layer, ids: IntArray) -> BrepBatch:
     degree = int(outer.offsets[ids[0] + 1] - outer.offsets[ids[0]])
     corners: list[FloatArray] = [outer.points[outer.offsets[ids] + i] for i in range(degree)]
     edges = [outer.edge(ids, i, j, 0) for i, j in _ring(degree)]
     ring = tuple((i, True) for i in range(degree))
-    return bodies(corners, edges, [outer.face(ids, ring, 0, is_along=True)], is_solid=False)
+    face = outer.face(ids, ring, 0, is_along=True)
+    return brep_batch(ids, corners, edges, [face], is_solid=False)
 
 
-def _solids(panels: Panels, outer: _Layer, inner: _Layer, ids: IntArray) -> list[Body]:
+def _solids(panels: Panels, outer: _Layer, inner: _Layer, ids: IntArray) -> BrepBatch:
     """Corners and edges are the outer ones, then the inner ones; then come the posts."""
     first = panels.offsets[ids]
     degree = int(panels.degrees[ids[0]])
@@ -111,4 +120,4 @@ def _solids(panels: Panels, outer: _Layer, inner: _Layer, ids: IntArray) -> list
         numbers = np.concatenate([normals, unit(corners[j] - corners[i])], axis=1)
         wall = (degree + i, True), (2 * degree + j, True), (i, False), (2 * degree + i, False)
         faces.append(FaceBatch("PLANE", numbers, wall, corner=i))
-    return bodies(corners, edges, faces)
+    return brep_batch(ids, corners, edges, faces)

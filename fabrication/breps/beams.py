@@ -1,4 +1,4 @@
-"""Beams as solids of STEP files: planes, cylinders, lines, circles and ellipses, all exact.
+"""Beams as boundary representations: planes, cylinders, lines, circles and ellipses, all exact.
 
 A beam has two plane sides, an outer and an inner face - cylinders, or planes where the arcs
 are straight - and one or two plane faces at each end. A plane cuts a cylinder in an ellipse, or
@@ -12,13 +12,21 @@ import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray, unit
 from ...kernel.beams.end_edges import EndEdges
-from ..solids.beam_geometry import LEVELS, BeamGeometry
-from .bodies import Body, EdgeBatch, FaceBatch, Ring, bodies, bodies_by_kind, circle_numbers
+from .beam_geometry import LEVELS, BeamGeometry
+from .records import (
+    BrepBatch,
+    EdgeBatch,
+    FaceBatch,
+    Ring,
+    batches_by_kind,
+    brep_batch,
+    circle_numbers,
+)
 
 _Levels = tuple[int, int]
 
 
-def beam_bodies(geometry: BeamGeometry) -> list[Body]:
+def beam_batches(geometry: BeamGeometry) -> list[BrepBatch]:
     """A closed solid per beam: B solids, about the rounded origins of the beams."""
     circles = {
         (k, level): circle_numbers(geometry.arcs[level][k], circles)
@@ -29,7 +37,7 @@ def beam_bodies(geometry: BeamGeometry) -> list[Body]:
         (k, levels): _cut_numbers(geometry, k, levels) for k in (0, 1) for levels in LEVELS
     }
     curves = _Curves(circles, ellipses)
-    return bodies_by_kind(_kinds(geometry), lambda ids: _Batch(geometry, curves, ids).solids())
+    return batches_by_kind(_kinds(geometry), lambda ids: _Batch(geometry, curves, ids).solids())
 
 
 @dataclass(frozen=True)
@@ -86,10 +94,10 @@ class _Batch:
             for step in self.steps[end]
         }
 
-    def solids(self) -> list[Body]:
+    def solids(self) -> BrepBatch:
         corners = [self.points[:, end, k, level] for end, k, level in self.corners]
         faces = [*self._sides(), *self._ends(), self._long_face(0), self._long_face(1)]
-        return bodies(corners, self.edges, faces)
+        return brep_batch(self.ids, corners, self.edges, faces)
 
     def _add(self, edge: EdgeBatch) -> int:
         self.edges.append(edge)
