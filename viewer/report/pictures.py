@@ -12,7 +12,7 @@ from ..colors import WHITE
 from ..render import render_image
 from ..shapes import Shape
 
-SIZE = {"width": 540, "height": 330}
+WIDTH, HEIGHT = 540, 330
 
 
 def flat_shape(panels: Panels) -> Shape:
@@ -39,10 +39,12 @@ def flat_shape(panels: Panels) -> Shape:
 def striped_pictures(panels: Panels) -> tuple[str, str]:
     """Flat panels and panels, as addresses of pictures that hold them."""
     shell = replace(panels, thickness=0.0)
-    pictures = (
-        render_image(things=[flat_shape(panels)], shading="zebra", **SIZE),
-        render_image(shell, color_by="none", shading="zebra", **SIZE),
-    )
+    pictures = [
+        render_image(
+            shown, things=things, color_by="none", shading="zebra", width=WIDTH, height=HEIGHT
+        )
+        for shown, things in ((None, [flat_shape(panels)]), (shell, []))
+    ]
     addresses: list[str] = []
     for picture in pictures:
         file = io.BytesIO()
