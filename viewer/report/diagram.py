@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from html import escape
-from typing import Any
+from typing import Any, cast
 
 BOX = (116, 32)
 COLUMN, ROW = 128, 62
@@ -33,7 +33,7 @@ def _sources(inputs: object, steps: Mapping[str, Any]) -> set[str]:
     """Steps whose outputs stand anywhere among the inputs of one."""
     if isinstance(inputs, Mapping):
         found: set[str] = set()
-        values: Mapping[str, Any] = inputs
+        values = cast("Mapping[str, object]", inputs)
         wire = values.get("wire")
         if isinstance(wire, str) and wire.split(".")[0] in steps:
             found.add(wire.split(".")[0])
@@ -41,8 +41,8 @@ def _sources(inputs: object, steps: Mapping[str, Any]) -> set[str]:
             found |= _sources(value, steps)
         return found
     if isinstance(inputs, list):
-        entries: list[object] = inputs
-        return set().union(*(_sources(value, steps) for value in entries))
+        entries = cast("list[object]", inputs)
+        return {name for value in entries for name in _sources(value, steps)}
     return set()
 
 

@@ -33,7 +33,7 @@ table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}th,t
 th:first-child,td:first-child{text-align:left}th{font-weight:600;color:#5b636d}.words td,.words th{text-align:left;vertical-align:top}
 .pair{display:grid;grid-template-columns:1fr 1fr;gap:1rem}figure{margin:0}figure img{width:100%;border-radius:.4rem}figcaption{color:#5b636d;font-size:.9rem}
 svg{width:100%;height:auto;font:12px system-ui,sans-serif;fill:#3b4149}svg line{stroke:#9aa2ab}.keys{margin:.2rem 0;display:flex;gap:1.2rem}
-i{display:inline-block;width:.9em;height:.9em;border-radius:.2em;margin-right:.4em;vertical-align:-.1em}
+i{display:inline-block;width:.9em;height:.9em;border-radius:.2em;margin-right:.4em;vertical-align:-.1em}i,.verdict,pre{print-color-adjust:exact;-webkit-print-color-adjust:exact}
 .graph rect{fill:#f4f5f7;stroke:#c3c8ce}.graph path{fill:none;stroke:#b3bac2}.graph .fine{font-size:9px;fill:#78818b}
 code,pre{font:13px/1.45 ui-monospace,monospace;background:#f4f5f7;border-radius:.3rem}pre{padding:.7rem .9rem;white-space:pre-wrap}code{padding:.1rem .3rem}
 @media (max-width:40rem){.pair{grid-template-columns:1fr}}
@@ -102,7 +102,7 @@ def report_text(panels: Panels, facts: ReportFacts) -> str:
 
 
 def _verdict(report: Mapping[str, Any]) -> str:
-    errors = report["audit"]["errors"] if report["audit"] else []
+    errors: list[Mapping[str, Any]] = report["audit"]["errors"] if report["audit"] else []
     rejected = [*report["panels"]["rejected"], *report["beams"]["rejected"]]
     if report["buildable"]:
         return (
@@ -211,7 +211,8 @@ def _faults(report: Mapping[str, Any]) -> str:
     kinds: dict[tuple[str, str], list[tuple[str, str]]] = {}
     for part in (*report["panels"]["rejected"], *report["beams"]["rejected"]):
         kinds.setdefault((part["code"], "rejected"), []).append((part["id"], part["reason"]))
-    audit = report["audit"] or {"errors": [], "notes": []}
+    nothing: dict[str, list[Any]] = {"errors": [], "notes": []}
+    audit: Mapping[str, list[Mapping[str, Any]]] = report["audit"] or nothing
     for severity in ("errors", "notes"):
         for found in audit[severity]:
             known = kinds.setdefault((found["code"], severity[:-1]), [])

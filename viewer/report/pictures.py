@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...kernel.arrays import sum_by, unit
+from ...kernel.arrays import FloatArray, IntArray, sum_by, unit
 from ...kernel.panels.panels import Panels
 from ..colors import WHITE
 from ..render import render_image
@@ -23,10 +23,11 @@ def flat_shape(panels: Panels) -> Shape:
     middles = sum_by(owners, corners, count) / panels.degrees[:, None]
     following = panels.next_corners
     arms = corners - middles[owners]
-    normals = unit(sum_by(owners, np.cross(arms, arms[following]), count))
+    turns: FloatArray = np.cross(arms, arms[following])
+    normals = unit(sum_by(owners, turns, count))
     rows = np.zeros((count, 5))
     rows[:, 1:4] = normals
-    first = np.arange(len(owners))
+    first: IntArray = np.arange(len(owners))
     return Shape(
         origin,
         np.concatenate([corners, middles]),
@@ -39,11 +40,12 @@ def flat_shape(panels: Panels) -> Shape:
 def striped_pictures(panels: Panels) -> tuple[str, str]:
     """Flat panels and panels, as addresses of pictures that hold them."""
     shell = replace(panels, thickness=0.0)
+    views: list[tuple[Panels | None, list[Shape]]] = [(None, [flat_shape(panels)]), (shell, [])]
     pictures = [
         render_image(
             shown, things=things, color_by="none", shading="zebra", width=WIDTH, height=HEIGHT
         )
-        for shown, things in ((None, [flat_shape(panels)]), (shell, []))
+        for shown, things in views
     ]
     addresses: list[str] = []
     for picture in pictures:

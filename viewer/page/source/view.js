@@ -144,7 +144,8 @@ export class View {
     this.camera.updateProjectionMatrix();
     // What was made to fit fits again; who has turned the model keeps the view.
     if (this.fitted) this.fit(this.fitted);
-    this.draw();
+    // At once: whoever prints the page does not wait.
+    if (this.ready) this.drawNow();
   }
 
   /** The nearest camera from a direction whose pyramid holds the model: `frame_scene`. */
@@ -224,6 +225,7 @@ export class View {
     Object.assign(this.visible, { beams, nodes });
     await next();
     setTimeout(() => {
+      this.ready = true;
       this.renderer.setPixelRatio(ratio);
       this.draw();
     }, 150);
