@@ -34,7 +34,7 @@ export function addBeams(shapes, head, arrays, at) {
     addBeam(shapes, lines, m, half, part, hidden);
     shapes.centers.push([0, 1, 2].map((i) => (a0[i] + a1[i] + b0[i] + b1[i]) / 4));
     shapes.lifts.push([0, 0, 0]);
-    head.beams.nodes[b].forEach((node, k) => ends.set(node, k ? [a1, b1, part] : [a0, b0, part]));
+    head.beams.nodes?.[b].forEach((node, k) => ends.set(node, k ? [a1, b1, part] : [a0, b0, part]));
   }
   // Cylinders have their own axes; without them beams end on the axes of their nodes.
   if (!head.nodes.id.length) for (const [top, low, part] of ends.values()) addAxis(shapes, top, low, part);

@@ -75,7 +75,7 @@ function addPanels(shapes, head, arrays, at) {
     if (inner) {
       const other = inner[arrays.inner_kinds[f]];
       const under = addFace(soup, other, arrays.inner_points, arrays.inner_light, i, face, INNER, degree);
-      addWalls(shapes, rim, under, f, degree, (e) => head.tight && head.panels.neighbors[f][e] !== null);
+      addWalls(shapes, rim, under, f, degree, (e) => head.tight === true && head.panels.neighbors[f][e] !== null);
       i += other.points;
     }
     o += own.points;

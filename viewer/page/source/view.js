@@ -55,7 +55,6 @@ function shiftTexels(shapes) {
 export class View {
   constructor(canvas, head, arrays, shapes) {
     this.canvas = canvas;
-    this.shapes = shapes;
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
     this.renderer.setClearColor(0xffffff, 0);
@@ -72,13 +71,42 @@ export class View {
     this.flat = "off";
     this.swipe = 0.5;
     this.visible = { panels: true, edges: true, beams: true, nodes: true, axes: false, missing: true };
+    this.ready = true;
+    this.target = new WebGLRenderTarget(1, 1);
+    this.pending = 0;
+    this.load(head, arrays, shapes);
+  }
+
+  /** Show a model; one that was shown before makes room, and the camera stays where it is. */
+  load(head, arrays, shapes) {
+    this.clear();
+    this.shapes = shapes;
     const parts = shapes.centers.length;
     this.colorData = new Uint8Array(1024 * Math.ceil(Math.max(1, parts) / 1024) * 4).fill(255);
     this.uniforms = this.makeUniforms(parts);
     this.edge = meanEdge(shapes.corners);
     this.build(head, arrays);
-    this.target = new WebGLRenderTarget(1, 1);
-    this.pending = 0;
+    this.draw();
+  }
+
+  /** Give back what the graphics hold of the present model. */
+  clear() {
+    for (const each of [...this.scene.children]) {
+      this.scene.remove(each);
+      each.geometry.dispose();
+      for (const { value } of Object.values(each.material.uniforms)) if (value?.isTexture) value.dispose();
+      each.material.dispose();
+    }
+  }
+
+  /** Give back all: nothing is drawn here any more. */
+  dispose() {
+    cancelAnimationFrame(this.pending);
+    this.pending = -1;
+    this.clear();
+    this.target.dispose();
+    this.controls.dispose();
+    this.renderer.dispose();
   }
 
   makeUniforms(parts) {
@@ -216,6 +244,7 @@ export class View {
 
   /** A coarse picture at once, a fine one when that has been shown. */
   async drawFirst() {
+    this.ready = false;
     const next = () => new Promise((done) => { requestAnimationFrame(done); });
     const ratio = this.renderer.getPixelRatio(), { beams, nodes } = this.visible;
     this.renderer.setPixelRatio(ratio / 2);
