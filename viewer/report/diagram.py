@@ -1,4 +1,7 @@
-"""A graph as a picture: steps in rows, each below those that it needs."""
+"""A graph as a picture for paper: steps in rows, each below those that it needs.
+
+`Graph.svg` lies, for screens that scroll; a page of paper has room downwards.
+"""
 
 from collections.abc import Mapping
 from html import escape
