@@ -227,6 +227,11 @@ def quad_pattern() -> Image.Image:
     return _beside(*_pictures_of("15_quad_pattern", *names))
 
 
+def patterns() -> Image.Image:
+    """One canopy in six patterns."""
+    return _made_by("16_patterns", "patterns.png")
+
+
 def supports() -> Image.Image:
     """Beams on node axes from below, one of their nodes, and upright beams at a cylinder."""
     mesh = roof_mesh(12, 18)
@@ -393,6 +398,7 @@ PICTURES = {
     "remeshed-torus": remeshed_torus,
     "remeshed-roof": remeshed_roof,
     "quad-pattern": quad_pattern,
+    "patterns": patterns,
     "supports": supports,
     "cost-curve": cost_against_smoothness,
     "assemblies": assemblies,
