@@ -11,7 +11,7 @@ verdict  Whether the model can be built; if not, why not, and what would do.
 """
 
 from .graph import feasible_panel_graph, panel_graph
-from .job import is_panel_job, run_job
+from .job import is_panel_job, run_job, said_to
 from .options import PanelOptions, model_units
 from .pattern import say_gain
 
@@ -22,5 +22,6 @@ __all__ = [
     "model_units",
     "panel_graph",
     "run_job",
+    "said_to",
     "say_gain",
 ]

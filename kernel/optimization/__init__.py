@@ -31,6 +31,7 @@ flat_panels         Panels that bulge less than an eye can tell, as planes.
 line_clusters       Clusters of numbers on a line with the least sum of squares, exactly.
 comparison          Is an optimum better than doing nothing?
 whole_energy        Energy (6): smooth spheres, upright planes between them, nodes with axes.
+costs               What it will take, said beforehand where it is much.
 energies            The terms of energy (6) and their table.
 descent             How their sum falls, and what has to hold.
 """
