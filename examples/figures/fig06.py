@@ -25,7 +25,7 @@ def draw(*, small: bool = False) -> Figure:
         float(np.abs(np.linalg.norm(side.vertices - centers, axis=1) - radii).max())
         for side in sides
     )
-    step = (n - 1) // 6
+    step = (n - 1) // (3 if small else 6)
     sparse = np.arange(n * n).reshape(n, n)[step // 2 :: step, step // 2 :: step].ravel()
     spheres = sphere_shape(sphere_rows(centers[sparse], radii[sparse]), BLUE)
     upper = [mesh_shape(sides[0], SAND, smooth=True), mesh_shape(sides[1], GREEN, smooth=True)]

@@ -18,7 +18,7 @@ from spheremesh.viewer.shapes import axis_shape, mesh_shape
 
 def draw(*, small: bool = False) -> Figure:
     """A roof whose spheres are best for angles, and best with a support structure."""
-    net = roof_mesh(6, 10, 12.0) if small else roof_mesh(10, 16, 12.0)
+    net = roof_mesh(5, 7, 10.0) if small else roof_mesh(10, 16, 12.0)
     free = minimize_angles(fit_spheres(net)).sphere_mesh
     loose = optimize_spheres(free, regularity=0.5).sphere_mesh
     built = optimize_spheres(free, regularity=3.5, support=1.0, tolerance=0.05).sphere_mesh
