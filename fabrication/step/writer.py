@@ -38,6 +38,7 @@ from ..model import Model, Written, check_model
 from ..units import millimeters_per
 from .assembly import Group, Instance, Part, StepHeader, StepSchema, assembly_lines
 from .bodies import line_body, step_bodies
+from .parameter_curves import ParameterCurves
 
 StepCopies = Literal["shapes", "instances"]
 
@@ -49,12 +50,15 @@ class StepOptions:
     It declares the units ``mm``, ``cm``, ``m``, ``in`` or ``ft``; the title is in its header.
     Copies are ``shapes``, a shape of its own for every panel, or ``instances``: identical
     panels (see `congruent_panels`) are instances of one shape, named after the first of them.
+    Arcs get curves in the parameters of their spheres where readers need them, all of them or
+    none.
     """
 
     units: str = "mm"
     schema: StepSchema = "AP214IS"
     title: str = "Spherical panels"
     copies: StepCopies = "shapes"
+    parameter_curves: ParameterCurves = "needed"
 
 
 _SHAPES_IN_MM: Final = StepOptions()
@@ -86,12 +90,18 @@ def write_step(
     panels, beams = model.panels, model.beams
     if options.schema not in get_args(StepSchema):
         raise InputError(f"unknown STEP schema {options.schema!r}: use AP214IS or AP242DIS")
+    if options.parameter_curves not in get_args(ParameterCurves):
+        raise InputError(
+            f"parameter curves must be needed, all or none, not {options.parameter_curves!r}"
+        )
     if options.copies not in get_args(StepCopies):
         raise InputError(f"copies must be shapes or instances, not {options.copies!r}")
     millimeters = millimeters_per(options.units)
     scale, confusion = millimeters_per(model.units) / millimeters, CONFUSION / millimeters
     build = _panel_parts if options.copies == "shapes" else _shared_parts
-    parts = build(panels, scale, confusion) if panels is not None and panels.n_panels else []
+    parts = []
+    if panels is not None and panels.n_panels:
+        parts = build(panels, scale, confusion, options.parameter_curves)
     root = Group("Panels", parts)
     if beams is not None and beams.n_beams:
         support = _support_parts(beams, scale, confusion)
@@ -109,23 +119,27 @@ def write_step(
     return Written(target)
 
 
-def _panel_parts(panels: Panels, scale: float, confusion: float) -> list[Part]:
+def _panel_parts(
+    panels: Panels, scale: float, confusion: float, curves: ParameterCurves
+) -> list[Part]:
     """A part per panel, where it stands."""
     panels = panels_in_place(panels, scale)
     tolerances = _file_tolerances(panel_tolerances(panels, confusion), confusion)
     return [
         Part(body, name, *mould, tolerance, (Instance(name, tuple(place)),))
         for body, name, mould, tolerance, place in zip(
-            step_bodies(panel_batches(panels)), panels.ids, _moulds(panels), tolerances,
-            panels.origins.tolist(), strict=True,
+            step_bodies(panel_batches(panels), confusion, curves), panels.ids, _moulds(panels),
+            tolerances, panels.origins.tolist(), strict=True,
         )
     ]  # fmt: skip
 
 
-def _shared_parts(panels: Panels, scale: float, confusion: float) -> list[Part]:
+def _shared_parts(
+    panels: Panels, scale: float, confusion: float, curves: ParameterCurves
+) -> list[Part]:
     """A part per shape, wherever it stands."""
     same = congruent_panels(panels)
-    parts = _panel_parts(panels, scale, confusion)
+    parts = _panel_parts(panels, scale, confusion, curves)
     places = copy_places(panels, same, scale).tolist()
     copies = [
         Instance(name, tuple(place)) for name, place in zip(panels.ids, places, strict=True)
@@ -146,7 +160,7 @@ def _beam_parts(beams: Beams, scale: float, confusion: float) -> list[Part]:
     return [
         Part(body, name, "Beams", BEAM_COLOR, tolerance, (Instance(name, tuple(place)),))
         for body, name, tolerance, place in zip(
-            step_bodies(beam_batches(numbers)), beams.annuli.ids, tolerances,
+            step_bodies(beam_batches(numbers), confusion), beams.annuli.ids, tolerances,
             numbers.places.tolist(), strict=True,
         )
     ]  # fmt: skip
@@ -165,7 +179,7 @@ def _support_parts(beams: Beams, scale: float, confusion: float) -> list[Group |
         nodes = [
             Part(body, name, "Nodes", NODE_COLOR, confusion, (Instance(name, tuple(place)),))
             for body, name, place in zip(
-                step_bodies([made]), found.ids, places.tolist(), strict=True
+                step_bodies([made], confusion), found.ids, places.tolist(), strict=True
             )
         ]
         groups.append(Group("Nodes", nodes))
