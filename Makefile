@@ -22,7 +22,7 @@ PARALLEL = OPENBLAS_NUM_THREADS=1 $(PYTEST) -n 2 --dist loadfile
 # bits. Haswell is what AMD processors get, Prescott the oldest. Ignored where there is no x86.
 CORETYPES := Haswell Prescott
 
-.PHONY: demo test test-long test-kernels lint bench docs install system browser clean
+.PHONY: demo test test-long test-kernels release-check lint bench docs install system browser clean
 
 demo: system
 	$(BIN)/spheremesh panel -o out/demo --moulds 8 --thickness 0.02
@@ -37,6 +37,11 @@ test-long: system
 test-kernels: system
 	@for each in $(CORETYPES); do echo "OPENBLAS_CORETYPE=$$each"; \
 	  OPENBLAS_CORETYPE=$$each $(PARALLEL) tests/kernel || exit 1; done
+
+# The oldest libraries, none that is optional, and the wheel from an empty folder (noxfile.py).
+release-check: system
+	@$(BIN)/python -c 'import nox' 2>/dev/null || $(BIN)/python -m pip install -qq --group release
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/nox
 
 lint: system
 	$(BIN)/ruff check .

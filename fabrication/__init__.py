@@ -1,8 +1,9 @@
 """Exact geometry in the files that fabricators open.
 
-`files` is the only way to write: beside the target, then renamed; `replacing_all` does it for
-a folder, so a failed job leaves nothing behind. A killed process leaves each file old or new,
-never half, and what it leaves besides is removed after a day by the next that writes there.
+`files` is the only way to write: beside the target, then renamed; `folders` does it for all
+files of a job, so a failed one leaves nothing behind. A killed process leaves each file old or
+new, never half; the next that writes there moves what was whole and did not come to move, and
+removes after a day what else was left.
 Facts of parts are measured once, in the kernel; schedule, audit, user text and drawings read
 them.
 
@@ -20,7 +21,9 @@ audit       Numbered findings before files go out.
 solids      The same parts as shapes of OpenCASCADE and CadQuery.
 model       What every writer writes, and what it gives back.
 output_folder  The folder of a job: nothing of the user's is overwritten there.
+folders     Files of a job that move into their folder together, one job at a time.
 files       Files written whole or not at all.
+locks       Files that one process holds against others.
 units       Units of length: the only place that knows what a millimetre is.
 sizes       How large a model is in its units, and whether a building can be so.
 polygons    What a mesh file says, before it is known to be a mesh.

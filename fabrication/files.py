@@ -17,7 +17,7 @@ from typing import Final
 
 from ..kernel.errors import InputError
 
-_MARK: Final = "spheremesh-"
+MARK: Final = "spheremesh-"
 """In the names of temporary files and folders, which nobody else would choose."""
 
 _RANDOM: Final = "????????"
@@ -63,7 +63,7 @@ def check_target(path: str | os.PathLike[str]) -> None:
         # A rename would pass over the mark of a file that is to stay.
         is_read_only = target.exists() and not os.access(target, os.W_OK)
     except (OSError, ValueError) as error:
-        raise _unwritable(target, error) from error
+        raise unwritable(target, error) from error
     if not has_folder:
         raise InputError(f"cannot write {target}: there is no folder {folder}; create it first")
     if is_folder:
@@ -91,11 +91,11 @@ def replacing(path: str | os.PathLike[str]) -> Generator[Path]:
     check_target(path)
     target = Path(path)
     stem = os.fsencode(target.stem)[:_LONGEST].decode(errors="ignore")
-    prefix, suffix = f".{stem}-{_MARK}", target.suffix
+    prefix, suffix = f".{stem}-{MARK}", target.suffix
     try:
         handle, name = tempfile.mkstemp(dir=target.parent, prefix=prefix, suffix=suffix)
     except (OSError, ValueError) as error:
-        raise _unwritable(target, error) from error
+        raise unwritable(target, error) from error
     os.close(handle)
     temporary = Path(name)
     try:
@@ -105,14 +105,14 @@ def replacing(path: str | os.PathLike[str]) -> Generator[Path]:
         temporary.chmod(0o666 & ~_umask())
         temporary.replace(target)
     except OSError as error:
-        raise _unwritable(target, error) from error
+        raise unwritable(target, error) from error
     finally:
         with suppress(OSError):  # Windows keeps what a program holds: the next one tidies up
             temporary.unlink(missing_ok=True)
-    _tidy(target.parent, prefix, suffix)
+    tidy(target.parent, prefix, suffix)
 
 
-def _tidy(folder: Path, prefix: str, suffix: str = "") -> None:
+def tidy(folder: Path, prefix: str, suffix: str = "") -> None:
     """Remove what killed processes have left of a target; what resists stays."""
     with suppress(OSError):
         for left in folder.glob(glob.escape(prefix) + _RANDOM + glob.escape(suffix)):
@@ -126,69 +126,10 @@ def _umask() -> int:
     return mask
 
 
-@contextmanager
-def replacing_all(folder: str | os.PathLike[str]) -> Generator[Path]:
-    """A temporary folder whose files move into `folder` together when the block succeeds.
-
-    Parameters
-    ----------
-    folder : path
-        Folder to write into; made if it does not exist.
-
-    Yields
-    ------
-    Path
-        Where to write; what goes into a folder below stands in one of the same name. When the
-        block raises, nothing of it is left, nor a folder made here.
-        The files move in the order in which they were written: whoever is killed meanwhile
-        leaves whole files, and the last one is new only if all are.
-
-    Raises
-    ------
-    InputError
-        If the folder cannot be made or written to, or one of the files cannot.
-    """
-    target = Path(folder)
-    made = [path for path in (target, *target.parents) if not path.exists()]
-    try:
-        target.mkdir(parents=True, exist_ok=True)
-        temporary = Path(tempfile.mkdtemp(dir=target, prefix=f".{_MARK}"))
-    except OSError as error:
-        _remove_empty(made)
-        raise InputError(
-            f"cannot write into the folder {target}: {error.strerror}; choose another"
-        ) from error
-    try:
-        yield temporary
-        files = [path for path in temporary.rglob("*") if not path.is_dir()]
-        files.sort(key=lambda path: path.stat().st_mtime_ns)
-        targets = [target / path.relative_to(temporary) for path in files]
-        for each in targets:
-            check_target(each)
-        for path, each in zip(files, targets, strict=True):
-            _move(path, each)
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
-        _remove_empty(made)
-    _tidy(target, f".{_MARK}")
-
-
-def _move(written: Path, target: Path) -> None:
-    try:
-        written.replace(target)
-    except OSError as error:
-        raise _unwritable(target, error) from error
-
-
-def _unwritable(target: Path, error: OSError | ValueError) -> InputError:
+def unwritable(target: Path, error: OSError | ValueError) -> InputError:
+    """What to raise where the system refuses to write a file."""
     reason = getattr(error, "strerror", None) or error
     return InputError(
         f"cannot write {target}: {reason}; check the name, the disk, and whether a program has "
         "the file open"
     )
-
-
-def _remove_empty(folders: list[Path]) -> None:
-    for folder in folders:
-        if folder.is_dir() and not any(folder.iterdir()):
-            folder.rmdir()

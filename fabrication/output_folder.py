@@ -17,7 +17,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from ..kernel.errors import InputError
-from .files import check_target, replacing_all
+from .files import check_target
+from .folders import replacing_all
 
 REPORT: Final = "report.json"
 RECORD: Final = ".spheremesh.json"

@@ -1,5 +1,6 @@
 """How commands end and what they say meanwhile: errors in one line, exit codes, progress."""
 
+import signal
 import sys
 import traceback
 import warnings
@@ -17,6 +18,29 @@ FAULT: Final = 1
 BAD_INPUT: Final = 3
 NOT_CONVERGED: Final = 4
 GATE_FAILED: Final = 5
+
+
+_ENDING: Final = ("SIGINT", "SIGTERM", "SIGHUP")
+"""Signals that end a program; not every system has all of them."""
+
+
+def tidy_up_on_signals() -> None:
+    """Let signals end the program as errors do, so that no file is left that is not whole.
+
+    The exit code is that of shells, 128 and the number of the signal: 130 after Ctrl+C, 143
+    after SIGTERM. What comes while the program tidies up is ignored.
+    """
+    numbers = [getattr(signal, name) for name in _ENDING if hasattr(signal, name)]
+
+    def _end(number: int, _frame: object) -> None:
+        for each in numbers:
+            signal.signal(each, signal.SIG_IGN)
+        sys.exit(128 + number)
+
+    for each in numbers:
+        # Who starts us may want a signal ignored, as nohup does.
+        if signal.getsignal(each) is not signal.SIG_IGN:
+            signal.signal(each, _end)
 
 
 @contextmanager

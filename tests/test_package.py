@@ -1,8 +1,10 @@
 """The package as it is installed."""
 
+import re
 import subprocess
 import sys
 import tomllib
+from importlib import metadata
 from pathlib import Path
 
 import spheremesh
@@ -24,9 +26,13 @@ def test_packages_are_the_folders() -> None:
     assert set(mapping) == set(listed)
 
 
-def test_version_is_that_of_the_project() -> None:
-    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    assert spheremesh.__version__ == settings["project"]["version"]
+def test_the_version_stands_in_one_place() -> None:
+    assert metadata.version("spheremesh") == spheremesh.__version__
+    changelog = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    latest = re.search(r"^## (?!Unreleased)(\S+)", changelog, re.MULTILINE)
+    assert latest is None or latest[1] == spheremesh.__version__
+    assert f"\nversion: {spheremesh.__version__}\n" in citation
 
 
 def test_import_leaves_heavy_libraries_alone() -> None:

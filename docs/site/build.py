@@ -21,6 +21,7 @@ ROOT = SITE.parents[1]
 GUIDES = (
     "panels", "mesh-files", "surfaces", "patterns", "supports", "exact-supports", "beams",
     "assembly", "optimization", "remeshing", "hexagons", "models", "graphs", "security",
+    "limits",
 )  # fmt: skip
 """Order of the pages of docs/; those that are not named come after them."""
 GRASSHOPPER = "grasshopper"

@@ -85,7 +85,8 @@ def panel_graph(
     InputError
         If the units of the file are to be used and it cannot be read.
     """
-    title = options.mesh.stem if options.mesh else "roof"
+    # Names of files may be no text; what shows them is.
+    title = options.mesh.stem.encode(errors="replace").decode() if options.mesh else "roof"
     graph = Graph(title, units=options.units or model_units(options)[0])
     thickness = graph.param("thickness", options.thickness, min=0)
     joint_gap = graph.param("joint_gap", options.joint_gap, min=0)

@@ -1,6 +1,9 @@
 """What the tests of fabrication share: spheres on given faces, and panels in few moulds."""
 
+import os
+import time
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -49,3 +52,21 @@ def moulded() -> Callable[..., Panels]:
         return panels
 
     return cut
+
+
+def left(path: Path, age: float) -> Path:
+    """Something of an age, as a killed process left it; a folder if it has no suffix."""
+    if path.suffix:
+        path.write_text("half")
+    else:
+        path.mkdir()
+        (path / "model.3dm").write_text("half")
+    then = time.time() - age
+    os.utime(path, (then, then))
+    return path
+
+
+@pytest.fixture
+def leave() -> Callable[[Path, float], Path]:
+    """Something of an age in seconds, as a killed process left it."""
+    return left

@@ -2,30 +2,20 @@
 
 import errno
 import os
-import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from spheremesh.fabrication.files import check_target, replacing, replacing_all
+from spheremesh.fabrication.files import check_target, replacing
 from spheremesh.kernel.errors import InputError
 
 DAY = 86400
 
 
-def leave(path: Path, age: float) -> Path:
-    """Something of an age, as a killed process left it; a folder if it has no suffix."""
-    if path.suffix:
-        path.write_text("half")
-    else:
-        path.mkdir()
-        (path / "model.3dm").write_text("half")
-    then = time.time() - age
-    os.utime(path, (then, then))
-    return path
-
-
-def test_what_killed_processes_left_goes_after_a_day(tmp_path: Path) -> None:
+def test_what_killed_processes_left_goes_after_a_day(
+    tmp_path: Path, leave: Callable[[Path, float], Path]
+) -> None:
     target = tmp_path / "panels [1].step"
     old = leave(tmp_path / ".panels [1]-spheremesh-abc_12ef.step", 2 * DAY)
     kept = [
@@ -43,91 +33,12 @@ def test_what_killed_processes_left_goes_after_a_day(tmp_path: Path) -> None:
     assert set(tmp_path.iterdir()) == {target, *kept}
 
 
-def test_folders_that_killed_processes_left_go_after_a_day(tmp_path: Path) -> None:
-    old = leave(tmp_path / ".spheremesh-abc_12ef", 2 * DAY)
-    kept = [
-        leave(tmp_path / ".spheremesh-abcdefgh", 0.5 * DAY),
-        leave(tmp_path / ".panels-spheremesh-abcdefgh.step", 2 * DAY),
-    ]
-    with replacing_all(tmp_path) as staging:
-        (staging / "a.txt").write_text("new")
-    assert not old.exists()
-    assert set(tmp_path.iterdir()) == {tmp_path / "a.txt", *kept}
-
-
-def test_files_of_a_folder_move_as_they_were_written(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A report that is written last tells, if it is new, that all files are."""
-    moved: list[str] = []
-    replace = Path.replace
-
-    def note(self: Path, target: Path) -> Path:
-        moved.append(target.name)
-        return replace(self, target)
-
-    monkeypatch.setattr(Path, "replace", note)
-    names = ["b.txt", "c.txt", "a.txt"]
-    with replacing_all(tmp_path) as staging:
-        for i, name in enumerate(names):
-            (staging / name).write_text("new")
-            os.utime(staging / name, ns=(10**9 * i, 10**9 * i))
-    assert moved == names
-
-
-def write_both(folder: Path) -> None:
-    for name in ("a.txt", "b.txt"):
-        (folder / name).write_text("new")
-
-
-def test_files_of_a_folder_move_only_if_all_can(tmp_path: Path) -> None:
-    (tmp_path / "a.txt").write_text("old")
-    (tmp_path / "b.txt").mkdir()
-    with (
-        pytest.raises(InputError, match=r"cannot write .*b\.txt: it is a folder"),
-        replacing_all(tmp_path) as staging,
-    ):
-        write_both(staging)
-    assert (tmp_path / "a.txt").read_text() == "old"
-    assert {path.name for path in tmp_path.iterdir()} == {"a.txt", "b.txt"}
-
-
-def test_a_file_of_a_folder_that_is_held_is_named(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def fail(*_: object) -> None:
-        raise PermissionError(13, "The process cannot access the file")
-
-    monkeypatch.setattr(Path, "replace", fail)
-    with (
-        pytest.raises(InputError, match=r"cannot write .*a\.txt: The process cannot access"),
-        replacing_all(tmp_path) as staging,
-    ):
-        (staging / "a.txt").write_text("new")
-    assert not list(tmp_path.iterdir())
-
-
 def test_a_target_that_cannot_be(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="it is a folder"):
         check_target(tmp_path)
     with pytest.raises(InputError, match="no folder"):
         check_target(tmp_path / "none" / "p.step")
     check_target(tmp_path / "p.step")
-
-
-def test_a_folder_in_the_place_of_one_file_keeps_all_others(tmp_path: Path) -> None:
-    (tmp_path / "a.txt").write_text("old")
-    (tmp_path / "b.txt").mkdir()
-
-    def _write() -> None:
-        with replacing_all(tmp_path) as staging:
-            for name in ("a.txt", "b.txt"):
-                (staging / name).write_text("new")
-
-    with pytest.raises(InputError, match=r"b\.txt: it is a folder"):
-        _write()
-    assert (tmp_path / "a.txt").read_text() == "old"
-    assert {path.name for path in tmp_path.iterdir()} == {"a.txt", "b.txt"}
 
 
 def test_windows_syncs_only_what_is_open_for_writing(

@@ -192,7 +192,7 @@ def _make_all(run: Run, order: list[str]) -> None:
     for i, name in enumerate(order):
         try:
             run.entries[name] = _make(run, run.steps[name])
-        except RunCancelledError:
+        except (RunCancelledError, KeyboardInterrupt, SystemExit):  # from us, or a signal
             for later in order[i:]:
                 run.watch.tell(Event(later, "cancelled"))
             raise

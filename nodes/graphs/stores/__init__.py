@@ -7,7 +7,7 @@ incomplete or of another version is as good as missing.
 digests     Fingerprints of values and files by content.
 disk        Results on disk, shared by processes.
 entries     What is kept of a step: value, messages, files, seconds.
-flights     One at a time for each key, among threads and among processes.
+flights     One at a time for each key, among threads.
 footprints  How many bytes a value takes, shared arrays counted once.
 memory      Results in memory, the longest unused forgotten first.
 origins     The code that a result comes from, as a fingerprint.

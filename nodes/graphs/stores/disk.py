@@ -20,11 +20,12 @@ from typing import Any, Final, NamedTuple
 
 import xxhash
 
+from ....fabrication.locks import locked_file
 from ..annotations import Value
 from ..errors import GraphError
 from .digests import FileState, content_state
 from .entries import Entry
-from .flights import Flights, locked_file
+from .flights import Flights
 from .memory import MOST_BYTES as MEMORY_BYTES
 from .memory import MemoryStore
 from .origins import code_origin

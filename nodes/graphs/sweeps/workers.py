@@ -5,6 +5,8 @@ takes nothing with it but the point it was at, and that one only if it dies agai
 """
 
 import multiprocessing
+import signal
+import sys
 import time
 from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import (
@@ -80,14 +82,28 @@ def in_processes(workers: int, study: Study, tasks: Sequence[Task]) -> Outcomes:
     while pending or suspects:
         # After a death those under way run one at a time, so that it is known whose it was.
         queue, width = (suspects, 1) if suspects else (pending, workers)
-        with ProcessPoolExecutor(width, mp_context=context) as pool:
-            lost = yield from _until_death(pool, width, study, queue)
+        others = set(multiprocessing.active_children())
+        with ProcessPoolExecutor(width, context, initializer=_end_on_sigterm) as pool:
+            try:
+                lost = yield from _until_death(pool, width, study, queue)
+            except BaseException:
+                # Nobody waits for what runs: it tidies up and ends.
+                pool.shutdown(wait=False, cancel_futures=True)
+                for process in set(multiprocessing.active_children()) - others:
+                    process.terminate()
+                raise
         for task in lost:
             deaths[task[0]] = deaths.get(task[0], 0) + (queue is suspects)
             if deaths[task[0]] > _RETRIES - 1:
                 yield task[0], Outcome(error=DIED)
             else:
                 suspects.append(task)
+
+
+def _end_on_sigterm() -> None:
+    """In a worker: its parent alone says when to end, and files are left whole then."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, lambda number, _frame: sys.exit(128 + number))
 
 
 def _until_death(

@@ -135,6 +135,25 @@ def test_a_run_is_cancelled_inside_a_step() -> None:
     assert states == ["running", "cancelled"]
 
 
+def test_a_node_that_is_interrupted_ends_the_run_and_the_next_is_right() -> None:
+    interrupts = [KeyboardInterrupt, SystemExit]
+
+    @node
+    def interrupted(a: int) -> int:
+        if interrupts:
+            raise interrupts.pop()
+        return a
+
+    g = sm.Graph()
+    target = g.add("add", a=g.add(interrupted, a=1), b=1)
+    states: list[str] = []
+    for kind in reversed(interrupts.copy()):
+        with pytest.raises(kind):
+            g.run(target, on_step=lambda step, state: states.append(f"{step} {state}"))
+    assert states == 2 * ["interrupted running", "interrupted cancelled", "add cancelled"]
+    assert g.run(target) == 2
+
+
 def test_progress_outside_of_a_graph_says_nothing() -> None:
     assert patient(3.0) == 3.0
 

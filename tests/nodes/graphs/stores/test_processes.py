@@ -8,11 +8,9 @@ import time
 from collections import Counter
 from pathlib import Path
 
-import pytest
-
 import spheremesh as sm
 from spheremesh.nodes import node
-from spheremesh.nodes.graphs.stores.flights import Flights, locked_file
+from spheremesh.nodes.graphs.stores.flights import Flights
 
 WORKER = """
 import sys, time
@@ -95,27 +93,6 @@ def test_a_thread_waits_for_another_and_not_for_itself() -> None:
         order.append("second")
     thread.join()
     assert order == ["other", "first", "second"]
-
-
-class StopWaitingError(Exception):
-    """Raised by a check."""
-
-
-def stop() -> None:
-    raise StopWaitingError
-
-
-def test_who_waits_can_give_up(tmp_path: Path) -> None:
-    path = tmp_path / "lock"
-    with (
-        locked_file(path, stop),
-        pytest.raises(StopWaitingError),
-        locked_file(path, stop),
-    ):
-        pass
-    assert not path.exists()
-    with locked_file(path, stop):
-        assert path.exists()
 
 
 def test_threads_share_a_store() -> None:

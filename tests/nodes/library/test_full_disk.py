@@ -1,0 +1,70 @@
+"""No room: every writer says so in one error and leaves the older file as it was."""
+
+import sys
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from spheremesh import nodes
+from spheremesh.kernel.errors import InputError
+from spheremesh.nodes.graphs.node import REGISTRY, load_library
+
+if sys.platform != "win32":
+    import resource
+
+
+@contextmanager
+def room(n_bytes: int) -> Generator[None]:
+    """No file can grow beyond so many bytes, as on a disk that is full then."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (n_bytes, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+def writers() -> dict[str, Callable[[Path], object]]:
+    """A call for each kind of file that each writer writes, by name of the node and suffix."""
+    mesh = nodes.ellipsoid_mesh(6, 3)
+    spheres = nodes.fit_spheres(mesh)
+    panels = nodes.panels(spheres, thickness=0.02).panels
+    beams = nodes.beams(nodes.annulus_support(spheres, depth=0.25).annuli, 0.025).beams
+    small = {"width": 160, "height": 100}
+    return {
+        "write_step.step": lambda path: nodes.write_step(panels, path, beams=beams),
+        "write_3dm.3dm": lambda path: nodes.write_3dm(panels, path, beams=beams),
+        "write_dxf.dxf": lambda path: nodes.write_dxf(beams, path),
+        "write_schedule.csv": lambda path: nodes.write_schedule(panels, path),
+        "write_schedule.json": lambda path: nodes.write_schedule(panels, path, beams=beams),
+        "write_schedule.xlsx": lambda path: nodes.write_schedule(panels, path, beams=beams),
+        "write_mould_drawings.dxf": lambda path: nodes.write_mould_drawings(panels, path),
+        "write_mould_drawings.svg": lambda path: nodes.write_mould_drawings(panels, path),
+        "render.png": lambda path: nodes.render(panels, path, **small),
+        "render_assembly.png": lambda path: nodes.render_assembly(panels, beams, path, **small),
+        "write_view.html": lambda path: nodes.write_view(panels, path, beams=beams),
+        **{
+            f"write_mesh.{kind}": lambda path: nodes.write_mesh(mesh, path)
+            for kind in ("obj", "off", "ply", "stl", "3dm")
+        },
+    }
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no bound on sizes of files")
+def test_every_writer_on_a_full_disk(tmp_path: Path) -> None:
+    calls = writers()
+    load_library()
+    writing = {node.name for node in REGISTRY.values() if node.is_writer}
+    assert {name.split(".")[0] for name in calls} >= writing
+    for name, write in calls.items():
+        path = tmp_path / name
+        write(path)
+        size = path.stat().st_size
+        for n_bytes in (0, size // 2, size - 1):
+            path.write_bytes(b"old")
+            with room(n_bytes), pytest.raises(InputError, match=f"cannot write .*{name}"):
+                write(path)
+            assert path.read_bytes() == b"old"
+    assert {path.name for path in tmp_path.iterdir()} == set(calls)
