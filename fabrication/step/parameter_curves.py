@@ -7,11 +7,12 @@ Boolean operations (`BOPAlgo_InvalidCurveOnSurface`), and curves in the file are
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import lru_cache
 from typing import Final, Literal
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from ...kernel.arrays import FloatArray, IntArray, dot, norm, unit
 from ..breps.records import BrepBatch
@@ -51,7 +52,6 @@ def arcs_on_faces(
     batch: BrepBatch, shared: SharedGeometry, confusion: float, curves: ParameterCurves
 ) -> Iterator[ArcsOnFaces]:
     """Splines where they are needed, for all arcs or for none, by their numbers of poles."""
-    count = len(shared.members)
     pairs = tuple(
         (edge, f)
         for f, face in enumerate(batch.faces)
@@ -59,19 +59,28 @@ def arcs_on_faces(
         for edge, _ in face.ring
         if batch.edges[edge].kind == "CIRCLE"
     )
-    counts = np.zeros(count, np.int64)
+    members = np.arange(len(shared.members))
     if pairs and curves != "none":
-        arcs = _Arcs(batch, shared, pairs, confusion)
         bound = _SHARE * confusion
-        counts = arcs.pole_counts(bound)
+        arcs = _arcs(batch, shared, pairs)
+        is_needed = np.ones(len(members), bool)
         if curves == "needed":
-            counts = np.where(arcs.readers_misses() > bound, counts, 0)
-    for n_poles in np.unique(counts).tolist():
-        members = np.flatnonzero(counts == n_poles)
-        if n_poles:
-            yield ArcsOnFaces(members, pairs, n_poles, arcs.numbers(members, n_poles))
-        else:
-            yield ArcsOnFaces(members, (), 0, np.zeros((len(members), 0)))
+            is_needed = arcs.misses(*_readers_checks()) > bound
+        rest = members[is_needed]
+        members = members[~is_needed]
+        for n_poles in _POLES:
+            is_enough = np.ones(len(rest), bool)
+            if n_poles != _POLES[-1]:
+                is_enough = arcs.of(rest).misses(*_spline_checks(n_poles)) < bound
+            found = rest[is_enough]
+            if len(found):
+                numbers = arcs.of(found).numbers(
+                    n_poles, last_places(shared.sizes[found], confusion)
+                )
+                yield ArcsOnFaces(found, pairs, n_poles, numbers)
+            rest = rest[~is_enough]
+    if len(members):
+        yield ArcsOnFaces(members, (), 0, np.zeros((len(members), 0)))
 
 
 def spline_degree(n_poles: int) -> int:
@@ -79,46 +88,24 @@ def spline_degree(n_poles: int) -> int:
     return min(_DEGREE, n_poles - 1)
 
 
+@dataclass(frozen=True)
 class _Arcs:
-    """Arcs (m, p) on spheres, in the frames of these: z along the poles, x to the seam."""
+    """Arcs (m, p) on spheres, in the frames of these: z along the poles, x to the seam.
 
-    def __init__(
-        self,
-        batch: BrepBatch,
-        shared: SharedGeometry,
-        pairs: tuple[tuple[int, int], ...],
-        confusion: float,
-    ) -> None:
-        plan, points, directions = shared.plan, shared.points, shared.directions
+    They begin at angles and sweep others about centres, from which cosines and sines lead to
+    angles 0 and π/2; radii are those of the spheres.
+    """
 
-        def frames(ids: list[int]) -> tuple[FloatArray, FloatArray]:
-            origin, axis, start = (
-                list(column) for column in zip(*(plan.placements[i] for i in ids), strict=True)
-            )
-            z = unit(directions[:, axis])
-            x = directions[:, start]
-            x = unit(x - dot(x, z)[..., None] * z)
-            return points[:, origin], np.stack([x, np.cross(z, x), z], axis=2)
+    firsts: FloatArray
+    sweeps: FloatArray
+    centers: FloatArray
+    cosines: FloatArray
+    sines: FloatArray
+    radii: FloatArray
 
-        edges, faces = zip(*pairs, strict=True)
-        centers, circles = frames([plan.curves[e][1] for e in edges])
-        origins, spheres = frames([plan.surfaces[f][1] for f in faces])
-        starts, ends = (
-            points[:, [getattr(batch.edges[e], end) for e in edges]] - centers
-            for end in ("start", "end")
-        )
-        radii = norm(starts)
-        angles = [
-            np.arctan2(dot(ray, circles[..., 1, :]), dot(ray, circles[..., 0, :]))
-            for ray in (starts, ends)
-        ]
-        self.firsts = angles[0] % (2 * np.pi)
-        self.sweeps = (angles[1] - angles[0]) % (2 * np.pi)
-        self.centers = np.einsum("mpij,mpj->mpi", spheres, centers - origins)
-        turned = np.einsum("mpij,mpkj->mpki", spheres, circles[..., :2, :])
-        self.cosines, self.sines = (radii[..., None] * turned[..., i, :] for i in (0, 1))
-        self.radii = norm(self.centers + self.cosines)
-        self.places = last_places(shared.sizes, confusion)
+    def of(self, members: IntArray) -> "_Arcs":
+        """Arcs of some of the parts."""
+        return _Arcs(*(getattr(self, each.name)[members] for each in fields(self)))
 
     def parameters(self, shares: FloatArray) -> FloatArray:
         """Parameters (m, p, n, 2) at shares (n,) of the arcs."""
@@ -136,51 +123,59 @@ class _Arcs:
     def misses(self, nodes: FloatArray, checks: FloatArray, weights: FloatArray) -> FloatArray:
         """How far splines through nodes miss the arcs of each part, (m,), at their checks."""
         exact = self.parameters(checks)
-        change = np.einsum("cn,mpnk->mpck", weights, self.parameters(nodes)) - exact
+        change = weights @ self.parameters(nodes) - exact
         change[..., 0] *= np.cos(exact[..., 1])
         return (norm(change) * self.radii[..., None]).max(axis=(1, 2))
 
-    def readers_misses(self) -> FloatArray:
-        """How far the spline that a reader makes misses the arcs of each part."""
-        return self.misses(*_readers_checks())
-
-    def pole_counts(self, bound: float) -> FloatArray:
-        """The fewest poles with which splines keep to the bound; else the most."""
-        counts = np.full(len(self.radii), _POLES[-1])
-        for n_poles in reversed(_POLES[:-1]):
-            counts[self.misses(*_spline_checks(n_poles)) < bound] = n_poles
-        return counts
-
-    def numbers(self, members: IntArray, n_poles: int) -> FloatArray:
+    def numbers(self, n_poles: int, places: FloatArray) -> FloatArray:
+        """Poles and knots of one spline after another, with digits down to places."""
         knots, nodes, to_poles = _spline(n_poles)
-        poles = np.einsum("cn,mpnk->mpck", to_poles, self.parameters(nodes)[members])
-        firsts, sweeps = self.firsts[members, :, None], self.sweeps[members, :, None]
-        parts = [poles.reshape(*poles.shape[:2], -1), firsts + sweeps * knots]
-        numbers = np.concatenate(parts, axis=2)
-        turns = self.places[members, None] / self.radii[members]
-        return rounded(numbers, turns[..., None]).reshape(len(members), -1)
+        poles = to_poles @ self.parameters(nodes)
+        ends = self.firsts[..., None] + self.sweeps[..., None] * knots
+        numbers = np.concatenate([poles.reshape(*poles.shape[:2], -1), ends], axis=2)
+        turns = places[:, None] / self.radii
+        return rounded(numbers, turns[..., None]).reshape(len(places), -1)
+
+
+def _arcs(
+    batch: BrepBatch, shared: SharedGeometry, pairs: tuple[tuple[int, int], ...]
+) -> _Arcs:
+    edges = [batch.edges[edge] for edge, _ in pairs]
+    centers, circles = _frames(shared, [shared.plan.curves[edge][1] for edge, _ in pairs])
+    origins, spheres = _frames(shared, [shared.plan.surfaces[face][1] for _, face in pairs])
+    starts, ends = (
+        shared.points[:, corners] - centers
+        for corners in ([edge.start for edge in edges], [edge.end for edge in edges])
+    )
+    first, last = (
+        np.arctan2(dot(ray, circles[..., 1, :]), dot(ray, circles[..., 0, :]))
+        for ray in (starts, ends)
+    )
+    middles = np.einsum("mpij,mpj->mpi", spheres, centers - origins)
+    turned = np.einsum("mpij,mpkj->mpki", spheres, circles[..., :2, :])
+    cosines, sines = (norm(starts)[..., None] * turned[..., i, :] for i in (0, 1))
+    full = 2 * np.pi
+    return _Arcs(
+        first % full, (last - first) % full, middles, cosines, sines, norm(middles + cosines)
+    )
+
+
+def _frames(shared: SharedGeometry, ids: list[int]) -> tuple[FloatArray, FloatArray]:
+    """Origins (m, p, 3) of placements, and their axes x, y, z in rows."""
+    origin, axis, start = np.transpose([shared.plan.placements[i] for i in ids])
+    z, x = unit(shared.directions[:, axis]), shared.directions[:, start]
+    x = unit(x - dot(x, z)[..., None] * z)
+    return shared.points[:, origin], np.stack([x, np.cross(z, x), z], axis=2)
 
 
 @lru_cache
 def _spline(n_poles: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Knots from 0 to 1, nodes, and the matrix from values at nodes to poles."""
-    knots = np.linspace(0.0, 1.0, n_poles - spline_degree(n_poles) + 1)
-    # The means of neighbouring knots; both ends are among them.
-    degree, full = spline_degree(n_poles), _clamped(knots, n_poles)
-    nodes = np.array([full[i + 1 : i + degree + 1].mean() for i in range(n_poles)])
-    return knots, nodes, np.linalg.inv(_basis(nodes, knots, n_poles))
-
-
-def _clamped(knots: FloatArray, n_poles: int) -> FloatArray:
     degree = spline_degree(n_poles)
-    return np.concatenate([np.zeros(degree), knots, np.ones(degree)])
-
-
-def _basis(places: FloatArray, knots: FloatArray, n_poles: int) -> FloatArray:
-    from scipy.interpolate import BSpline
-
-    full = _clamped(knots, n_poles)
-    return BSpline.design_matrix(places, full, spline_degree(n_poles)).toarray()
+    knots = np.linspace(0.0, 1.0, n_poles - degree + 1)
+    # The means of neighbouring knots; both ends are among them.
+    nodes = sliding_window_view(_clamped(knots, degree)[1:-1], degree).mean(axis=1)
+    return knots, nodes, np.linalg.inv(_basis(nodes, knots, degree))
 
 
 @lru_cache
@@ -188,14 +183,35 @@ def _spline_checks(n_poles: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Nodes, checks between them, and the matrix from values at nodes to values there."""
     knots, nodes, to_poles = _spline(n_poles)
     checks = (nodes[1:] + nodes[:-1]) / 2
-    return nodes, checks, _basis(checks, knots, n_poles) @ to_poles
+    return nodes, checks, _basis(checks, knots, spline_degree(n_poles)) @ to_poles
 
 
 @lru_cache
 def _readers_checks() -> tuple[FloatArray, FloatArray, FloatArray]:
     """As `_spline_checks`, of the spline that OpenCASCADE makes where a file has none."""
-    from scipy.interpolate import make_interp_spline
-
     nodes = np.linspace(0.0, 1.0, _READERS_POINTS)
+    knots = np.delete(nodes, [1, -2])
     checks = (nodes[1:] + nodes[:-1]) / 2
-    return nodes, checks, make_interp_spline(nodes, np.eye(_READERS_POINTS), 3)(checks)
+    to_poles = np.linalg.inv(_basis(nodes, knots, 3))
+    return nodes, checks, _basis(checks, knots, 3) @ to_poles
+
+
+def _clamped(knots: FloatArray, degree: int) -> FloatArray:
+    return np.pad(knots, degree, mode="edge")
+
+
+def _basis(places: FloatArray, knots: FloatArray, degree: int) -> FloatArray:
+    """Values of the B-splines at places, a row each: the recursion of de Boor."""
+    full = _clamped(knots, degree)
+    last = len(knots) - 2
+    spans = np.minimum(np.searchsorted(knots, places, side="right") - 1, last) + degree
+    values = np.eye(len(full) - 1)[spans]
+    for k in range(1, degree + 1):
+        widths = full[k:] - full[:-k]
+        shares = np.divide(
+            places[:, None] - full[:-k], widths, out=np.zeros((len(places), len(widths))),
+            where=widths > 0,
+        )  # fmt: skip
+        rests = np.where(widths > 0, 1 - shares, 0.0)
+        values = shares[:, :-1] * values[:, :-1] + rests[:, 1:] * values[:, 1:]
+    return values

@@ -148,7 +148,7 @@ def _shared_parts(
     ends: list[int] = np.cumsum(np.bincount(same.labels)).tolist()
     models: list[int] = same.representatives.tolist()
     return [
-        replace(parts[model], instances=tuple(copies[i] for i in order[start:end]))
+        _shared(parts[model], [copies[i] for i in order[start:end]])
         for model, start, end in zip(models, [0, *ends], ends, strict=False)
     ]
 
@@ -203,3 +203,9 @@ def _moulds(panels: Panels) -> list[tuple[str, Color]]:
         (mould_name(label, count), mould_color(label, count))
         for label in panels.labels.tolist()
     ]
+
+
+def _shared(part: Part, copies: list[Instance]) -> Part:
+    """A part in several places: its name is free for the first of them."""
+    name = part.name if len(copies) == 1 else f"Shape of {part.name}"
+    return replace(part, name=name, instances=tuple(copies))
