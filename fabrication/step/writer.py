@@ -35,12 +35,14 @@ from ..breps.panel_geometry import (
 from ..breps.panels import panel_batches
 from ..files import check_suffix, check_target, replacing
 from ..model import Model, Written, check_model
+from ..solids.cadquery_assembly import to_cadquery
 from ..units import millimeters_per
 from .assembly import Group, Instance, Part, StepHeader, StepSchema, assembly_lines
 from .bodies import line_body, step_bodies
 from .parameter_curves import ParameterCurves
 
 StepCopies = Literal["shapes", "instances"]
+StepEngine = Literal["text", "cadquery"]
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,8 @@ class StepOptions:
     Copies are ``shapes``, a shape of its own for every panel, or ``instances``: identical
     panels (see `congruent_panels`) are instances of one shape, named after the first of them.
     Arcs get curves in the parameters of their spheres where readers need them, all of them or
-    none.
+    none. The engine is our own text, or OpenCASCADE by an assembly of CadQuery, ten times as
+    slow: shapes alone, with all curves.
     """
 
     units: str = "mm"
@@ -59,6 +62,7 @@ class StepOptions:
     title: str = "Spherical panels"
     copies: StepCopies = "shapes"
     parameter_curves: ParameterCurves = "needed"
+    engine: StepEngine = "text"
 
 
 _SHAPES_IN_MM: Final = StepOptions()
@@ -77,46 +81,74 @@ def write_step(
 
     The only geometry is spheres, planes, circles and lines, and for beams cylinders and
     ellipses. Names of curves get lost in STEP, so the axes are one part of many lines; a Rhino
-    file has them by name. Every number is read back as it was. Instances stand within 1e-6 mean
-    edges of the panels that they stand for (`SAME_PANEL`): 0.001 mm where edges are 1 m long.
+    file has them by name. Numbers are read back within 1e-12 of the size of their part and
+    1e-9 mm. Instances stand within 1e-6 mean edges of the panels that they stand for
+    (`SAME_PANEL`): 0.001 mm where edges are 1 m long.
 
     Raises InputError if there is nothing to write, two panels have one name or one is not
-    finite, a unit, schema or way of copies is not known, or the folder does not exist.
+    finite, an option is not known, or the folder does not exist; MissingLibraryError if the
+    engine cadquery is asked for and missing.
     """
     target = Path(path)
     check_suffix(target, ".step", ".stp")
     check_model(model, target)
     check_target(target)
-    panels, beams = model.panels, model.beams
-    if options.schema not in get_args(StepSchema):
-        raise InputError(f"unknown STEP schema {options.schema!r}: use AP214IS or AP242DIS")
-    if options.parameter_curves not in get_args(ParameterCurves):
-        raise InputError(
-            f"parameter curves must be needed, all or none, not {options.parameter_curves!r}"
-        )
-    if options.copies not in get_args(StepCopies):
-        raise InputError(f"copies must be shapes or instances, not {options.copies!r}")
-    millimeters = millimeters_per(options.units)
-    scale, confusion = millimeters_per(model.units) / millimeters, CONFUSION / millimeters
-    build = _panel_parts if options.copies == "shapes" else _shared_parts
-    parts = []
-    if panels is not None and panels.n_panels:
-        parts = build(panels, scale, confusion, options.parameter_curves)
-    root = Group("Panels", parts)
-    if beams is not None and beams.n_beams:
-        support = _support_parts(beams, scale, confusion)
-        root = Group("Model", [root, *support] if parts else support)
-    system = f"spheremesh {version('spheremesh')}"
-    header = StepHeader(
-        options.schema, options.units, millimeters, confusion, options.title, system
-    )
-    lines = assembly_lines(root, header)
+    _check_options(options)
+    if options.engine == "cadquery":
+        assembly = to_cadquery(model)
+        from .opencascade_writer import write_assembly
+
+        with replacing(target) as temporary:
+            write_assembly(assembly, temporary, options.schema, options.units, options.title)
+        return Written(target)
+    lines = assembly_lines(_root(model, options), _header(options))
     with (
         replacing(target) as temporary,
         temporary.open("w", encoding="ascii", newline="\n") as file,
     ):
         file.writelines(lines)
     return Written(target)
+
+
+def _check_options(options: StepOptions) -> None:
+    for name, value, kind in (
+        ("schema", options.schema, StepSchema), ("copies", options.copies, StepCopies),
+        ("parameter_curves", options.parameter_curves, ParameterCurves),
+        ("engine", options.engine, StepEngine),
+    ):  # fmt: skip
+        allowed = get_args(kind)
+        if value not in allowed:
+            known = f"{', '.join(allowed[:-1])} or {allowed[-1]}"
+            raise InputError(f"{name} of a STEP file must be {known}, not {value!r}")
+    if options.engine == "cadquery" and options.copies != "shapes":
+        raise InputError(
+            "the engine cadquery writes shapes alone: instances need the engine text"
+        )
+
+
+def _header(options: StepOptions) -> StepHeader:
+    millimeters = millimeters_per(options.units)
+    system = f"spheremesh {version('spheremesh')}"
+    confusion = CONFUSION / millimeters
+    return StepHeader(
+        options.schema, options.units, millimeters, confusion, options.title, system
+    )
+
+
+def _root(model: Model, options: StepOptions) -> Group:
+    """Panels, and with beams the assembly of both."""
+    millimeters = millimeters_per(options.units)
+    scale, confusion = millimeters_per(model.units) / millimeters, CONFUSION / millimeters
+    panels, beams = model.panels, model.beams
+    build = _panel_parts if options.copies == "shapes" else _shared_parts
+    parts: list[Part] = []
+    if panels is not None and panels.n_panels:
+        parts = build(panels, scale, confusion, options.parameter_curves)
+    root = Group("Panels", parts)
+    if beams is None or not beams.n_beams:
+        return root
+    support = _support_parts(beams, scale, confusion)
+    return Group("Model", [root, *support] if parts else support)
 
 
 def _panel_parts(
