@@ -1,6 +1,8 @@
 """The camera: where a picture is taken from, and what of the scene lies where in it."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -10,8 +12,23 @@ from ..kernel.errors import InputError
 FIELD_OF_VIEW = np.radians(24.0)
 """Horizontal opening: that of a mild telephoto lens, for a calm perspective."""
 
+SAMPLES = 2
+"""Samples of a pixel of a picture along each side."""
+
 MARGIN = 0.07
 """Share of the picture that stays empty on each side."""
+
+VIEWS: Final[Mapping[str, tuple[float, float, float]]] = {
+    "front": (0.0, -1.0, 0.12),
+    "back": (0.0, 1.0, 0.12),
+    "left": (-1.0, 0.0, 0.12),
+    "right": (1.0, 0.0, 0.12),
+    "top": (0.0, 0.0, 1.0),
+    "below": (0.5, -0.7, -0.6),
+}
+"""Directions to the viewer by name; ``home`` is from above, onto the long side."""
+
+View = str | Sequence[float]
 
 
 @dataclass(frozen=True)
@@ -42,6 +59,37 @@ def view_axes(direction: FloatArray) -> FloatArray:
     upright = np.array([0.0, 0.0, 1.0]) if abs(back[2]) < 0.9999 else np.array([0.0, 1.0, 0.0])
     right = unit(np.cross(upright, back))
     return np.stack([right, np.cross(back, right), back])
+
+
+def view_direction(view: View, points: FloatArray) -> FloatArray:
+    """Direction to the viewer of a named view, or the direction that is given.
+
+    Raises InputError if there is no such view.
+    """
+    if not isinstance(view, str):
+        return np.asarray(view, float)
+    if view == "home":
+        extent = np.ptp(points, axis=0)
+        return np.array([0.5, -0.8, 0.5] if extent[0] >= extent[1] else [0.8, 0.5, 0.5])
+    if view not in VIEWS:
+        names = ", ".join(["home", *VIEWS])
+        raise InputError(f"there is no view {view!r}: name one of {names}, or give a direction")
+    return np.array(VIEWS[view])
+
+
+def stand_at(eye: FloatArray, target: FloatArray, width: int, height: int) -> Camera:
+    """The camera at an eye that looks at a target, sizes in pixels.
+
+    Raises InputError if they are one point or not finite.
+    """
+    if eye.shape != (3,) or target.shape != (3,) or not np.isfinite([eye, target]).all():
+        raise InputError(
+            "the eye and the target of a view must be points of three numbers each"
+        )
+    if not norm(eye - target) > 0:
+        raise InputError("the eye looks at itself: give a target apart from it")
+    focal = width / 2 / np.tan(FIELD_OF_VIEW / 2)
+    return Camera(eye, view_axes(eye - target), float(focal), width, height)
 
 
 def frame_scene(
@@ -88,11 +136,12 @@ def project_points(camera: Camera, points: FloatArray) -> FloatArray:
 
 
 def pixel_rays(camera: Camera, x: FloatArray, y: FloatArray) -> FloatArray:
-    """Directions (n, 3) in which the camera sees pixels to the right and downwards.
+    """Directions in which the camera sees pixels (n,) to the right and downwards.
 
-    Their component along the line of sight is 1: the point at depth d is ``eye + d direction``.
+    As columns (3, n). Their component along the line of sight is 1: the point at depth d is
+    ``eye + d direction``.
     """
     across = (x - camera.width / 2) / camera.focal
     upward = (camera.height / 2 - y) / camera.focal
     right, up, back = camera.axes
-    return across[:, None] * right + upward[:, None] * up - back
+    return across * right[:, None] + upward * up[:, None] - back[:, None]

@@ -1,15 +1,13 @@
-"""What is seen in the samples of a picture: the exact point, normal and joint of a panel."""
+"""What is seen in the samples of a picture: the exact point, normal and joint of a surface."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..kernel.arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
-from ..kernel.errors import InputError
-from ..kernel.panels.panels import Panels
-from ..kernel.panels.tessellation import PanelTriangles, surface_rows, tessellate
-from ..kernel.spheres.incidence import evaluate, normals
+from ..kernel.arrays import BoolArray, FloatArray, IntArray
 from .camera import Camera, pixel_rays
+from .shapes import Finish, Shape
 
 JOINT_WIDTH = 0.01
 """Half width of a drawn joint, in mean edges."""
@@ -17,104 +15,231 @@ JOINT_WIDTH = 0.01
 MIN_JOINT = 0.75
 """The same in samples of the picture, for panels that are small there."""
 
+PIXEL = 2.0
+"""Samples over which the edge of a joint is spread."""
+
 FINE_PANEL = 20.0
 """Panels of fewer samples across get paler joints, lest the picture turns grey."""
+
+FINISHES: tuple[Finish, ...] = ("polish", "matt", "ink")
 
 
 @dataclass(frozen=True)
 class Scene:
-    """P panels with H corners, made ready to be drawn, relative to the origin of the triangles.
+    """Shapes gathered: N points, T triangles, S surfaces, about one origin.
 
-    `rows` (2P + H, 5) are their surfaces, see `surface_rows`. `edges` (H, 8) have the cutting
-    plane ``n, -d`` and the function (direction, constant) that runs along the edge from -1 to
-    1. The edge length is the mean one.
+    Attributes
+    ----------
+    origin : (3,) float array
+        In model coordinates.
+    points, normals : (N, 3) float array
+        Of the triangles.
+    triangles : (T, 3) int array
+        Points of each.
+    surfaces : (T,) int array
+        Surface of each.
+    is_closed, is_veil : (T,) bool array
+        Whose back is never seen; through which one sees.
+    table : (8, S) float array
+        Rows of the surfaces, and what they are local to.
+    is_exact : (S,) bool array
+        Which have a row.
+    colors : (S, 3) float array
+        Linear, from 0 to 1.
+    finishes : (S,) int array
+        Places in `FINISHES`.
+    joint_first, joint_degrees : (S,) int array
+        Edges with a joint.
+    joint_edges : (8, H) float array
+        See `Joints`.
+    lengths : (S,) float array
+        Mean edges, or the size of what has no edges.
     """
 
-    panels: Panels
-    triangles: PanelTriangles
-    rows: FloatArray
-    edges: FloatArray
-    edge_length: float
+    origin: FloatArray
+    points: FloatArray
+    normals: FloatArray
+    triangles: IntArray
+    surfaces: IntArray
+    is_closed: BoolArray
+    is_veil: BoolArray
+    table: FloatArray
+    is_exact: BoolArray
+    colors: FloatArray
+    finishes: IntArray
+    joint_first: IntArray
+    joint_degrees: IntArray
+    joint_edges: FloatArray
+    lengths: FloatArray
 
 
-def make_scene(panels: Panels) -> Scene:
-    """Triangles and tables for drawing panels; raises InputError if there are none."""
-    if panels.n_panels == 0:
-        raise InputError("there are no panels to draw")
-    ends = panels.corners[panels.next_corners]
-    half = (ends - panels.corners) / 2
-    along = half / dot(half, half)[:, None]
-    middle = dot(along, (ends + panels.corners) / 2)
-    columns = (panels.plane_normals, -panels.plane_offsets[:, None], along, -middle[:, None])
+def linear(colors: FloatArray) -> FloatArray:
+    """Light of colours that are sRGB from 0 to 255."""
+    return (colors / 255) ** 2.2
+
+
+def gather(shapes: Sequence[Shape]) -> Scene:
+    """One scene of shapes, about the origin of the first."""
+    origin = shapes[0].origin
+    points = [shape.points + (shape.origin - origin) for shape in shapes]
+    firsts = np.cumsum([0, *(len(each) for each in points)]).tolist()
+    counts = [len(shape.rows) for shape in shapes]
+    places = np.cumsum([0, *counts]).tolist()
+    tables = [
+        np.concatenate([shape.rows, shape.centers + (shape.origin - origin)], axis=1).T
+        for shape in shapes
+    ]
+    first, degrees, edges, lengths = _all_joints(shapes)
     return Scene(
-        panels,
-        tessellate(panels),
-        surface_rows(panels),
-        np.concatenate(columns, axis=1),
-        float(2 * norm(half).mean()),
+        origin,
+        np.concatenate(points),
+        np.concatenate([shape.normals for shape in shapes]),
+        np.concatenate(
+            [shape.triangles + n for shape, n in zip(shapes, firsts, strict=False)]
+        ),
+        np.concatenate([shape.surfaces + n for shape, n in zip(shapes, places, strict=False)]),
+        np.concatenate([np.full(len(each.triangles), each.is_closed) for each in shapes]),
+        np.concatenate([np.full(len(each.triangles), each.is_veil) for each in shapes]),
+        np.ascontiguousarray(np.concatenate(tables, axis=1)),
+        np.concatenate([shape.rows.any(axis=1) for shape in shapes]),
+        np.concatenate([linear(shape.colors) for shape in shapes]),
+        np.repeat([FINISHES.index(shape.finish) for shape in shapes], counts),
+        first, degrees, edges, lengths,
+    )  # fmt: skip
+
+
+def _all_joints(
+    shapes: Sequence[Shape],
+) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
+    first: list[IntArray] = []
+    degrees: list[IntArray] = []
+    lengths: list[FloatArray] = []
+    edges = [np.zeros((0, 8))]
+    so_far = 0
+    for shape in shapes:
+        nothing, joints = np.zeros(len(shape.rows), np.int64), shape.joints
+        first.append(nothing if joints is None else joints.first + so_far)
+        degrees.append(nothing if joints is None else joints.degrees)
+        size = float(np.ptp(shape.points, axis=0).max()) if joints is None else joints.length
+        lengths.append(np.full(len(shape.rows), size))
+        if joints is not None:
+            edges.append(joints.edges)
+            so_far += len(joints.edges)
+    return (
+        np.concatenate(first),
+        np.concatenate(degrees),
+        np.ascontiguousarray(np.concatenate(edges).T),
+        np.concatenate(lengths),
     )
 
 
 @dataclass(frozen=True)
 class Sight:
-    """What is seen in n samples of a picture."""
+    """What is seen at n places of a picture. Vectors are columns: (3, n)."""
 
-    x: FloatArray  # (n,) where in the picture, to the right
+    x: FloatArray  # (n,) where in the picture, to the right, in samples
     y: FloatArray  # and downwards
     triangles: IntArray  # (n,) that are seen
-    panels: IntArray  # (n,) that are seen
-    points: FloatArray  # (n, 3) of the surfaces, in the coordinates of the scene
-    normals: FloatArray  # (n, 3) exact unit normals there, towards the viewer
-    rays: FloatArray  # (n, 3) unit vectors from the viewer to the points
+    surfaces: IntArray  # (n,) that are seen
+    points: FloatArray  # (3, n) of the surfaces, in the coordinates of the scene
+    normals: FloatArray  # (3, n) exact unit normals there, towards the viewer
+    rays: FloatArray  # (3, n) unit vectors from the viewer to the points
     is_inside: BoolArray  # (n,) whether the side is seen that does not look outwards
-    joints: FloatArray  # (n,) share of the sample that is covered by a joint
+    joints: FloatArray  # (n,) share that is covered by a joint
 
 
 def look(
-    scene: Scene, camera: Camera, samples: IntArray, found: IntArray, nearness: FloatArray
+    scene: Scene,
+    camera: Camera,
+    x: FloatArray,
+    y: FloatArray,
+    found: IntArray,
+    near: FloatArray,
 ) -> Sight:
-    """Cut the rays of samples with the surfaces of the triangles `found` that are seen there.
+    """Cut the rays of places in a picture with the surfaces of the triangles seen there.
 
-    Samples (n,) are counted row by row.
+    Places (n,) are samples to the right and downwards; of each the triangle `found` and its
+    nearness.
     """
-    panels, surfaces = scene.triangles.panels[found], scene.triangles.surfaces[found]
-    shift = scene.panels.origins[panels] - scene.triangles.origin
-    x = np.asarray(samples % camera.width, np.float64) + 0.5
-    y = np.asarray(samples // camera.width, np.float64) + 0.5
+    surfaces = scene.surfaces[found]
     rays = pixel_rays(camera, x, y)
-    rows = scene.rows[surfaces]
+    table = np.take(scene.table, surfaces, axis=1)
+    a, b, c, centers = table[0], table[1:4], table[4], table[5:8]
     # It is a small step from the triangle to the surface: it costs no digits.
-    points = camera.eye + rays / nearness[:, None] - shift
-    slope = dot(normals(rows, points), rays)
-    value = evaluate(rows, points)
+    depth = 1 / near
+    points = camera.eye[:, None] + rays * depth - centers
+    normals = b - 2 * a * points
+    slope, square = product(normals, rays), product(rays, rays)
+    value = a * product(points, points) - product(b, points) + c
     # At its outline a sphere may be missed by a ray that still meets the triangle, and a wall
     # seen edge on be met anywhere: there the point of the triangle has to do.
-    root = np.sqrt(np.maximum(slope**2 - 4 * rows[:, 0] * dot(rays, rays) * value, 0))
+    root = np.sqrt(np.maximum(slope**2 - 4 * a * square * value, 0))
     divisor = slope + np.copysign(root, slope)
-    is_near = np.abs(2 * value) < scene.edge_length * np.abs(divisor)
-    points += np.divide(2 * value, divisor, out=0 * value, where=is_near)[:, None] * rays
-    outwards = unit(normals(rows, points))
-    is_inside = dot(outwards, rays) > 0
-    joints = _joints(scene, panels, points, camera.focal * nearness)
-    joints[surfaces >= 2 * scene.panels.n_panels] = 0
-    towards = np.where(is_inside[:, None], -outwards, outwards)
-    return Sight(
-        x, y, found, panels, points + shift, towards, unit(rays), is_inside, joints
-    )  # fmt: skip
+    size = scene.lengths[surfaces]
+    is_near = np.abs(2 * value) * np.sqrt(square) < size * np.abs(divisor)
+    step = np.divide(2 * value, divisor, out=np.zeros_like(value), where=is_near)
+    points += step * rays
+    outwards = b - 2 * a * points
+    blurred = np.flatnonzero(~scene.is_exact[surfaces])
+    if len(blurred):
+        outwards[:, blurred] = _mean_normals(scene, camera, rays[:, blurred], found[blurred])
+    outwards /= np.sqrt(product(outwards, outwards))
+    rays /= np.sqrt(square)
+    is_inside = product(outwards, rays) > 0
+    joints = _joints(scene, surfaces, points, camera.focal * near)
+    points += centers
+    towards = outwards * np.where(is_inside, -1.0, 1.0)
+    return Sight(x, y, found, surfaces, points, towards, rays, is_inside, joints)
+
+
+def product(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Scalar products of the columns of (3, n)."""
+    result = a[0] * b[0]
+    result += a[1] * b[1]
+    result += a[2] * b[2]
+    return result
+
+
+def _mean_normals(
+    scene: Scene, camera: Camera, rays: FloatArray, found: IntArray
+) -> FloatArray:
+    """Normals (3, n) of points, interpolated where rays meet their triangles."""
+    ids = scene.triangles[found]
+    corners = [(scene.points[ids[:, k]] - camera.eye).T for k in range(3)]
+    total = np.zeros_like(rays)
+    for k in range(3):
+        # The volume that the ray spans with the other two corners is the weight of this one.
+        weight = product(rays, _cross(corners[k - 2], corners[k - 1]))
+        total += weight * scene.normals[ids[:, k]].T
+    # The sign of all three weights is that of the side from which the triangle is seen.
+    flat = _cross(corners[1] - corners[0], corners[2] - corners[0])
+    return total * np.sign(product(total, flat))
+
+
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.stack(
+        [
+            a[1] * b[2] - a[2] * b[1],
+            a[2] * b[0] - a[0] * b[2],
+            a[0] * b[1] - a[1] * b[0],
+        ]
+    )
 
 
 def _joints(
-    scene: Scene, panels: IntArray, points: FloatArray, scale: FloatArray
+    scene: Scene, surfaces: IntArray, points: FloatArray, scale: FloatArray
 ) -> FloatArray:
-    """Share of samples within the width of a joint from an edge of their panel."""
-    first, degrees = scene.panels.offsets[panels], scene.panels.degrees[panels]
-    nearest = np.full(len(points), np.inf)
+    """Share of samples within the width of a joint from an edge of their surface."""
+    first, degrees = scene.joint_first[surfaces], scene.joint_degrees[surfaces]
+    nearest = np.full(len(surfaces), np.inf)
     for corner in range(int(degrees.max(initial=0))):
-        edge = scene.edges[first + np.minimum(corner, degrees - 1)]
-        distance = dot(edge[:, :3], points) + edge[:, 3]
+        place = first + np.minimum(corner, degrees - 1)
+        edge = np.take(scene.joint_edges, np.maximum(place, 0), axis=1)
+        distance = np.abs(product(edge[:3], points) + edge[3])
         # Beyond its ends the plane of an edge may cut into a concave panel.
-        is_beside = np.abs(dot(edge[:, 4:7], points) + edge[:, 7]) < 1.05
-        np.minimum(nearest, np.abs(distance), out=nearest, where=is_beside)
-    half = np.maximum(JOINT_WIDTH * scene.edge_length * scale, MIN_JOINT)
-    share = np.clip(half - nearest * scale + 0.5, 0, 1)
-    return share * np.minimum(1.0, scene.edge_length * scale / FINE_PANEL)
+        along = np.abs(product(edge[4:7], points) + edge[7])
+        np.minimum(nearest, distance, out=nearest, where=(along < 1.05) & (degrees > 0))
+    length = scene.lengths[surfaces] * scale
+    half = np.maximum(JOINT_WIDTH * length, MIN_JOINT)
+    share = np.clip((half - nearest * scale) / PIXEL + 0.5, 0, 1)
+    return share * np.minimum(1.0, length / FINE_PANEL)

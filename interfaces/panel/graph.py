@@ -188,7 +188,7 @@ def _add_writers(graph: Graph, mesh: Step | Wire, made: Mapping[str, Wire]) -> N
     graph.add("write_3dm", "rhino", **made, path="model.3dm", reference=mesh)
     graph.add("write_schedule", "table", panels=panels, path="schedule.csv")
     graph.add("write_schedule", "list", **made, path="schedule.json")
-    graph.add("render", "picture", panels=panels, path="preview.png")
+    graph.add("render", "picture", **made, path="preview.png")
 
 
 def _source(graph: Graph) -> str:

@@ -146,11 +146,11 @@ def panel_facts(panels: Panels) -> PanelFacts:
         volumes=panel_volumes(panels),
         sizes=bounding_sizes(panels),
         corners=panels.corners + panels.origins[panels.corner_panels],
-        corner_angles=_corner_angles(panels),
+        corner_angles=corner_angles(panels),
         edge_lengths=arc_lengths(arcs),
         arc_radii=arc_circles(arcs).radii,
         sagittas=arcs.sagittas,
-        wall_tilts=_wall_tilts(panels),
+        wall_tilts=wall_tilts(panels),
         **vars(panel_joints(panels)),
         caps=panel_caps(panels),
     )
@@ -182,7 +182,7 @@ def panel_volumes(panels: Panels) -> FloatArray:
     return total * panels.thicknesses / 2
 
 
-def _corner_angles(panels: Panels) -> FloatArray:
+def corner_angles(panels: Panels) -> FloatArray:
     """From the edge that leaves a corner counter-clockwise about N to the one that enters."""
     leaving, entering = arc_tangents(panel_arcs(panels))
     back = np.empty_like(entering)
@@ -192,7 +192,7 @@ def _corner_angles(panels: Panels) -> FloatArray:
     return np.arctan2(sine, cosine) % (2 * np.pi)
 
 
-def _wall_tilts(panels: Panels) -> FloatArray:
+def wall_tilts(panels: Panels) -> FloatArray:
     """Angles (H,) of walls to the normals in the middle of edges, those of both neighbours."""
     owners, twins = panels.corner_panels, opposite_corners(panels)
     middles = arc_points(panel_arcs(panels), np.zeros(1))[:, 0]

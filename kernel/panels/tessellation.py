@@ -59,15 +59,16 @@ def surface_rows(panels: Panels) -> FloatArray:
 
 
 def tessellate(
-    panels: Panels, tolerance: float = 0.002, *, solid: bool = True
+    panels: Panels, tolerance: FloatArray | float = 0.002, *, solid: bool = True
 ) -> PanelTriangles:
     """Triangulate panels.
 
     Parameters
     ----------
-    tolerance : float
+    tolerance : float or (P,) float array
         Largest distance of a triangle from its surface, relative to the radius of the panel
-        (its farthest corner); reached by at most `MAX_STEPS` steps per edge.
+        (its farthest corner), of all panels or of each; reached by at most `MAX_STEPS` steps
+        per edge.
     solid : bool
         Whether panels with a thickness get their inner faces and side walls.
 
@@ -88,7 +89,7 @@ def tessellate(
     Works on all panels of one degree and number of steps at a time. Panels that cannot be
     seen whole from their middle are cut into ears along their outline, without inner points.
     """
-    if not tolerance > 0:
+    if not np.min(tolerance, initial=np.inf) > 0:
         raise InputError(f"the tolerance must be positive, not {tolerance}")
     sides = boundaries(panels) if solid else [(panels.spheres, panel_arcs(panels))]
     steps = _steps(panels, sides[0][1], tolerance)
@@ -117,7 +118,7 @@ class _Piece:
     surfaces: IntArray
 
 
-def _steps(panels: Panels, arcs: Arcs, tolerance: float) -> IntArray:
+def _steps(panels: Panels, arcs: Arcs, tolerance: FloatArray | float) -> IntArray:
     """Steps per edge and from the middle to the rim that keep the chords within tolerance."""
     sizes = np.maximum.reduceat(norm(panels.corners), panels.offsets[:-1])
     rises = np.maximum.reduceat(np.abs(arcs.sagittas), panels.offsets[:-1])

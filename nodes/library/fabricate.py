@@ -7,7 +7,6 @@ import numpy as np
 
 from ...fabrication.drawings import beams as dxf
 from ...fabrication.drawings import moulds as mould_drawings
-from ...fabrication.files import check_suffix, replacing
 from ...fabrication.model import Model, Written
 from ...fabrication.rhino import writer as rhino
 from ...fabrication.schedules import writer as schedule
@@ -20,7 +19,6 @@ from ...kernel.panels.panels import Panels, mark_creases
 from ...kernel.parts.findings import rejected_report
 from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
-from ...viewer.render import render_image
 from ..graphs.node import node, running_graph, warn
 from ..graphs.ports import Length, Port, Units, WritePath
 from .arrays import CreaseAngle, FaceLabels, VertexAxes
@@ -357,53 +355,3 @@ def _tell(written: Written) -> str:
     for note in written.notes:
         warn(f"{name}: {note}")
     return str(written.path)
-
-
-@node
-def render(
-    panels: Panels,
-    path: WritePath,
-    color_by: Literal["mould", "radius", "none"] = "mould",
-    shading: Literal["studio", "zebra"] = "studio",
-    width: Annotated[int, Port(min=16, max=8000)] = 1600,
-    height: Annotated[int, Port(min=16, max=8000)] = 1000,
-    *,
-    legend: bool = False,
-) -> str:
-    """Draw panels into a PNG, from exact spheres and without a graphics card.
-
-    Parameters
-    ----------
-    panels : Panels
-    path : path
-        Ends in .png.
-    color_by : {"mould", "radius", "none"}
-        What the colours mean.
-    shading : {"studio", "zebra"}
-        Daylight, or reflection lines that show how smooth the surface is.
-    width, height : int
-        Size in pixels.
-    legend : bool
-        Whether to list the moulds beside the picture.
-
-    Returns
-    -------
-    str
-        The path.
-
-    Examples
-    --------
-    >>> from tempfile import TemporaryDirectory
-    >>> from spheremesh.nodes import fit_spheres, panels, render, vase_mesh
-    >>> made = panels(fit_spheres(vase_mesh(12, 6)))
-    >>> with TemporaryDirectory() as folder:
-    ...     render(made.panels, f"{folder}/vase.png", width=64, height=40).endswith("vase.png")
-    True
-    """
-    check_suffix(path, ".png")
-    image = render_image(
-        panels, color_by=color_by, shading=shading, width=width, height=height, legend=legend
-    )
-    with replacing(path) as temporary:
-        image.save(temporary, format="PNG")
-    return str(path)

@@ -13,10 +13,11 @@ from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.sphere_meshes.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres.rows import from_center_radius, normalize
 from spheremesh.kernel.surfaces.circular_nets import ellipsoid_net, roof_net, torus_net
-from spheremesh.viewer.camera import frame_scene, pixel_rays, project_points
+from spheremesh.viewer.camera import Camera, frame_scene, pixel_rays, project_points
 from spheremesh.viewer.raster import rasterize
 from spheremesh.viewer.render import compare_image, render_image
-from spheremesh.viewer.scene import look, make_scene
+from spheremesh.viewer.scene import Scene, Sight, gather, look
+from spheremesh.viewer.shapes import panel_shape
 
 SMALL = {"width": 160, "height": 120}
 FRONT = (0.0, -1.0, 0.4)
@@ -27,7 +28,9 @@ def ball(**options: object) -> Panels:
 
 
 def pixels(panels: Panels, **options: object) -> np.ndarray:
-    return np.asarray(render_image(panels, **{**SMALL, **options})).astype(float)
+    return np.asarray(render_image(panels, **{**SMALL, "legend": False, **options})).astype(
+        float
+    )
 
 
 def subject(picture: np.ndarray) -> np.ndarray:
@@ -99,22 +102,26 @@ def test_zebra_of_a_symmetric_scene_is_symmetric() -> None:
     assert np.quantile(mirrored, 0.9) < 60
 
 
+def sight_of(
+    panels: Panels, direction: tuple[float, float, float]
+) -> tuple[Scene, Camera, Sight]:
+    """What is seen of panels, in a picture of 200 by 160 samples."""
+    shape = panel_shape(panels, np.full((panels.n_panels, 3), 200.0))
+    scene = gather([shape])
+    camera = frame_scene(scene.points, np.array(direction), 200, 160)
+    picture = rasterize(project_points(camera, scene.points), scene.triangles, 200, 160)
+    y, x = np.nonzero(picture.triangles >= 0)
+    found, near = picture.triangles[y, x], picture.nearness[y, x]
+    return scene, camera, look(scene, camera, x + 0.5, y + 0.5, found, near)
+
+
 def test_normals_are_those_of_the_spheres_and_not_of_the_triangles() -> None:
-    scene = make_scene(ball())
-    points = scene.triangles.points
-    camera = frame_scene(points, np.array(FRONT), 200, 160)
-    screen = project_points(camera, points)
-    picture = rasterize(screen, scene.triangles.triangles, 200, 160)
-    seen = np.flatnonzero(picture.triangles.ravel() >= 0)
-    sight = look(
-        scene, camera, seen, picture.triangles.ravel()[seen], picture.nearness.ravel()[seen]
-    )
-    center = -scene.triangles.origin
+    scene, camera, sight = sight_of(ball(), FRONT)
     is_outer = ~sight.is_inside
-    from_center = sight.points - center
-    assert_allclose(norm(from_center), 2.0, atol=1e-9)
-    assert_allclose(from_center[is_outer] / 2, sight.normals[is_outer], atol=1e-9)
-    along = norm(np.cross(sight.points - camera.eye, sight.rays))
+    from_center = sight.points + scene.origin[:, None]
+    assert_allclose(norm(from_center.T), 2.0, atol=1e-9)
+    assert_allclose(from_center[:, is_outer] / 2, sight.normals[:, is_outer], atol=1e-9)
+    along = norm(np.cross((sight.points - camera.eye[:, None]).T, sight.rays.T))
     assert along.max() < 1e-9 * norm(camera.eye)
 
 
@@ -122,7 +129,8 @@ def test_rays_and_projection_are_inverse() -> None:
     points = np.random.default_rng(3).normal(size=(50, 3))
     camera = frame_scene(points, np.array([1.0, 2.0, 3.0]), 300, 200)
     screen = project_points(camera, points)
-    back = camera.eye + pixel_rays(camera, screen[:, 0], screen[:, 1]) / screen[:, 2:]
+    rays = pixel_rays(camera, screen[:, 0], screen[:, 1])
+    back = camera.eye + (rays / screen[:, 2]).T
     assert_allclose(back, points, atol=1e-12)
     assert screen[:, 0].min() >= 0
     assert screen[:, 0].max() <= 300
@@ -177,7 +185,10 @@ def test_pictures_do_not_depend_on_the_site() -> None:
 
 def test_legend_takes_its_place_beside_the_panels() -> None:
     panels = ball(labels=np.arange(160) % 3)
-    plain, listed = pixels(panels, width=400), pixels(panels, width=400, legend=True)
+    plain, listed = (
+        pixels(panels, width=400, legend=False),
+        pixels(panels, width=400, legend=True),
+    )
     swatch = np.array(mould_color(2, 3), float)
     beside = slice(250, None)
     assert 60 < (listed[:, beside] == swatch).all(axis=2).sum() < 300
@@ -205,13 +216,17 @@ def test_comparison_shows_the_same_view_twice() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"color_by": "colour"}, "color_by must be one of 'mould', 'radius', 'none'"),
+        ({"color_by": "colour"}, "color_by must be one of 'mould', 'radius', 'angle'"),
         ({"shading": "gold"}, "shading must be one of"),
         ({"width": 0}, "width must be 16 to"),
         ({"height": 10**6}, "height must be 16 to"),
         ({"direction": (0, 0, 0)}, "direction of a view"),
         ({"direction": (1, 2)}, "direction of a view"),
-        ({"legend": True, "color_by": "radius"}, "a legend lists moulds"),
+        ({"legend": True, "color_by": "none"}, "nothing for a legend to say"),
+        ({"direction": "under"}, "no view 'under': name one of home, front"),
+        ({"eye": (0, 0, 5), "direction": "top"}, "a direction or an eye, not both"),
+        ({"target": (0, 0, 5)}, "a target needs an eye"),
+        ({"eye": (1, 2, 3), "target": (1, 2, 3)}, "looks at itself"),
     ],
 )
 def test_unusable_options_are_named(options: dict[str, object], message: str) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray, norm
 from ..camera import view_axes
-from ..light import DepthMap, sky_openness
+from ..light import DepthMap, blurred, sky_openness
 
 DIRECTIONS: Final = 14
 FINEST: Final = 64
@@ -53,8 +53,6 @@ def panel_openness(points: FloatArray, normals: FloatArray, sky: list[DepthMap])
 
 def ground_openness(points: FloatArray, sky: list[DepthMap]) -> IntArray:
     """The same for a square of ground below points, by rows along y, (GROUND, GROUND)."""
-    from scipy.ndimage import gaussian_filter
-
     low, high = points.min(axis=0), points.max(axis=0)
     side = REACH * float((high - low).max()) * np.linspace(-0.5, 0.5, GROUND)
     middle = (low + high) / 2
@@ -64,7 +62,7 @@ def ground_openness(points: FloatArray, sky: list[DepthMap]) -> IntArray:
     ground = ground.reshape(-1, 3)
     up = np.broadcast_to(np.array([0.0, 0.0, 1.0]), ground.shape)
     open_shares = sky_openness(sky, ground, up)[:, 0].reshape(GROUND, GROUND)
-    soft = np.asarray(gaussian_filter(open_shares, 1.2), np.float64)
+    soft = blurred(open_shares, 1.2)
     return np.rint(255 * soft).astype(np.int64)
 
 
