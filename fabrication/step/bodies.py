@@ -34,13 +34,22 @@ class BodyLayout:
 
     The template is to be filled with numbers and then with the numbers of entities:
     `references`, in the order of the text, the first entity being 0. The representation is the
-    type of the shape representation that holds such bodies.
+    type of the shape representation that holds such bodies; the text is the template with the
+    numbers of entities in place.
     """
 
     template: str
     references: IntArray
     n_entities: int
     representation: str
+    text: str
+
+
+def body_layout(text: str, n_entities: int, representation: str) -> BodyLayout:
+    """Layout of a text in which entities are numbered from 0; those of the file as ``#!7``."""
+    numbers = np.array([int(found) for found in re.findall(r"#(\d+)", text)])
+    template = re.sub(r"#\d+", "#%%d", text).replace("#!", "#")
+    return BodyLayout(template, numbers, n_entities, representation, text)
 
 
 @dataclass(frozen=True)
@@ -118,10 +127,7 @@ class _Entities:
         return len(self.lines) - 1
 
     def layout(self, representation: str) -> BodyLayout:
-        text = "".join(self.lines)
-        numbers = np.array([int(found) for found in re.findall(r"#(\d+)", text)])
-        template = re.sub(r"#\d+", "#%%d", text)
-        return BodyLayout(template, numbers, len(self.lines), representation)
+        return body_layout("".join(self.lines), len(self.lines), representation)
 
     def point(self, kind: str = "CARTESIAN_POINT") -> int:
         return self.add(f"{kind}('',(%s,%s,%s))")

@@ -617,11 +617,12 @@ def test_what_cannot_be_written(panels: Panels, tmp_path: Path) -> None:
         write_step(Model(panels, units="furlong"), target)
     with pytest.raises(InputError, match="unknown units 'mile'"):
         write_step(Model(panels), target, StepOptions(units="mile"))
-    for option, value, known in (
+    for option, value, allowed in (
         ("schema", "AP203", "AP214IS or AP242DIS"), ("copies", "twins", "shapes or instances"),
-        ("parameter_curves", "some", "needed, all or none"), ("engine", "x", "text or cadquery"),
+        ("parameter_curves", "some", "needed, all or none"),
+        ("engine", "x", "text or cadquery"),
     ):  # fmt: skip
-        message = f"{option} of .* must be {known}, not '{value}'"
+        message = f"{option} of .* must be {allowed}, not '{value}'"
         with pytest.raises(InputError, match=message):
             write_step(Model(panels), target, replace(StepOptions(), **{option: value}))
     with pytest.raises(InputError, match="instances need the engine text"):
