@@ -91,7 +91,7 @@ def _beam_triangles(count: int, is_flat: tuple[bool, ...]) -> IntArray:
         if not is_flat[end]:
             # The outer and the inner face reach to the middle.
             (outer, inner), (b_outer, b_inner), (c_outer, c_inner) = levels
-            ends.append(np.array([[outer, c_outer, b_outer], [inner, b_inner, c_inner]]))
+            ends.append(np.array([[outer, b_outer, c_outer], [inner, c_inner, b_inner]]))
         triangles += [each if end == 0 else each[:, ::-1] for each in ends]
     return np.concatenate(triangles)
 
