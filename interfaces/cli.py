@@ -21,6 +21,7 @@ from .console import GATE_FAILED, shown_progress, told_errors
 from .option_values import plain_value, setting
 from .panel_command import panel
 from .serve_command import serve
+from .studio_command import studio
 from .sweep_command import sweep
 
 if TYPE_CHECKING:
@@ -91,8 +92,10 @@ def run(  # numpydoc ignore=PR01
 def _run_targets(
     graph: "Graph", targets: tuple[str, ...], out: "OutputFolder", progress: "Progress"
 ) -> dict[str, Any]:
+    from .panel import said_to
+
     names = targets or tuple(step.name for step in graph.ends)
-    results = graph.run(*names, on_step=progress, write_to=out)
+    results = graph.run(*names, on_step=progress, on_event=said_to(progress), write_to=out)
     return dict(zip(names, (results,) if len(names) == 1 else results, strict=True))
 
 
@@ -139,4 +142,5 @@ def graph(graph_file: Path) -> None:  # numpydoc ignore=PR01
 
 main.add_command(panel)
 main.add_command(serve)
+main.add_command(studio)
 main.add_command(sweep)

@@ -20,6 +20,7 @@ surfaces        Circular nets, triangulated samples and NURBS to start from.
 meshes          Meshes of mixed face degrees: connectivity, curvature, remeshing.
 solvers         Least squares and the linear systems in it.
 parts           What panels, beams and nodes are called, and what is said of them.
+display         How records show themselves: in a line, and in what floors above lend.
 arrays          Array types, and the few operations on rows that NumPy has no short name for.
 errors          What can go wrong, as types.
 progress        How far a long computation has come, told to whoever listens.

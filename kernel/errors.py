@@ -11,6 +11,10 @@ class InputError(SpheremeshError, ValueError):
     """An input cannot be used; the message says what, where and what to do."""
 
 
+class ArgumentError(InputError, TypeError):
+    """A function is given what it does not take; the message names the right call."""
+
+
 class MeshError(InputError):
     """Faces are no mesh; the message can name them as the user knows them.
 

@@ -1,12 +1,18 @@
 """Typed functions as nodes, and the lazy graph that runs them.
 
-All nodes of the library can be imported from here by name or with ``*``.
+All nodes of the library can be imported from here by name or with ``*``: as functions that
+check what they are given.
+
+direct_calls  Nodes called as plain functions: their arguments are checked as a graph's are.
+graphs        The framework: typed functions as nodes, and the lazy graph that runs them.
+library       The nodes: what they are given is turned into calls of the kernel.
 """
 
 from collections.abc import Callable
 from typing import Any
 
 from ..kernel.progress import listen
+from .direct_calls import checked
 from .graphs.errors import GraphError, NodeError
 from .graphs.graph import Graph
 from .graphs.node import (
@@ -70,7 +76,7 @@ def __getattr__(name: str) -> Callable[..., Any]:
     if not name.startswith("_"):
         nodes = _library_nodes()
         if name in nodes:
-            return nodes[name].function
+            return checked(nodes[name])
     raise AttributeError(f"module {__name__!r} has no node {name!r}")
 
 

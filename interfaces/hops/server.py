@@ -16,7 +16,7 @@ from waitress.task import ErrorTask
 from waitress.utilities import RequestEntityTooLarge
 
 from ...nodes.graphs.stores.entries import Store
-from .application import Service, application, error_answer
+from .application import Application, Service, application, error_answer
 from .catalogue import Catalogue
 from .guard import LOOPBACK, MOST_BYTES, Limits, host_name, too_large
 from .handles import Handles
@@ -117,7 +117,9 @@ def make_service(
     )
 
 
-def make_server(service: Service, host: str, port: int) -> Any:  # noqa: ANN401
+def make_server(
+    service: Service, host: str, port: int, answers: Application | None = None
+) -> Any:  # noqa: ANN401
     """A server that listens already; ``run`` answers until ``close``.
 
     Parameters
@@ -127,6 +129,8 @@ def make_server(service: Service, host: str, port: int) -> Any:  # noqa: ANN401
         Name or number of the network card.
     port : int
         0 for any that is free.
+    answers : Application, optional
+        What answers; by default the components of the service alone.
 
     Returns
     -------
@@ -136,7 +140,7 @@ def make_server(service: Service, host: str, port: int) -> Any:  # noqa: ANN401
     # A name can stand for several addresses; a server listens at the first.
     address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][4][0]
     server: Any = create_server(
-        application(service),
+        answers or application(service),
         host=str(address),
         port=port,
         threads=THREADS,

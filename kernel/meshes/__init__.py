@@ -6,6 +6,7 @@ tenth of an edge is not made. Lengths that are equal but for rounding count as e
 index decides: all processors make one mesh.
 
 mesh                 The mesh: vertices, and faces of mixed degree in compressed rows.
+faces                Faces in compressed rows; what keeps them from being a mesh.
 topology             Half-edges, edges and boundary of a mesh.
 defects              Why faces are no mesh, and what repairs it.
 orientation          Which faces are to be turned over, so that neighbours agree.

@@ -2,19 +2,20 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..arrays import FloatArray, IntArray, norm, read_only, sum_by, unit
-from ..errors import InputError, name_ids
-from .defects import repeated_corner
+from ..display import Shown, brief, counted, polygons_text, size_text
+from ..errors import ArgumentError
+from .faces import check_faces, compress_faces, padded_rows
 from .topology import Topology, build_topology
 
 
-@dataclass(frozen=True, init=False, eq=False)
-class Mesh:
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Mesh(Shown):
     """An orientable manifold mesh with boundary, faces of mixed degree.
 
     Parameters
@@ -46,6 +47,8 @@ class Mesh:
     >>> mesh = Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
     >>> mesh.n_faces, [face.tolist() for face in mesh.faces]
     (2, [[0, 1, 2], [0, 2, 3]])
+    >>> mesh
+    Mesh(4 vertices; 2 triangles; 1 x 1 x 0)
     """
 
     vertices: FloatArray
@@ -58,12 +61,73 @@ class Mesh:
     ) -> None:
         corners, offsets = compress_faces(faces)
         points = np.array(vertices, np.float64)
-        _check_elements(points, corners, offsets)
+        check_faces(points, corners, offsets)
         topology = build_topology(corners, offsets, len(points))
         object.__setattr__(self, "vertices", read_only(points))
         object.__setattr__(self, "corners", read_only(corners))
         object.__setattr__(self, "offsets", read_only(offsets))
         object.__setattr__(self, "topology", topology)
+
+    def __repr__(self) -> str:
+        return brief(
+            "Mesh",
+            [
+                counted(self.n_vertices, "vertex"),
+                polygons_text(self.degrees),
+                size_text(self.vertices),
+            ],
+        )
+
+    @classmethod
+    def from_trimesh(cls, source: Any) -> "Mesh":  # noqa: ANN401, another library's
+        """The mesh of a `trimesh.Trimesh`.
+
+        Parameters
+        ----------
+        source : trimesh.Trimesh
+            Its triangles; of a scene give ``scene.to_mesh()``.
+
+        Returns
+        -------
+        Mesh
+            The same vertices and faces.
+        """
+        _check_kind(source, "trimesh.Trimesh", "vertices", "faces")
+        return cls(source.vertices, np.asarray(source.faces))
+
+    @classmethod
+    def from_pyvista(cls, source: Any) -> "Mesh":  # noqa: ANN401, another library's
+        """The mesh of a `pyvista.PolyData`.
+
+        Parameters
+        ----------
+        source : pyvista.PolyData
+            Its polygons; of a grid give ``grid.extract_surface()``.
+
+        Returns
+        -------
+        Mesh
+            The same points and faces.
+        """
+        _check_kind(source, "pyvista.PolyData", "points", "faces")
+        return cls(source.points, padded_rows(np.asarray(source.faces)))
+
+    @classmethod
+    def from_compas(cls, source: Any) -> "Mesh":  # noqa: ANN401, another library's
+        """The mesh of a `compas.datastructures.Mesh`.
+
+        Parameters
+        ----------
+        source : compas.datastructures.Mesh
+            Polygons stay polygons.
+
+        Returns
+        -------
+        Mesh
+            Vertices and faces in the order of their keys.
+        """
+        _check_kind(source, "compas.datastructures.Mesh", "to_vertices_and_faces")
+        return cls(*source.to_vertices_and_faces())
 
     @property
     def faces(self) -> tuple[IntArray, ...]:
@@ -121,6 +185,15 @@ class Mesh:
         return np.diff(self.offsets)
 
 
+def _check_kind(source: object, kind: str, *names: str) -> None:
+    """Refuse an object that lacks what another library's meshes have."""
+    if not all(hasattr(source, name) for name in names):
+        raise ArgumentError(
+            f"Mesh.from_{kind.partition('.')[0]} needs a {kind}, not {type(source).__name__}; "
+            "arrays go into Mesh(vertices, faces)"
+        )
+
+
 def with_vertices(mesh: Mesh, vertices: FloatArray) -> Mesh:
     """The same faces on other points.
 
@@ -140,75 +213,6 @@ def with_vertices(mesh: Mesh, vertices: FloatArray) -> Mesh:
     for name in ("corners", "offsets", "topology"):
         object.__setattr__(result, name, getattr(mesh, name))
     return result
-
-
-def compress_faces(
-    faces: IntArray | Iterable[Sequence[int] | IntArray],
-) -> tuple[IntArray, IntArray]:
-    """Faces in compressed rows; a plain (F, k) array is not split into rows.
-
-    Parameters
-    ----------
-    faces : sequence of sequences of int, or (F, k) int array
-        Vertex ids of each face.
-
-    Returns
-    -------
-    corners : (H,) int array
-        Vertex of each corner, face after face.
-    offsets : (F + 1,) int array
-        First corner of each face, and H.
-
-    Raises
-    ------
-    InputError
-        If an index is no whole number.
-    """
-    if isinstance(faces, np.ndarray) and faces.ndim == 2:
-        table = cast("NDArray[Any]", faces)
-        corners = _whole_numbers(table.ravel())
-        degrees = np.full(len(table), len(corners) // max(len(table), 1), np.int64)
-    else:
-        rows = [np.asarray(face).ravel() for face in faces]
-        corners = _whole_numbers(np.concatenate(rows) if rows else np.zeros(0))
-        degrees = np.array([len(row) for row in rows], np.int64)
-    return corners, np.concatenate([np.zeros(1, np.int64), np.cumsum(degrees)])
-
-
-def _whole_numbers(indices: NDArray[Any]) -> IntArray:
-    if indices.dtype.kind not in "iu":
-        is_whole = np.isfinite(indices) & (indices == np.floor(indices))
-        if not is_whole.all():
-            raise InputError("faces must refer to vertices by whole numbers")
-    return indices.astype(np.int64)
-
-
-def _check_elements(points: FloatArray, corners: IntArray, offsets: IntArray) -> None:
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise InputError(f"vertices must have shape (V, 3), not {points.shape}")
-    if len(offsets) < 2:
-        raise InputError("the mesh has no faces")
-    bad_vertices = np.flatnonzero(~np.isfinite(points).all(axis=1))
-    if len(bad_vertices):
-        raise InputError(
-            f"vertices {name_ids(bad_vertices.tolist())} have coordinates that are not finite"
-        )
-    degrees = np.diff(offsets)
-    corner_faces = np.repeat(np.arange(len(degrees)), degrees)
-    if (degrees < 3).any():
-        bad = name_ids(np.flatnonzero(degrees < 3).tolist())
-        raise InputError(f"faces {bad} have fewer than 3 corners")
-    outside = (corners < 0) | (corners >= len(points))
-    if outside.any():
-        bad = name_ids(np.unique(corner_faces[outside]).tolist())
-        raise InputError(
-            f"faces {bad} refer to vertices out of range: the mesh has {len(points)} vertices"
-        )
-    order = np.lexsort((corners, corner_faces))
-    repeated = (np.diff(corners[order]) == 0) & (np.diff(corner_faces[order]) == 0)
-    if repeated.any():
-        faces = np.unique(corner_faces[order][1:][repeated])
-        raise repeated_corner(corners, offsets, faces)
 
 
 def face_centroids(mesh: Mesh) -> FloatArray:

@@ -11,17 +11,18 @@ from typing import Literal
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, dot, unit
+from ..display import Shown, brief, counted, polygons_text, radii_text, size_text
 from ..meshes.creases import crease_edges
 from ..meshes.mesh import Mesh
 from ..parts.records import PER_CORNER
 from ..spheres.arcs import Arcs, patch_areas, sphere_arcs
 from ..spheres.incidence import meet_lines
-from ..spheres.rows import recenter, rescale
+from ..spheres.rows import center_radius, recenter, rescale
 from ..tolerances import PARALLEL_PLANES
 
 
-@dataclass(frozen=True)
-class Panels:
+@dataclass(frozen=True, repr=False)
+class Panels(Shown):
     """Panels that can be made, in the order of their faces.
 
     Attributes
@@ -84,6 +85,35 @@ class Panels:
     thicknesses: FloatArray
     thickness: float
     joint_gap: float
+
+    def __repr__(self) -> str:
+        moulds = len(np.unique(self.labels[self.labels >= 0]))
+        return brief(
+            "Panels",
+            [
+                polygons_text(self.degrees),
+                size_text(self.corners + self.origins[self.corner_panels]),
+                radii_text(self.radii),
+                counted(moulds, "mould") if moulds else "",
+                f"thickness {self.thickness:.3g}" if self.thickness else "surfaces",
+            ],
+        )
+
+    @property
+    def radii(self) -> FloatArray:
+        """Radii of the spheres that panels were cut from, (P,); infinite for planes."""
+        return np.sqrt(center_radius(self.design_spheres)[1])
+
+    @property
+    def centers(self) -> FloatArray:
+        """Centres of these spheres in model coordinates, (P, 3); infinite for planes."""
+        return center_radius(self.design_spheres)[0] + self.origins
+
+    @property
+    def planes(self) -> FloatArray:
+        """Cutting planes ``n·x = d`` in model coordinates, (H, 4): n, into the panel, and d."""
+        moved = dot(self.plane_normals, self.origins[self.corner_panels])
+        return np.column_stack([self.plane_normals, self.plane_offsets + moved])
 
     @property
     def element_ids(self) -> IntArray:

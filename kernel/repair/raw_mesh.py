@@ -8,7 +8,8 @@ from numpy.typing import ArrayLike
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import InputError
-from ..meshes.mesh import Mesh, compress_faces
+from ..meshes.faces import compress_faces
+from ..meshes.mesh import Mesh
 
 
 @dataclass(frozen=True)

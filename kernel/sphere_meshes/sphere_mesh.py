@@ -6,17 +6,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import FloatArray, dot, read_only, sum_by
+from ..display import Shown, brief, polygons_text, radii_text, size_text
 from ..errors import InputError, name_ids
-from ..meshes.mesh import Mesh, face_centroids, local_corners
+from ..meshes.mesh import Mesh, face_centroids, face_normals, local_corners
 from ..spheres.incidence import evaluate, signed_distance
 from ..spheres.minkowski import angle, minkowski
 from ..spheres.row_checks import check_rows
-from ..spheres.rows import recenter
+from ..spheres.rows import center_radius, from_center_radius, recenter
 from ..tolerances import EPSILON
 
 
-@dataclass(frozen=True, init=False, eq=False)
-class SphereMesh:
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class SphereMesh(Shown):
     """A mesh whose faces are pieces of spheres or planes.
 
     Parameters
@@ -80,6 +81,62 @@ class SphereMesh:
         result = cls.__new__(cls)
         _fill(result, mesh, local_spheres)
         return result
+
+    @classmethod
+    def from_centers(cls, mesh: Mesh, centers: ArrayLike, radii: ArrayLike) -> "SphereMesh":
+        """A sphere mesh from the centres and radii of its spheres.
+
+        Parameters
+        ----------
+        mesh : Mesh
+        centers : (F, 3) array_like of float
+            In model coordinates.
+        radii : (F,) array_like of float
+            Positive and finite; planes are rows, for the constructor.
+
+        Returns
+        -------
+        SphereMesh
+            Each sphere turned so that its normal agrees with that of its face.
+        """
+        points, sizes = np.asarray(centers, np.float64), np.asarray(radii, np.float64)
+        count = mesh.n_faces
+        if points.shape != (count, 3) or sizes.shape != (count,) or not (sizes > 0).all():
+            raise InputError(
+                f"a mesh of {count} faces needs centres of shape ({count}, 3) and positive "
+                f"radii of shape ({count},), not {points.shape} and {sizes.shape}"
+            )
+        local = from_center_radius(points - face_centroids(mesh), sizes**2)
+        inwards = dot(local[:, 1:4], face_normals(mesh)) < 0
+        local[inwards] *= -1
+        return cls.from_local(mesh, local)
+
+    def __repr__(self) -> str:
+        mesh = self.mesh
+        sizes = [polygons_text(mesh.degrees), size_text(mesh.vertices)]
+        return brief("SphereMesh", [*sizes, radii_text(self.radii)])
+
+    @property
+    def radii(self) -> FloatArray:
+        """Radius of the sphere of each face.
+
+        Returns
+        -------
+        (F,) float array
+            In model units; infinite for planes.
+        """
+        return np.sqrt(center_radius(self.local_spheres)[1])
+
+    @property
+    def centers(self) -> FloatArray:
+        """Centre of the sphere of each face: the mesh of centres, which is dual to the mesh.
+
+        Returns
+        -------
+        (F, 3) float array
+            In model coordinates; infinite for planes.
+        """
+        return center_radius(self.local_spheres)[0] + face_centroids(self.mesh)
 
     @property
     def counts(self) -> dict[str, int]:

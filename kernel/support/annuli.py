@@ -11,11 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, dot, norm, sum_by
+from ..display import Shown, brief, counted, radii_text, size_text
+from ..spheres.rows import center_radius
 from ..tolerances import PARALLEL_PLANES
 
 
-@dataclass(frozen=True)
-class Annuli:
+@dataclass(frozen=True, repr=False)
+class Annuli(Shown):
     """Annuli that can be made, in the order of their edges.
 
     Points and rows are local: seen from the origin of the annulus, not turned.
@@ -70,6 +72,35 @@ class Annuli:
     tilt: FloatArray
     kappa: float
     depth: float
+
+    def __repr__(self) -> str:
+        tilt = np.degrees(self.tilt.max(initial=0))
+        return brief(
+            "Annuli",
+            [
+                counted(self.n_annuli, "annulus"),
+                size_text((self.corners + self.origins[:, None, None]).reshape(-1, 3)),
+                radii_text(self.radii[:, 0]),
+                f"depth {self.depth:.3g}" if self.depth else f"kappa {self.kappa:.3g}",
+                f"tilt up to {tilt:.3g} degrees",
+            ],
+        )
+
+    @property
+    def radii(self) -> FloatArray:
+        """Radii of the outer and the inner circles, (B, 2); infinite for straight beams."""
+        return np.sqrt(center_radius(np.stack([self.outer, self.inner], 1))[1])
+
+    @property
+    def centers(self) -> FloatArray:
+        """Centres of the outer circles in model coordinates, (B, 3); infinite if straight."""
+        return center_radius(self.outer)[0] + self.origins
+
+    @property
+    def planes(self) -> FloatArray:
+        """Planes ``n·x = d`` of the annuli in model coordinates, (B, 4): n and d."""
+        normals = self.frames[:, 2]
+        return np.column_stack([normals, dot(normals, self.origins)])
 
     @property
     def element_ids(self) -> IntArray:

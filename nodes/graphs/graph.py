@@ -1,5 +1,6 @@
 """The lazy graph: nodes wired together, run as far as a target needs."""
 
+import html
 import os
 from collections.abc import Mapping
 from functools import partial
@@ -12,6 +13,7 @@ from .annotations import Value
 from .editor import Editor
 from .errors import GraphError, nearest
 from .node import Node, known_graph, replaced
+from .ports import brief
 from .running.events import OnEvent, OnStep, Watch
 from .running.files import Folders
 from .running.run import Run, output, run_steps
@@ -23,6 +25,7 @@ from .specification.mermaid import mermaid_text
 from .specification.reading import Reading, built, decode_graph
 from .specification.specification import Specification
 from .specification.subgraphs import graph_node
+from .specification.svg import svg_text
 from .specification.wires import Param, Step, Target, Wire
 from .stores.disk import DiskStore
 from .stores.entries import Store
@@ -333,6 +336,28 @@ class Graph(Editor):
             Text that Markdown viewers draw.
         """
         return mermaid_text(self._specification.values, self.steps)
+
+    def svg(self) -> str:
+        """The graph as a picture.
+
+        Returns
+        -------
+        str
+            One ``svg`` element, which notebooks and browsers draw.
+        """
+        return svg_text(self._specification.values, self.steps)
+
+    def __repr__(self) -> str:
+        now = self._specification
+        sliders = ", ".join(f"{name}={brief(value)}" for name, value in now.values.items())
+        parts = [f"{now.title!r}", f"{len(now.steps)} steps", f"sliders {sliders or 'none'}"]
+        return f"Graph({'; '.join([*parts, now.units])})"
+
+    def _repr_html_(self) -> str:
+        """The picture that a notebook shows, and what the steps warned about."""
+        said = [f"{name}: {text}" for name, texts in self._messages.items() for text in texts]
+        notes = "".join(f"<br><small>{html.escape(text)}</small>" for text in said)
+        return f"{self.svg()}<br><small>{html.escape(repr(self))}</small>{notes}"
 
 
 def _store(cache: Store | str | os.PathLike[str] | None) -> Store:

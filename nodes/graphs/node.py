@@ -145,7 +145,7 @@ def find_node(node: str | Callable[..., Any]) -> Node:
     Parameters
     ----------
     node : str or callable
-        A name, or a function decorated with `@node`.
+        A name, or a function decorated with `@node`, also as `spheremesh.nodes` gives it.
 
     Returns
     -------
@@ -160,7 +160,8 @@ def find_node(node: str | Callable[..., Any]) -> Node:
     if not isinstance(node, str):
         name = getattr(node, "__name__", repr(node))
         found = REGISTRY.get(name)
-        if found is None or found.function is not node:
+        # The library's functions are handed out with checks of their arguments around them.
+        if found is None or found.function is not inspect.unwrap(node):
             raise GraphError(
                 f"{name} is not a node: decorate its present definition with @node"
             )

@@ -87,7 +87,7 @@ def check_value(port: Port, value: object, where: str) -> None:
     """
     if not accepts(port.type, value):
         fault = record_fault(port.type, value)
-        raise GraphError(f"{where} = {_brief(value)}: must be {type_name(port.type)}{fault}")
+        raise GraphError(f"{where} = {brief(value)}: must be {type_name(port.type)}{fault}")
     check_range(value, port, where)
 
 
@@ -110,7 +110,7 @@ def check_range(value: object, port: Port, where: str) -> None:
     is_array = isinstance(value, np.ndarray)
     if port.choices and value is not None and (is_array or value not in port.choices):
         allowed = ", ".join(map(repr, port.choices))
-        raise GraphError(f"{where} = {_brief(value)}: must be one of {allowed}")
+        raise GraphError(f"{where} = {brief(value)}: must be one of {allowed}")
     if not isinstance(value, int | float | np.integer | np.floating) or is_bool(value):
         return
     if isinstance(value, int) and not -(2**63) <= value < 2**63:
@@ -148,10 +148,10 @@ def check_slider(value: object, port: Port) -> None:
     where = f"param {port.name}"
     for name, end in (("min", port.min), ("max", port.max)):
         if end is not None and (not isinstance(end, int | float) or is_bool(end)):  # pyright: ignore[reportUnnecessaryIsInstance]
-            raise GraphError(f"{where}: {name} = {_brief(end)}: must be a number")
+            raise GraphError(f"{where}: {name} = {brief(end)}: must be a number")
     for choice in port.choices:
         if not isinstance(choice, bool | int | float | str | None):
-            raise GraphError(f"{where}: choice {_brief(choice)}: must be a number or a text")
+            raise GraphError(f"{where}: choice {brief(choice)}: must be a number or a text")
     check_range(value, port, where)
     try:
         digest(value)
@@ -159,7 +159,18 @@ def check_slider(value: object, port: Port) -> None:
         raise GraphError(f"{where}: {error}") from error
 
 
-def _brief(value: Value) -> str:
+def brief(value: Value) -> str:
+    """A value in the room that a message has.
+
+    Parameters
+    ----------
+    value : object
+
+    Returns
+    -------
+    str
+        Arrays by kind and shape, all else by the first 60 characters.
+    """
     if isinstance(value, np.ndarray):
         array = cast("NDArray[Any]", value)
         return f"{array.dtype} array of shape {array.shape}"

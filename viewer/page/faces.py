@@ -49,9 +49,13 @@ class Faces:
     patterns: tuple[IntArray, ...]
 
 
-def panel_faces(panels: Panels) -> list[Faces]:
-    """The outer faces of panels, and the inner ones if there is a thickness."""
-    tolerance = FINE if panels.n_panels < MANY else COARSE
+def panel_faces(panels: Panels, tolerance: float | None = None) -> list[Faces]:
+    """The outer faces of panels, and the inner ones if there is a thickness.
+
+    The tolerance says how far triangles may be off, relative to a panel.
+    """
+    if tolerance is None:
+        tolerance = FINE if panels.n_panels < MANY else COARSE
     skin = tessellate(panels, tolerance)
     sides = 1 if panels.thickness == 0 else 2
     return [_side(panels, skin, side) for side in range(sides)]

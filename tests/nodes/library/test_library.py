@@ -62,7 +62,7 @@ g = Graph()
 print(fit_spheres.__module__, g.add(torus_mesh).node.category, node.__name__)
 print("load_library" in globals(), "np" in globals())
 """
-    assert run(code) == "spheremesh.nodes.library.spheres input node\nFalse False"
+    assert run(code) == "spheremesh.nodes input node\nFalse False"
 
 
 def test_a_node_by_name_and_a_name_that_is_none() -> None:

@@ -32,8 +32,8 @@ np.testing.assert_allclose(carried.mesh.vertices, net.vertices, atol=1e-15)
 
 for geometry, transform, message in [
     (np.array([[3.0, 0, 0]]), turned, r"points \\[0\\] are sent to infinity"),
-    (np.array([3.0, 0, 0]), turned, r"points \\(N, 3\\) or rows of spheres \\(N, 5\\)"),
-    (np.ones((2, 4)), turned, r"not \\(2, 4\\)"),
+    (np.array([3.0, 0, 0]), turned, r"points \\(N, 3\\) or spheres \\(N, 5\\)"),
+    (np.ones((2, 4)), turned, r"of shape \\(2, 4\\)"),
     (np.array([[0, np.nan, 0]]), turned, r"rows \\[0\\] of the geometry are not finite"),
     (points, 2 * turned, "no Möbius map"),
     (net, inversion(net.vertices[7], 1), r"vertices \\[7\\] are sent to infinity"),

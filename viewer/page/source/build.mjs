@@ -18,6 +18,12 @@ const style = await build({
 const licence = read("node_modules/three/LICENSE").trim();
 const script = `/* With parts of three.js:\n${licence}\n*/\n${bundled.outputFiles[0].text}`;
 writeFileSync(`${folder}page.js`, script.replaceAll("</script", "<\\/script"));
+// The same picture for other pages, as a module.
+const parts = await build({
+  entryPoints: [new URL("parts.js", import.meta.url).pathname], bundle: true, minify: true, write: false,
+  format: "esm", target: "es2022", charset: "ascii", legalComments: "none",
+});
+writeFileSync(`${folder}viewer.js`, `/* With parts of three.js:\n${licence}\n*/\n${parts.outputFiles[0].text}`);
 writeFileSync(`${folder}page.html`, read("page.html").replace("{{style}}", () => style.outputFiles[0].text.trim()));
 
 // What the bundle was made of, for a test that it is not left behind.

@@ -11,8 +11,12 @@ async function inflate(base64) {
 }
 
 export async function unpackModel(id) {
-  const data = await inflate(text(id));
-  const length = new DataView(data.buffer).getUint32(0, true);
+  return decodeModel(await inflate(text(id)));
+}
+
+/** Head and arrays of the bytes of a model. */
+export function decodeModel(data) {
+  const length = new DataView(data.buffer, data.byteOffset).getUint32(0, true);
   const head = JSON.parse(new TextDecoder().decode(data.subarray(4, 4 + length)));
   const arrays = {};
   let start = 4 + length;

@@ -1,0 +1,175 @@
+// A picture of a result, drawn by the viewer of the page.
+
+import { useEffect, useMemo, useRef, useState } from "react";
+import { now, set, useStudio } from "./store.js";
+
+let viewerModule = null;
+const viewer = () => (viewerModule ??= import("/studio/viewer.js"));
+const PLAIN = [226, 226, 222], GHOST = [236, 238, 240], BEAM = [166, 132, 98], NODE = [98, 102, 110], NONE = [190, 194, 199];
+const views = new Map();
+
+/** Views that look at models of about the same size follow each other. */
+function follow(leader) {
+  if (!now().linked || leader.following) return;
+  for (const view of views.values()) {
+    if (view === leader) continue;
+    view.following = true;
+    view.camera.position.copy(leader.camera.position);
+    view.controls.target.copy(leader.controls.target);
+    view.fitted = null;
+    view.controls.update();
+    view.draw();
+    view.following = false;
+  }
+}
+
+/** Colours of parts by the values of a scene, and the legend that says so. */
+export function colored({ pathColor, scaleOf, number }, head, arrays, chosen) {
+  const panels = head.panels.id.length, beams = head.beams.id.length, count = panels + beams + head.nodes.id.length;
+  const size = 1024 * Math.ceil(Math.max(1, count) / 1024) * 4, colors = new Uint8Array(size).fill(255);
+  const mode = head.colors[chosen], values = mode ? [...arrays[`value_${chosen}`]] : null;
+  let legend = null, pick = () => (head.ghost ? GHOST : PLAIN);
+  if (mode?.kind === "kinds") {
+    const kinds = [...new Set(values)].sort((a, b) => a - b), place = new Map(kinds.map((kind, k) => [kind, k]));
+    const shade = (k) => pathColor(kinds.length > 1 ? k / (kinds.length - 1) : 0);
+    pick = (i) => shade(place.get(values[i]));
+    const counts = new Map();
+    for (const value of values) counts.set(value, (counts.get(value) ?? 0) + 1);
+    legend = { kinds: kinds.slice(0, 48).map((kind, k) => ({ name: String(kind), color: shade(k), count: counts.get(kind) })) };
+  } else if (mode) {
+    const known = values.map((v) => (Number.isFinite(v) ? v : null));
+    if (known.some((v) => v !== null)) {
+      const { share } = scaleOf({ values: known, logarithmic: mode.name === "Radius" });
+      pick = (i) => { const s = share(known[i]); return s === null ? NONE : pathColor(s); };
+      const finite = known.filter((v) => v !== null);
+      const low = finite.reduce((a, b) => Math.min(a, b)), high = finite.reduce((a, b) => Math.max(a, b));
+      legend = { low: number(low), high: number(high), unit: mode.unit === "deg" ? "°" : mode.unit, path: [0, 0.25, 0.5, 0.75, 1].map(pathColor) };
+    }
+  }
+  for (let i = 0; i < count; i++) colors.set([...(i < panels ? pick(i) : i < panels + beams ? BEAM : NODE), 255], 4 * i);
+  return { colors, legend };
+}
+
+export function ModelView({ data, target }) {
+  const canvas = useRef(null), stage = useRef(null), view = useRef(null);
+  const [parts, setParts] = useState(null);
+  const [chosen, setChosen] = useState(0);
+  const [part, setPart] = useState(-1);
+  const [fault, setFault] = useState("");
+  const { head, arrays } = data;
+  // Beams are shown without the panels on them, which are there to be switched on.
+  const [hidden, setHidden] = useState(() => (head.beams.id.length && head.ghost ? { panels: false } : {}));
+  useEffect(() => { viewer().then(setParts, (error) => setFault(error.message)); }, []);
+  const mode = Math.min(chosen, Math.max(0, head.colors.length - 1));
+  const { colors, legend } = useMemo(() => (parts ? colored(parts, head, arrays, mode) : {}), [parts, data, mode]);
+
+  useEffect(() => {
+    if (!parts) return;
+    const began = performance.now();
+    const shapes = parts.buildShapes(head, arrays);
+    if (view.current) view.current.load(head, arrays, shapes);
+    else {
+      try {
+        view.current = new parts.View(canvas.current, head, arrays, shapes);
+      } catch {
+        setFault("This browser shows no WebGL: allow hardware acceleration to see models.");
+        return;
+      }
+      const made = view.current;
+      made.freeSides = () => ({ left: 0.94, right: 0.94, below: 0.88, above: 0.9 });
+      made.controls.addEventListener("change", () => follow(made));
+      views.set(target, made);
+    }
+    const made = view.current;
+    made.visible = { ...made.visible, edges: head.edges, ...hidden };
+    made.setColors(colors);
+    made.resize();
+    if (!made.placed) { made.fit(head.home); made.placed = true; }
+    made.head = head;
+    setPart(-1);
+    window.studioViews = views;
+    window.studioDrawn = (window.studioDrawn ?? 0) + 1;
+    window.studioDrawing = performance.now() - began;
+  }, [parts, data]);
+  useEffect(() => { if (colors && view.current) view.current.setColors(colors); }, [colors]);
+  useEffect(() => { if (view.current) { Object.assign(view.current.visible, hidden); view.current.draw(); } }, [hidden]);
+  useEffect(() => {
+    const watch = new ResizeObserver(() => view.current?.resize());
+    watch.observe(stage.current);
+    return () => { watch.disconnect(); views.delete(target); view.current?.dispose(); view.current = null; };
+  }, []);
+
+  const down = useRef(null);
+  const pick = (event) => {
+    if (!view.current || !down.current || Math.hypot(event.clientX - down.current[0], event.clientY - down.current[1]) > 5) return;
+    const box = canvas.current.getBoundingClientRect(), found = view.current.pick(event.clientX - box.left, event.clientY - box.top);
+    view.current.select(found);
+    setPart(found);
+  };
+  const turn = (event) => {
+    const by = { ArrowLeft: [0.08, 0], ArrowRight: [-0.08, 0], ArrowUp: [0, 0.06], ArrowDown: [0, -0.06] }[event.key];
+    if (by) view.current?.orbit(...by);
+    else if (event.key.toLowerCase() === "f") view.current?.fit(head.home);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  };
+  const layers = [["panels", head.panels.id.length, head.ghost && !head.beams.id.length ? "mesh" : "panels"], ["beams", head.beams.id.length, "beams"], ["nodes", head.nodes.id.length, head.beams.id.length ? "nodes" : "lines"]].filter(([, count]) => count);
+  return (
+    <div className="model" ref={stage} data-target={target}>
+      <canvas ref={canvas} tabIndex={0} aria-label={`${target}: ${head.words}. Arrow keys turn it, F shows all of it.`} onKeyDown={turn}
+        onPointerDown={(event) => { down.current = event.isPrimary ? [event.clientX, event.clientY] : null; }} onPointerUp={pick} />
+      {fault ? <p className="overlay message">{fault}</p> : null}
+      <div className="overlay words">{head.words}{part >= 0 ? <b>{partText(parts, head, arrays, part)}</b> : null}</div>
+      <div className="overlay tools">
+        {layers.length > 1 ? layers.map(([key, , name]) => (
+          <button key={key} aria-pressed={hidden[key] !== false} onClick={() => setHidden({ ...hidden, [key]: hidden[key] === false })}>{name}</button>
+        )) : null}
+        <button onClick={() => view.current?.fit(head.home)} aria-label="see all of it">Fit</button>
+        <button onClick={() => view.current?.fit([0, -0.001, 1])}>Top</button>
+      </div>
+      {head.colors.length ? <Legend colors={head.colors} chosen={mode} setChosen={setChosen} legend={legend} /> : null}
+    </div>
+  );
+}
+
+function partText(parts, head, arrays, part) {
+  const panels = head.panels.id.length, beams = head.beams.id.length;
+  const name = part < panels ? head.panels.id[part] : part < panels + beams ? head.beams.id[part - panels] : head.nodes.id[part - panels - beams];
+  if (part >= panels) return name ?? "";
+  const values = head.colors.map((mode, k) => `${mode.name.toLowerCase()} ${mode.kind === "kinds" ? arrays[`value_${k}`][part] : parts.number(arrays[`value_${k}`][part])}${mode.unit === "deg" ? "°" : ""}`);
+  return [name, ...values].join(" · ");
+}
+
+const css = (color) => `rgb(${color.join(",")})`;
+
+function Legend({ colors, chosen, setChosen, legend }) {
+  return (
+    <div className="overlay legend">
+      {colors.length > 1 ? (
+        <select aria-label="colour by" value={chosen} onChange={(event) => setChosen(Number(event.target.value))}>
+          {colors.map((each, k) => <option key={each.name} value={k}>{each.name}</option>)}
+        </select>
+      ) : <span>{colors[0].name}</span>}
+      {legend?.kinds ? <div className="kinds">{legend.kinds.map((kind) => <span key={kind.name} title={`${kind.count} parts`}><i style={{ background: css(kind.color) }} />{kind.name}</span>)}</div> : null}
+      {legend?.path ? <div className="bar"><span>{legend.low}{legend.unit}</span><i style={{ background: `linear-gradient(90deg, ${legend.path.map(css).join(",")})` }} /><span>{legend.high}{legend.unit}</span></div> : null}
+    </div>
+  );
+}
+
+/** The picture of a model as a file. */
+export function savePicture() {
+  const [target, view] = [...views.entries()][0] ?? [];
+  if (!view) return false;
+  view.drawNow();
+  const link = document.createElement("a");
+  link.download = `${target.replace(".", " ")}.png`;
+  link.href = view.canvas.toDataURL("image/png");
+  link.click();
+  return true;
+}
+
+export const LinkButton = () => {
+  const linked = useStudio((s) => s.linked);
+  return <button aria-pressed={linked} title="views turn together" onClick={() => set({ linked: !linked })}>Turn together</button>;
+};
