@@ -74,7 +74,8 @@ def panel_graph(
         Its steps are named mesh, description, start, angles (before an optimum of more than
         angles), optimum, panels, audit, report, step, rhino, table, list, picture and view;
         with a number of moulds also moulds, blanks, mould_drawing and mould_picture, with a
-        bound on angles before these fewest, with `flat_below` flat, with prices cost, with a
+        bound on angles before these fewest, with `flat_below` flat, with prices cost, with
+        `ifc` ifc, with a
         support also feasibility, annuli, beams, drawing and beam_table, with either plain, the
         panels without them; tables and drawing sets if asked for. Of a pattern mesh is the
         surface; gain, pattern and net follow it. Its writers write relative to the folder of
@@ -135,6 +136,8 @@ def panel_graph(
     )  # fmt: skip
     checked = {"findings": audit.findings, "cut": panels.report}
     _add_writers(graph, pattern.surface if pattern else mesh, made, checked)
+    if options.ifc:
+        graph.add("write_ifc", "ifc", **made, path="model.ifc", title=title)
     if moves:
         graph.add(
             "write_move_drawing", "moves", mesh=mesh, sphere_mesh=spheres, path="moves.svg"

@@ -125,8 +125,8 @@ def panels(  # noqa: PLR0913, PLR0917 - a node has an input per choice
     return PanelSet(made, report)
 
 
-@node
-def write_step(
+@node(version="2")
+def write_step(  # noqa: PLR0913, PLR0917 - a node has an input per choice
     panels: Panels | None = None,
     path: WritePath = "model.step",
     units: Units = "m",
@@ -134,6 +134,8 @@ def write_step(
     schema: Literal["AP214IS", "AP242DIS"] = "AP214IS",
     copies: Literal["shapes", "instances"] = "shapes",
     beams: Beams | None = None,
+    parameter_curves: Literal["needed", "all", "none"] = "needed",
+    engine: Literal["text", "cadquery"] = "text",
 ) -> str:
     """Write panels and beams to a STEP file: exact solids, or faces without thickness.
 
@@ -153,6 +155,11 @@ def write_step(
         where panels repeat.
     beams : Beams, optional
         The beams, with their node cylinders if they have any, and the node axes.
+    parameter_curves : {"needed", "all", "none"}
+        Whether arcs have curves in the parameters of their spheres: where readers miss them
+        without, so that Boolean operations work on sharply curved panels; everywhere; nowhere.
+    engine : {"text", "cadquery"}
+        Our own text, or OpenCASCADE by way of CadQuery: slower, and the same model.
 
     Returns
     -------
@@ -168,7 +175,9 @@ def write_step(
     ...     write_step(made.panels, f"{folder}/vase.step").endswith("vase.step")
     True
     """
-    options = step.StepOptions(step_units, schema, copies=copies)
+    options = step.StepOptions(
+        step_units, schema, copies=copies, parameter_curves=parameter_curves, engine=engine
+    )
     return told_path(step.write_step(Model(panels, beams, units), path, options))
 
 
