@@ -24,6 +24,7 @@ objects     Meshes, panels and beams as objects of trimesh, pyvista and CadQuery
 model       What every writer writes, and what it gives back.
 output_folder  The folder of a job: nothing of the user's is overwritten there.
 folders     Files of a job that move into their folder together, one job at a time.
+dates       The date in files, which is not the clock's.
 files       Files written whole or not at all.
 locks       Files that one process holds against others.
 measures    What is measured of parts once, for all files of a job that say it.

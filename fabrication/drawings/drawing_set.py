@@ -1,12 +1,13 @@
 """A set of drawings: key plans, sheets of panels by moulds, sheets of beams."""
 
 import os
-import time
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
 
 from ...kernel.errors import InputError
+from ..dates import source_date
 from ..files import check_suffix, replacing
 from ..model import Model, Written, check_model
 from ..schedules.beam_records import beam_records
@@ -98,13 +99,4 @@ def drawing_pages(model: Model, options: DrawingOptions = _USUAL) -> list[Page]:
 
 
 def _date(date: str) -> str:
-    if date:
-        return date
-    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
-    try:
-        seconds = int(epoch) if epoch else time.time()
-        return time.strftime("%Y-%m-%d", time.gmtime(seconds))
-    except (ValueError, OverflowError, OSError) as error:
-        raise InputError(
-            f"SOURCE_DATE_EPOCH is {epoch!r}: set it to seconds since 1970, or leave it out"
-        ) from error
+    return date or (source_date() or datetime.now(UTC)).strftime("%Y-%m-%d")

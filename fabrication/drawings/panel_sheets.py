@@ -2,13 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import pairwise
-from math import atan2, cos, degrees, hypot, pi, sin
 from typing import Any, Final
 
 import numpy as np
 
-from ...kernel.arrays import FloatArray
+from ...kernel.arrays import FloatArray, dot, norm
 from ...kernel.panels.mould_blanks import panel_caps
 from ...kernel.panels.panels import Panels, boundaries, scale_panels
 from ...kernel.parts.colors import mould_name
@@ -22,6 +20,7 @@ _CELL: Final = (95.0, 84.0)
 """Least width and height of the cell of a panel."""
 
 _HEAD: Final = 13.0
+_LETTER: Final = 1.9
 _TABLE: Final = 0.45
 """Share of the width of a cell that its table has."""
 
@@ -113,11 +112,19 @@ def _draw_cell(
         for layer, ring in rings
     ]
     drawing.lines += [Line(layer, ring.tolist(), is_closed=True) for layer, ring in placed]
-    outer = placed[0][1]
-    corners: list[list[float]] = outer[:: len(outer) // len(edges), :2].tolist()
-    _draw_marks(drawing, corners, edges, middle)
+    _draw_marks(drawing, _chords(placed[0][1], len(edges)), edges)
     draw_axes(drawing, (x + width * (1 - _TABLE) + 12.0, y + 10.0), axes)
     _draw_table(drawing, (x + width * (1 - _TABLE), y + height - _HEAD), width * _TABLE, edges)
+
+
+def _chords(ring: FloatArray, count: int) -> FloatArray:
+    """The chords (count, 3) of the edges of a ring with their bulges, about."""
+    pieces = len(ring) // count
+    chords = ring[::pieces].copy()
+    # The angles of pieces of an edge add up.
+    turns = np.arctan(ring[:, 2]).reshape(count, pieces).sum(axis=1)
+    chords[:, 2] = np.tan(turns)
+    return chords
 
 
 def _draw_head(drawing: Drawing, at: Point, width: float, row: dict[str, Any]) -> None:
@@ -141,30 +148,44 @@ def _draw_head(drawing: Drawing, at: Point, width: float, row: dict[str, Any]) -
     drawing.add_segments("TABLE", (x, top - _HEAD, x + width, top - _HEAD))
 
 
-def _draw_marks(
-    drawing: Drawing, corners: list[list[float]], edges: list[dict[str, Any]], middle: Point
-) -> None:
-    """Numbers of the corners inside; lengths outside and neighbours inside along the edges."""
-    count = len(corners)
-    sides = [hypot(a[0] - b[0], a[1] - b[1]) for a, b in pairwise(corners)]
-    letter = min(1.9, min(sides) / 9)
+def _draw_marks(drawing: Drawing, sides: FloatArray, edges: list[dict[str, Any]]) -> None:
+    """Numbers of the corners inside; lengths outside and neighbours inside along the edges.
+
+    The sides (n, 3) are those of the outer outline with their bulges, chords of the edges.
+    """
+    starts = sides[:, :2]
+    steps = np.roll(starts, -1, axis=0) - starts
+    lengths = norm(steps)
+    out = np.stack([steps[:, 1], -steps[:, 0]], 1) / lengths[:, None]
+    center = starts.mean(axis=0)
+    # How far the edges are from the middle says how large letters may be.
+    letter = min(_LETTER, float(dot(starts - center, out).min()) / 3.6)
+    shorter = np.minimum(lengths, np.roll(lengths, 1))
+    numbers = np.clip(shorter / 3, 0.3 * letter, letter)
+    away = norm(center - starts)
+    inward = np.minimum(1.6 * numbers + 0.2 * letter, 0.35 * away) / away
+    places = starts + inward[:, None] * (center - starts)
+    # An arc stands off its chord by its bulge times half of that.
+    middles = starts + steps / 2 + (sides[:, 2] * lengths / 2)[:, None] * out
+    turns = np.arctan2(steps[:, 1], steps[:, 0])
+    # Texts never stand on their heads.
+    upright = np.degrees(
+        np.where((turns > -1.5) & (turns <= np.pi - 1.5), turns, turns + np.pi)
+    )
     for i, edge in enumerate(edges):
-        (x, y), (to_x, to_y) = corners[i], corners[(i + 1) % count]
-        away = hypot(x - middle[0], y - middle[1]) or 1.0
-        inward = min(1.8 * letter, 0.3 * away) / away
-        place = x + inward * (middle[0] - x), y + inward * (middle[1] - y)
-        drawing.texts.append(Text("MARK", str(i + 1), *place, letter, "middle"))
-        turn = atan2(to_y - y, to_x - x)
-        # Outside is to the right of an edge; texts never stand on their heads.
-        out = sin(turn), -cos(turn)
-        upright = degrees(turn if -1.5 < turn <= pi - 1.5 else turn + pi)
+        x, y = places[i].tolist()
+        drawing.texts.append(Text("MARK", str(i + 1), x, y, float(numbers[i]), "middle"))
+        turn, length = float(upright[i]), float(lengths[i])
         for layer, text, shift, height in (
-            ("DIMENSION", f"{edge['length_mm']:.1f}", 2.2, 1.9),
+            ("DIMENSION", f"{edge['length_mm']:.1f}", 1.3 * _LETTER, _LETTER),
             ("TEXT", edge["neighbor"], -1.1 * letter, 0.8 * letter),
         ):
-            at = (x + to_x) / 2 + shift * out[0], (y + to_y) / 2 + shift * out[1]
-            drawing.texts.append(Text(layer, text, *at, height, "middle", upright))
-    drawing.texts.append(Text("DIMENSION", "OUTSIDE", *middle, 0.7 * letter, "middle"))
+            x, y = (middles[i] + shift * out[i]).tolist()
+            # Beside short edges letters are smaller, as long as they can be read.
+            fits = max(1.1 * length / text_width(text), 0.4 * height)
+            drawing.texts.append(Text(layer, text, x, y, min(height, fits), "middle", turn))
+    x, y = center.tolist()
+    drawing.texts.append(Text("DIMENSION", "OUTSIDE", x, y, 0.6 * letter, "middle"))
 
 
 _COLUMNS: Final = ("edge", "beyond", "length", "rise", "wall°", "to°")
@@ -185,13 +206,16 @@ def _draw_table(drawing: Drawing, at: Point, width: float, edges: list[dict[str,
     x, y = at
     pitch = min(3.6, 50.0 / (2 * count + 3))
     letter = 0.47 * pitch
-    for row in (_COLUMNS, *lines):
+    rooms = [share * (width - 2) for share in _WIDTHS]
+    rows = (_COLUMNS, *lines)
+    size = min(
+        (room - 0.5) / text_width(text)
+        for row in rows
+        for room, text in zip(rooms, row, strict=True)
+    )
+    for row in rows:
         y -= pitch
         place = x
-        rooms = [share * (width - 2) for share in _WIDTHS]
-        size = min(
-            (room - 0.5) / text_width(text) for room, text in zip(rooms, row, strict=True)
-        )
         for text, room in zip(row, rooms, strict=True):
             layer = "TABLE" if row is _COLUMNS else "TEXT"
             drawing.texts.append(Text(layer, text, place, y, min(letter, size)))

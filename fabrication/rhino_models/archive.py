@@ -17,12 +17,14 @@ import base64
 import struct
 import zlib
 from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 from uuid import UUID
 
 from ...kernel.errors import InputError
 from ...kernel.parts.colors import Color
+from ..dates import source_date
 from ..opennurbs.stream_codes import (
     ANONYMOUS,
     CHUNK_HEADER,
@@ -42,6 +44,8 @@ _CLASS_USER_DATA: Final = 0x00027FFD
 _USER_DATA_HEADER: Final = 0x0002FFF9
 _CLASS_END: Final = CHUNK_HEADER.pack(0x80027FFF, 0)
 _TABLE_END: Final = CHUNK_HEADER.pack(0xFFFFFFFF, 0)
+_PROPERTY_TABLE: Final = 0x10000014
+_HISTORY: Final = 0x20008021
 _END_OF_FILE: Final = 0x7FFF
 _FILE_HEADER: Final = 32
 
@@ -138,6 +142,7 @@ def write_archive(
     if data[end : start + length] != _TABLE_END:
         raise InputError(f"cannot write {path}: rhino3dm did not encode a table of objects")
     place, _ = _find(data, start + length, _END_OF_FILE)
+    data = _dated(data, source_date() or datetime(1970, 1, 1, tzinfo=UTC))
     with path.open("wb") as file:
         file.write(data[:end])
         added = sum(file.write(_record(each, header)) for each in objects)
@@ -198,6 +203,29 @@ def _is_sound(found: Any, objects: Sequence[FileObject]) -> bool:  # noqa: ANN40
         item.Attributes.Id == each.attributes.id and item.Geometry.IsValid
         for item, each in pairs
     )
+
+
+def _dated(data: bytes, date: datetime) -> bytes:
+    """The file as if made then: its history names the first and the last time it was saved.
+
+    The history is a byte, two pairs of a text (who) and a C `tm` of eight integers, a count.
+    """
+    start, _ = _find(data, _FILE_HEADER, _PROPERTY_TABLE)
+    start, length = _find(data, start, _HISTORY)
+    day = date.timetuple()
+    time = struct.pack(
+        "<8i", day.tm_sec, day.tm_min, day.tm_hour, day.tm_mday, day.tm_mon - 1,
+        day.tm_year - 1900, (day.tm_wday + 1) % 7, day.tm_yday - 1,
+    )  # fmt: skip
+    body = bytearray(data[start : start + length - CRC.size])
+    place = 1
+    for _ in range(2):
+        (letters,) = struct.unpack_from("<i", body, place)
+        place += 4 + 2 * letters
+        body[place : place + len(time)] = time
+        place += len(time)
+    end = start + length
+    return data[:start] + bytes(body) + CRC.pack(zlib.crc32(body)) + data[end:]
 
 
 def _find(data: bytes, start: int, wanted: int) -> tuple[int, int]:

@@ -132,7 +132,7 @@ def write_3dm(
     ``Moulds`` and ``Reference`` are switched off. Each mould has its colour on its layer and
     as a material, and is a group. Named views: Top and Perspective. User text: `panel_text`,
     the volume of solids, findings. Object ids depend on the panel's id and the object's role
-    only. Two runs differ in the time of day alone.
+    only, and the date is that of SOURCE_DATE_EPOCH, or 1970: two runs give the same bytes.
     """
     check_suffix(path, ".3dm")
     if options.version not in VERSIONS:
