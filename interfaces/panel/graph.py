@@ -135,9 +135,7 @@ def panel_graph(
     )  # fmt: skip
     _add_writers(graph, pattern.surface if pattern else mesh, made)
     if moves:
-        graph.add(
-            "write_move_drawing", "moves", mesh=mesh, sphere_mesh=spheres, path="moves.svg"
-        )
+        _add_moves(graph, mesh, spheres)
     add_papers(graph, options, made, has_moulds=clusters is not None)
     shown = {"findings": audit.findings, "cut": panels.report, "reference": spheres}
     graph.add("write_view", "view", **made, **shown, path="view.html", title=title)
@@ -200,6 +198,11 @@ def _add_writers(graph: Graph, mesh: Step | Wire, made: Mapping[str, Wire]) -> N
     graph.add("write_schedule", "table", panels=panels, path="schedule.csv")
     graph.add("write_schedule", "list", **made, path="schedule.json")
     graph.add("render", "picture", **made, path="preview.png")
+
+
+def _add_moves(graph: Graph, mesh: Step | Wire, spheres: Wire) -> None:
+    """The design, with how far its vertices moved."""
+    graph.add("write_move_drawing", "moves", mesh=mesh, sphere_mesh=spheres, path="moves.svg")
 
 
 def _source(graph: Graph) -> str:
