@@ -139,9 +139,7 @@ def panel_graph(
     if options.ifc:
         graph.add("write_ifc", "ifc", **made, path="model.ifc", title=title)
     if moves:
-        graph.add(
-            "write_move_drawing", "moves", mesh=mesh, sphere_mesh=spheres, path="moves.svg"
-        )
+        _add_moves(graph, mesh, spheres)
     add_papers(graph, options, made, has_moulds=clusters is not None)
     shown = {**checked, "reference": spheres}
     graph.add("write_view", "view", **made, **shown, path="view.html", title=title)
@@ -209,6 +207,11 @@ def _add_writers(
     graph.add("write_schedule", "table", panels=panels, path="schedule.csv")
     graph.add("write_schedule", "list", **made, path="schedule.json")
     graph.add("render", "picture", **made, path="preview.png")
+
+
+def _add_moves(graph: Graph, mesh: Step | Wire, spheres: Wire) -> None:
+    """The design, with how far its vertices moved."""
+    graph.add("write_move_drawing", "moves", mesh=mesh, sphere_mesh=spheres, path="moves.svg")
 
 
 def _source(graph: Graph) -> str:
