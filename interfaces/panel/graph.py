@@ -128,15 +128,23 @@ def panel_graph(
     cost: dict[str, Any] = {}
     if options.prices is not None:
         cost["cost"] = graph.add("cost", "cost", **made, prices=str(options.prices.resolve()))
-    graph.add(
+    report = graph.add(
         "panel_report", "report", sphere_mesh=spheres, optimum=optimum.report,
         cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report, **plain, **cost,
         **(support.report if support else {}),
     )  # fmt: skip
     _add_writers(graph, pattern.surface if pattern else mesh, made)
+    if moves:
+        graph.add(
+            "write_move_drawing", "moves", mesh=mesh, sphere_mesh=spheres, path="moves.svg"
+        )
     add_papers(graph, options, made, has_moulds=clusters is not None)
     shown = {"findings": audit.findings, "cut": panels.report, "reference": spheres}
     graph.add("write_view", "view", **made, **shown, path="view.html", title=title)
+    graph.add(
+        "write_report", "summary", report=report, panels=panels.panels, sphere_mesh=spheres,
+        path="report.html", title=title,
+    )  # fmt: skip
     return graph
 
 

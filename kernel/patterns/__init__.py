@@ -13,8 +13,10 @@ expected_angles     Angles between neighbours that the curvatures of a surface f
 gain_report         What spheres gain in each pattern, in numbers and in a sentence.
 held_nets           Nets planarised on their surface, the most faithful first.
 net_flaws           What keeps a net from being built, by face and cause.
+panel_scale         A surface as panels of a size see it: curvatures, convex spheres.
 polishing           Hexagons without slivers: vertices slide until no dual edge is short.
 quad_pattern        The short list of curvatures: remesh, planarise, judge, keep the best.
 rim_repair          Cells at the boundary lose corners that no other cell needs.
+semiregular         Triangles or quads with corners cut, or drawn apart.
 surface_curvatures  Principal curvatures of a mesh or surface, and the area each stands for.
 """

@@ -8,24 +8,22 @@ import numpy as np
 from ..errors import ConvergenceError, InputError
 from ..hexagons.dual_sphere_mesh import BoundaryRule, dual_sphere_mesh
 from ..hexagons.evolution import evolve_spheres
-from ..meshes.isotropic_remeshing import remesh_triangles
 from ..meshes.mesh import Mesh
 from ..optimization.angle_minimization import minimize_angles
 from ..sphere_meshes.fit import fit_spheres
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..surfaces.surface import Surface
 from ..tolerances import CREASE, OPENING
-from .curved_refinement import refined
 from .gain_report import check_edge
-from .net_flaws import Flaw, Judgement, judge_faces
+from .net_flaws import Flaw, PatternJudgement, judge_faces
+from .panel_scale import even_triangles
 from .polishing import polish
-from .quad_pattern import EVENING_ROUNDS
 
 BOUNDS: Final = (2.0, 3.0, 5.0, 9.0, 15.0, 20.0, 30.0)
 """Bounds on the angle of node axes, in degrees: a looser one takes all tighter ones along."""
 
 GROWTHS = 2
-"""How often spheres grow with each bound: after polishing, vertices lie better for it."""
+"""How often spheres grow to keep a bound: after polishing, vertices lie better for it."""
 
 LEAN_SLACK = 0.1
 """Degrees by which an axis may pass its bound."""
@@ -43,31 +41,20 @@ class DualTry:
     bound : float
         Largest angle of node axes with the normals, in degrees.
     net : SphereMesh or None
-    judgement : Judgement or None
+    judgement : PatternJudgement or None
     message : str
         Why there are none.
     """
 
     bound: float
     net: SphereMesh | None
-    judgement: Judgement | None
+    judgement: PatternJudgement | None
     message: str
 
 
-def even_triangles(source: Mesh | Surface, edge: float) -> Mesh:
-    """Triangles of nearly one size on a surface.
-
-    Raises
-    ------
-    InputError
-        If the length is not positive, or the triangles would be too many.
-    """
-    check_edge(edge)
-    mesh = source.mesh if isinstance(source, Surface) else source
-    return remesh_triangles(refined(mesh, edge), edge, EVENING_ROUNDS, CREASE)
-
-
-def triangle_pattern(source: Mesh | Surface, edge: float) -> tuple[SphereMesh, Judgement]:
+def triangle_pattern(
+    source: Mesh | Surface, edge: float
+) -> tuple[SphereMesh, PatternJudgement]:
     """Triangles of nearly one size, with the spheres that meet most smoothly.
 
     Raises
@@ -75,7 +62,8 @@ def triangle_pattern(source: Mesh | Surface, edge: float) -> tuple[SphereMesh, J
     InputError
         If the length is not positive, or the triangles would be too many.
     """
-    start = fit_spheres(even_triangles(source, edge))
+    check_edge(edge)
+    start = fit_spheres(even_triangles(_mesh_of(source), edge))
     net, _ = minimize_angles(start, crease=CREASE, max_opening=OPENING)
     return net, judge_faces(net, "bisector", convex=False)
 
@@ -108,9 +96,10 @@ def hexagon_pattern(
     """
     if not 0 < bound < 90:
         raise InputError(f"the largest angle of an axis lies between 0 and 90, not {bound:g}")
-    triangles = even_triangles(source, np.sqrt(3) * edge)
+    check_edge(edge)
+    surface = _mesh_of(source)
+    triangles = even_triangles(surface, np.sqrt(3) * edge)
     bounds = [each for each in BOUNDS if each <= bound] or [bound / 2, bound]
-    surface = source.mesh if isinstance(source, Surface) else source
     tries = [
         _bounded(found, bound)
         for each in bounds
@@ -122,10 +111,14 @@ def hexagon_pattern(
     return best, tries
 
 
+def _mesh_of(source: Mesh | Surface) -> Mesh:
+    return source.mesh if isinstance(source, Surface) else source
+
+
 def _grown(
     triangles: Mesh, surface: Mesh, bound: float, boundary: BoundaryRule
 ) -> list[DualTry]:
-    """Hexagons grown with one bound and polished, and grown anew on the polished triangles."""
+    """Hexagons grown with one bound and polished; grown anew from there where they pass it."""
     found: list[DualTry] = []
     for _ in range(GROWTHS):
         try:
@@ -142,6 +135,8 @@ def _grown(
             lean_max=float(grown.axis_angles.max()),
         )
         found.append(DualTry(bound, net, judgement, ""))
+        if judgement.is_usable and np.degrees(judgement.lean_max) <= bound + LEAN_SLACK:
+            break
         triangles = grown.mesh
     return found
 

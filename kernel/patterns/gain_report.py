@@ -84,14 +84,19 @@ def check_edge(edge: float) -> None:
         )
 
 
-def gain_map(found: SurfaceCurvatures, edge: float, which: GainMap) -> FloatArray:
+def gain_map(
+    found: SurfaceCurvatures, edge: float, which: GainMap, convex: FloatArray | None = None
+) -> FloatArray:
     """Expected angles (V,) in one pattern, in radians.
 
-    Planes and spheres of one radius are those of quads, as spheres of smallest angles are.
+    Planes and spheres of one radius are those of quads, as spheres of smallest angles are. The
+    spheres of hexagons have given curvatures (V,), or the largest radii that there can be.
     """
     first, second = found.first, found.second
     if which == "hexagons":
-        return hexagon_angles(first, second, edge, convex_side(first, second, _side(found)))
+        if convex is None:
+            convex = convex_side(first, second, _side(found))
+        return hexagon_angles(first, second, edge, convex)
     if which == "triangles":
         return triangle_angles(first, second, edge, smoothest(first, second))
     choices = {"spheres": smoothest(first, second), "one-radius": found.best, "planes": 0.0}
@@ -99,11 +104,14 @@ def gain_map(found: SurfaceCurvatures, edge: float, which: GainMap) -> FloatArra
 
 
 def gain_maps(
-    found: SurfaceCurvatures, edge: float, which: Literal["hexagons", "triangles"]
+    found: SurfaceCurvatures,
+    edge: float,
+    which: Literal["hexagons", "triangles"],
+    convex: FloatArray | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Expected angles (V,) with planes and with spheres, in radians."""
     flat = {"hexagons": hexagon_angles, "triangles": triangle_angles}[which]
-    return flat(found.first, found.second, edge, 0.0), gain_map(found, edge, which)
+    return flat(found.first, found.second, edge, 0.0), gain_map(found, edge, which, convex)
 
 
 def _side(found: SurfaceCurvatures) -> int:
@@ -128,8 +136,13 @@ def turn_p95(found: SurfaceCurvatures, edge: float) -> float:
     return found.quantile(largest, 0.95) * edge
 
 
-def gain_report(found: SurfaceCurvatures, edge: float) -> GainReport:
-    """The report of what spheres gain on a surface, with edges of a length."""
+def gain_report(
+    found: SurfaceCurvatures, edge: float, convex: FloatArray | None = None
+) -> GainReport:
+    """The report of what spheres gain on a surface, with edges of a length.
+
+    The spheres of hexagons may be given by their curvatures (V,).
+    """
     first, second, best = found.first, found.second, found.best
 
     def _mean(angles: FloatArray) -> float:
@@ -144,7 +157,7 @@ def gain_report(found: SurfaceCurvatures, edge: float) -> GainReport:
     }  # fmt: skip
     others: dict[str, Any] = {}
     for name in ("hexagons", "triangles"):
-        before, after = (_mean(each) for each in gain_maps(found, edge, name))
+        before, after = (_mean(each) for each in gain_maps(found, edge, name, convex))
         others[name] = {"planes": before, "spheres": after, "gain": _gain(before, after)}
     largest = np.maximum(np.abs(first), np.abs(second))
     angles = {"quads": spheres, **{name: each["spheres"] for name, each in others.items()}}

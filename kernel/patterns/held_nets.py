@@ -14,16 +14,16 @@ from ..sphere_meshes.sphere_mesh import SphereMesh
 FARTHEST_NODE = 0.02
 """Largest distance of a node from the surface, in mean edges, for a net of that surface."""
 
-LARGEST_LEAN = np.radians(12)
+HELD_LEAN = np.radians(12)
 """Node axes that lean farther are turned back on the way to the surface."""
 
-PATIENCE = 0.1
+APPROACH_PATIENCE = 0.1
 """The way to the surface ends when a step lowers what is missed by a smaller share."""
 
 SLACK = 0.012
 """Distance from the surface, in mean edges, that nets may use."""
 
-RIM_WEIGHTS = (1.0, 0.0)
+HELD_RIM_WEIGHTS = (1.0, 0.0)
 """How much the boundary counts on the way."""
 
 
@@ -53,10 +53,15 @@ def held_nets(start: SphereMesh, surface: SmoothSurface) -> Iterator[HeldNet]:
     but one sphere: there nets leave the surface unless they are led onto it first, patiently,
     and the plane of two such spheres is rounding unless they are turned apart at last.
     """
-    for weight in RIM_WEIGHTS:
-        ground = None if weight is None else surface
+    for weight in HELD_RIM_WEIGHTS:
         found = planarize(
-            start, 1.0, ground, weight or 0.0, lean=LARGEST_LEAN, approach=PATIENCE, slack=SLACK
+            start,
+            1.0,
+            surface,
+            weight,
+            lean=HELD_LEAN,
+            approach=APPROACH_PATIENCE,
+            slack=SLACK,
         )
         landed, is_near = planarize_near(found.sphere_mesh, FARTHEST_NODE)
         net = landed.sphere_mesh if is_near else found.sphere_mesh

@@ -46,7 +46,7 @@ class Flaw(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Judgement:
+class PatternJudgement:
     """Measures of a pattern of spheres, lengths in mean edges, angles in radians.
 
     Attributes
@@ -103,7 +103,7 @@ def judge_faces(
     *,
     convex: bool,
     shortest: float = 0.0,
-) -> Judgement:
+) -> PatternJudgement:
     """Judge faces by their shape, and by panels that are cut on trial.
 
     Parameters
@@ -117,7 +117,7 @@ def judge_faces(
 
     Returns
     -------
-    Judgement
+    PatternJudgement
         What was measured, and the flaws.
     """
     mesh = sphere_mesh.mesh
@@ -132,7 +132,7 @@ def judge_faces(
         *_short(sides, shortest),
         *panel_flaws,
     ]
-    return Judgement(
+    return PatternJudgement(
         tuple(flaws),
         float(sides.min()),
         cap,
@@ -143,7 +143,7 @@ def judge_faces(
     )
 
 
-def judge_net(sphere_mesh: SphereMesh) -> Judgement:
+def judge_net(sphere_mesh: SphereMesh) -> PatternJudgement:
     """Judge a net as a workshop would: its nodes, faces, and a trial of panels and beams."""
     mesh = sphere_mesh.mesh
     nodes = measure_nodes(sphere_mesh)
@@ -166,7 +166,7 @@ def judge_net(sphere_mesh: SphereMesh) -> Judgement:
         flaws.append(
             Flaw(None, f"node axes lean {np.degrees(lean_p95):.0f} degrees at 5 % of the nodes")
         )
-    return Judgement(
+    return PatternJudgement(
         flaws=tuple(flaws),
         shortest=float(sides.min()),
         cap=cap,

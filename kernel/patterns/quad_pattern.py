@@ -8,22 +8,17 @@ import numpy as np
 from ..arrays import FloatArray
 from ..congruences.curvature_spheres import sphere_congruence
 from ..errors import ConvergenceError, InputError
-from ..meshes.isotropic_remeshing import remesh_triangles
 from ..meshes.mesh import Mesh
 from ..remesh import pipeline
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..surfaces.surface import Surface
-from ..tolerances import CREASE
-from .curved_refinement import refined
 from .expected_angles import quad_angles
 from .gain_report import SHARP_TURN, check_edge, is_round, turn_p95
 from .held_nets import FARTHEST_NODE, HeldNet, held_nets
-from .net_flaws import Flaw, Judgement, judge_net
+from .net_flaws import Flaw, PatternJudgement, judge_net
+from .panel_scale import FINENESS, curvatures_on, even_triangles
 from .rim_repair import without_loose_corners
-from .surface_curvatures import SurfaceCurvatures, surface_curvatures
-
-FINENESS = 2.4
-"""Edges of the triangles under a net, as parts of its own edges."""
+from .surface_curvatures import SurfaceCurvatures
 
 SMALLEST_RADIUS = 1.5
 """Least radius of the spheres, in edges: panels are caps of 28 degrees at most."""
@@ -33,9 +28,6 @@ NEARLY_FLAT = 3.0
 
 SHARES: dict[str, float | None] = {"75 %": 0.75, "50 %": 0.5, "flat": None, "best": 1.0}
 """Curvatures to try, as shares of the best one: nets are worst at the best one itself."""
-
-EVENING_ROUNDS = 10
-"""How often the triangles are evened out."""
 
 STRETCHES = (0.93, 1.08)
 """Other edges that the best curvature is tried with: singular points come to lie elsewhere."""
@@ -78,7 +70,7 @@ class NetTry:
         Length of the edges asked for, in model units.
     status : {"usable", "flawed", "not planarised", "failed"}
     net : SphereMesh or None
-    judgement : Judgement or None
+    judgement : PatternJudgement or None
     distance : float
         Largest distance of a node inside from the surface, in mean edges.
     message : str
@@ -91,7 +83,7 @@ class NetTry:
     edge: float
     status: TryStatus
     net: SphereMesh | None
-    judgement: Judgement | None
+    judgement: PatternJudgement | None
     distance: float
     message: str
     effort: int = 0
@@ -174,10 +166,8 @@ def quad_pattern(source: Mesh | Surface, edge: float, *, insists: bool = False) 
     """
     check_edge(edge)
     mesh = source.mesh if isinstance(source, Surface) else source
-    triangles = remesh_triangles(
-        refined(mesh, edge / FINENESS), edge / FINENESS, EVENING_ROUNDS, CREASE
-    )
-    found = _curvatures(source, triangles)
+    triangles = even_triangles(mesh, edge / FINENESS)
+    found = curvatures_on(source, triangles)
     rounded = is_round(found, edge) and not insists
     diagonal = float(np.linalg.norm(np.ptp(triangles.vertices, axis=0)))
     turn = turn_p95(found, edge)
@@ -205,15 +195,6 @@ def _is_enough(tries: list[NetTry]) -> bool:
     """Whether a net is found, or has cost what it may."""
     is_found = tries[-1].status in _MADE
     return is_found or sum(each.effort for each in tries) > EFFORT
-
-
-def _curvatures(source: Mesh | Surface, triangles: Mesh) -> SurfaceCurvatures:
-    """Exact curvatures where they are known; else at the scale of the panels."""
-    if isinstance(source, Surface):
-        return surface_curvatures(source)
-    found = surface_curvatures(triangles)
-    inner = np.where(triangles.topology.is_boundary_vertex, 0.0, found.weights)
-    return replace(found, weights=inner / inner.sum()) if inner.sum() > 0 else found
 
 
 def _try(triangles: Mesh, choice: CurvatureChoice, edge: float, *, planar: bool) -> NetTry:
@@ -249,7 +230,7 @@ def _judged(choice: CurvatureChoice, edge: float, held: HeldNet, n_flipped: int)
     return NetTry(choice, edge, status, net, judgement, held.distance, "")
 
 
-def _judged_and_trimmed(net: SphereMesh) -> tuple[SphereMesh, Judgement]:
+def _judged_and_trimmed(net: SphereMesh) -> tuple[SphereMesh, PatternJudgement]:
     """A net and its flaws; its cells at the boundary trimmed if that leaves fewer."""
     judgement = judge_net(net)
     faces = judgement.flawed_faces
@@ -271,7 +252,7 @@ def _touches_rim(found: NetTry) -> bool:
     return bool(np.logical_or.reduceat(at_rim, mesh.offsets[:-1])[faces].any())
 
 
-def _with_flaw(judgement: Judgement, cause: str) -> Judgement:
+def _with_flaw(judgement: PatternJudgement, cause: str) -> PatternJudgement:
     return replace(judgement, flaws=(*judgement.flaws, Flaw(None, cause)))
 
 

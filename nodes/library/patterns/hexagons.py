@@ -54,9 +54,9 @@ def hexagon_pattern(
     Examples
     --------
     >>> from spheremesh.nodes import ellipsoid_mesh, hexagon_pattern
-    >>> report = hexagon_pattern(ellipsoid_mesh(48, 24), 0.13, max_axis_angle=5).report
-    >>> report["convex_share"], [each["bound_deg"] for each in report["tries"]]
-    (1.0, [3.0, 5.0])
+    >>> report = hexagon_pattern(ellipsoid_mesh(24, 12), 0.25, max_axis_angle=5).report
+    >>> report["convex_share"], sorted({each["bound_deg"] for each in report["tries"]})
+    (1.0, [2.0, 3.0, 5.0])
     """
     best, tries = dual_patterns.hexagon_pattern(mesh, edge_length, max_axis_angle, boundary)
     if best.net is None or best.judgement is None:  # never: the kernel refuses such surfaces
@@ -72,5 +72,6 @@ def hexagon_pattern(
         for each in tries
         if each.judgement is not None
     ]
-    report = dual_report(mesh, edge_length, "hexagons", best.net, best.judgement, told)
+    bound = float(np.radians(max_axis_angle))
+    report = dual_report(mesh, edge_length, "hexagons", best.net, best.judgement, told, bound)
     return HexagonPattern(best.net, report)

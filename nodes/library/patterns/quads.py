@@ -6,7 +6,7 @@ import numpy as np
 
 from ....kernel.meshes.mesh import Mesh
 from ....kernel.patterns import quad_pattern as quads
-from ....kernel.patterns.net_flaws import Judgement
+from ....kernel.patterns.net_flaws import PatternJudgement
 from ....kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ....kernel.surfaces.surface import Surface
 from ...graphs.node import node
@@ -82,7 +82,7 @@ def quad_pattern(
     return QuadPattern(best.net, report)
 
 
-def _reason(found: quads.QuadPattern, judgement: Judgement, edge_length: float) -> str:
+def _reason(found: quads.QuadPattern, judgement: PatternJudgement, edge_length: float) -> str:
     """Why a net is not usable, and what would do; empty if it is."""
     if found.best.status == "usable":
         return ""

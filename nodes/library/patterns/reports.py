@@ -7,11 +7,16 @@ from typing import Annotated, Any, Literal, NamedTuple
 import numpy as np
 
 from ....kernel.arrays import norm
-from ....kernel.meshes.mesh import Mesh, face_vector_areas, mean_edge_length
+from ....kernel.meshes.mesh import (
+    Mesh,
+    face_centroids,
+    face_vector_areas,
+    mean_edge_length,
+)
 from ....kernel.patterns.deviations import deviations
 from ....kernel.patterns.gain_report import SHARP_TURN, gain_maps, turn_p95
-from ....kernel.patterns.net_flaws import Flaw, Judgement, flaw_counts
-from ....kernel.patterns.surface_curvatures import surface_curvatures
+from ....kernel.patterns.net_flaws import Flaw, PatternJudgement, flaw_counts
+from ....kernel.patterns.panel_scale import USUAL_BOUND, at_panel_scale
 from ....kernel.reports import Report
 from ....kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ....kernel.surfaces.surface import Surface
@@ -138,7 +143,7 @@ def pattern_report(
     surface: Mesh,
     edge_length: float,
     net: SphereMesh,
-    judgement: Judgement,
+    judgement: PatternJudgement,
     expected: Expected,
     outcome: Outcome,
     node_distance: float | None = None,
@@ -188,18 +193,23 @@ def dual_report(
     edge_length: float,
     which: DualPattern,
     net: SphereMesh,
-    judgement: Judgement,
+    judgement: PatternJudgement,
     tries: list[dict[str, Any]],
+    bound: float = USUAL_BOUND,
 ) -> PatternReport:
-    """The report of triangles or hexagons; warns where they came out smaller than asked for."""
-    found = surface_curvatures(source)
+    """The report of triangles or hexagons; warns where they came out smaller than asked for.
+
+    The bound is that on the node axes of hexagons, in radians.
+    """
     size = _panel_edge(net.mesh, which)
+    scale = at_panel_scale(source, size, bound)
+    found = scale.curvatures
     if size < SMALLER * edge_length:
         warn(
             f"panels have edges of about {size:.3g}, not {edge_length:g}: larger ones would "
             "leave the surface, which bends too much or is cut too finely at its boundary"
         )
-    planes, spheres = gain_maps(found, size, which)
+    planes, spheres = gain_maps(found, size, which, scale.convex)
     expected = Expected(found.mean(planes), found.mean(spheres), turn_p95(found, edge_length))
     status = "usable" if judgement.is_usable else "flawed"
     outcome = Outcome(status, _dual_reason(judgement, which), tries)
@@ -217,12 +227,23 @@ def _panel_edge(mesh: Mesh, which: DualPattern) -> float:
     return float(np.sqrt(area / REGULAR_AREAS[which]))
 
 
-def _dual_reason(judgement: Judgement, which: DualPattern) -> str:
+def neighbor_distance(mesh: Mesh) -> float:
+    """Mean distance of the centres of neighbouring faces."""
+    left, right = face_centroids(mesh)[mesh.topology.edge_faces].transpose(1, 0, 2)
+    return float(norm(left - right).mean())
+
+
+def flaw_reason(judgement: PatternJudgement) -> str:
+    """How many faces have flaws, and the first of these; empty if none has."""
+    if not judgement.flaws:
+        return ""
+    faces = len({flaw.face for flaw in judgement.flaws})
+    return f"{faces} faces have flaws ({first_flaws(judgement.flaws)})"
+
+
+def _dual_reason(judgement: PatternJudgement, which: DualPattern) -> str:
     """Why a pattern is not usable, or no better than planes."""
-    reasons: list[str] = []
-    if judgement.flaws:
-        faces = len({flaw.face for flaw in judgement.flaws})
-        reasons.append(f"{faces} faces have flaws ({first_flaws(judgement.flaws)})")
+    reasons = [flaw_reason(judgement)] if judgement.flaws else []
     if judgement.angle > judgement.flat_angle:
         why = (
             "convex panels need spheres smaller than the surface bends, and here that costs "

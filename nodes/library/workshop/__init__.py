@@ -8,6 +8,7 @@ losses     What moulds and a support cost, and what became of it, in warnings.
 picture    Pictures of panels, beams and other things.
 report     The report of a panelling.
 solids     Panels and beams as solids for CadQuery.
+summary    The report of a panelling, to read and to print.
 tables     Tidy tables of parts.
 view       A page on which a model turns, shines and answers.
 """
