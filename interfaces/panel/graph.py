@@ -126,9 +126,7 @@ def panel_graph(
         max_twist=options.allow_torsion, **(support.audit if support else {}),
     )  # fmt: skip
     made = {"panels": panels.panels} | ({"beams": support.beams} if support else {})
-    cost: dict[str, Any] = {}
-    if options.prices is not None:
-        cost["cost"] = graph.add("cost", "cost", **made, prices=str(options.prices.resolve()))
+    cost = _cost(graph, options, made)
     report = graph.add(
         "panel_report", "report", sphere_mesh=spheres, optimum=optimum.report,
         cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report, **plain, **cost,
@@ -148,6 +146,13 @@ def panel_graph(
         path="report.html", title=title,
     )  # fmt: skip
     return graph
+
+
+def _cost(graph: Graph, options: PanelOptions, made: Mapping[str, Wire]) -> dict[str, Step]:
+    """What it costs, by the prices of a workshop."""
+    if options.prices is None:
+        return {}
+    return {"cost": graph.add("cost", "cost", **made, prices=str(options.prices.resolve()))}
 
 
 def _few_radii(
