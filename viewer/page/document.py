@@ -29,7 +29,7 @@ from .beams import beam_arrays, beam_points, node_arrays
 from .container import pack_arrays
 from .faces import Faces, face_arrays, panel_faces
 from .grid import Grid, grid_about
-from .sky import GROUND, REACH, ground_openness, panel_openness
+from .sky import GROUND, REACH, ground_openness, panel_openness, point_sky, point_spacing
 
 _BUNDLE: Final = "bundle"
 """Folder of what `source/build.mjs` makes."""
@@ -152,7 +152,10 @@ def _add_light(
 ) -> dict[str, Any]:
     """Light of the sky at the points of panels and on the ground; where that lies."""
     seen = faces[0].points if faces else points[0]
-    sky = sky_maps(seen, _cover(faces[0]) if faces else _cloud(seen))
+    if faces:
+        sky = sky_maps(seen, _cover(faces[0]))
+    else:
+        sky = point_sky(seen, point_spacing(seen))
     for name, side in zip(("outer", "inner"), faces, strict=False):
         # Both sides count from the outer face, on which the light falls.
         normals = side.normals if name == "outer" else -side.normals
@@ -173,12 +176,6 @@ def _cover(side: Faces) -> IntArray:
     steps = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
     chosen: IntArray = np.repeat(first[side.kinds], counts) + steps
     return triangles[chosen] + np.repeat(side.starts, counts)[:, None]
-
-
-def _cloud(points: FloatArray) -> IntArray:
-    """Thin triangles between points that follow each other: of beams alone."""
-    ids: IntArray = np.arange(max(len(points) - 2, 0))
-    return np.stack([ids, ids + 1, ids + 2], axis=1)
 
 
 def _missing(
