@@ -50,7 +50,8 @@ def lowest(session: nox.Session) -> None:
         "uv", "pip", "compile", "-q", "--resolution", "lowest-direct", "--all-extras",
         "--python-version", PYTHONS[0], "-o", str(bounds), "pyproject.toml", external=True,
     )  # fmt: skip
-    session.install("-c", str(bounds), "-e", ".[cluster,excel,formats]", *TOOLS)
+    extras = "cluster,drawings,excel,formats,parquet"
+    session.install("-c", str(bounds), "-e", f".[{extras}]", *TOOLS)
     run_tests(session)
 
 

@@ -29,7 +29,7 @@ from OCP.TopExp import TopExp_Explorer
 from spheremesh import SphereMesh
 from spheremesh.fabrication.audit.report import audit_model
 from spheremesh.fabrication.model import Model
-from spheremesh.fabrication.rhino.writer import write_3dm
+from spheremesh.fabrication.rhino_models.writer import write_3dm
 from spheremesh.fabrication.schedules.writer import write_schedule
 from spheremesh.fabrication.step.writer import write_step
 from spheremesh.kernel.beams.beams import Beams

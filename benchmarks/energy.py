@@ -69,15 +69,19 @@ def same_energy(size: int) -> None:
     setting = energy_setting(mesh, np.ones(len(mesh.topology.edge_corners)))
     freedom = Freedom(0.0, vertex_freedom(mesh, "free", "free"), np.zeros(mesh.n_faces, bool))
     problem = energy_problem(setting, freedom, FULL)
-    best = np.inf
+    best, first = np.inf, 0.0
     for name, is_exact in (("Newton", True), ("Levenberg-Marquardt, factorising", False)):
         began = time.process_time()
         found = descend_energy(problem, start, 500, 1e-12, is_exact=is_exact)
         seconds = time.process_time() - began
         energy = float(found.history[-1].sum())
-        best = min(best, energy)
-        print(f"{name}: energy {energy:.10g}, {found.iterations} steps, {seconds:.1f} s")
-    general_solvers(problem, start, best)
+        best, first = min(best, energy), first or seconds
+        print(
+            f"{name}: energy {energy:.10g}, {found.iterations} steps, {seconds:.1f} s, "
+            f"{seconds / first:.2g} times Newton's method",
+            flush=True,
+        )
+    general_solvers(problem, start, best, first)
 
 
 def jacobian(problem: EnergyProblem, unknowns: Unknowns) -> csr_array:
@@ -98,8 +102,11 @@ def jacobian(problem: EnergyProblem, unknowns: Unknowns) -> csr_array:
     return csr_array((np.concatenate(values), places), shape=(first, int(layout.starts[-1])))
 
 
-def general_solvers(problem: EnergyProblem, start: Unknowns, aim: float) -> None:
-    """Solvers of scipy on the same energy, each for two minutes at most."""
+def general_solvers(problem: EnergyProblem, start: Unknowns, aim: float, newton: float) -> None:
+    """Solvers of scipy to the same energy, each for two minutes at most.
+
+    Seconds are beside those of Newton's method.
+    """
     from scipy.optimize import least_squares, minimize
 
     split = start.spheres.size
@@ -144,7 +151,9 @@ def general_solvers(problem: EnergyProblem, start: Unknowns, aim: float) -> None
         off = least / aim - 1
         seconds = time.process_time() - began
         print(
-            f"scipy {name}: energy {least:.10g}, {off:.1e} above, {seconds:.1f} s", flush=True
+            f"scipy {name}: energy {least:.10g}, {off:.1e} above, {seconds:.1f} s, "
+            f"{seconds / newton:.2g} times Newton's method",
+            flush=True,
         )
 
 

@@ -27,7 +27,7 @@ from OCP.TopoDS import TopoDS_Shape
 from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.opennurbs.brep_audit import verify_breps
 from spheremesh.fabrication.opennurbs.brep_reader import read_brep_streams
-from spheremesh.fabrication.rhino.writer import write_3dm
+from spheremesh.fabrication.rhino_models.writer import write_3dm
 from spheremesh.fabrication.solids.opencascade_panels import panel_shapes
 from spheremesh.fabrication.step.writer import write_step
 from spheremesh.fabrication.units import millimeters_per

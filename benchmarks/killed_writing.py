@@ -34,7 +34,7 @@ import rhino3dm
 from spheremesh import nodes
 from spheremesh.fabrication.folders import finish_moves
 from spheremesh.fabrication.model import Model
-from spheremesh.fabrication.rhino import writer as rhino
+from spheremesh.fabrication.rhino_models import writer as rhino
 from spheremesh.fabrication.step import writer as step
 from spheremesh.interfaces.panel import PanelOptions, panel_graph, run_job
 from spheremesh.kernel.panels.panels import Panels

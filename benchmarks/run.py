@@ -42,7 +42,7 @@ def optimise(n_span: int, n_length: int) -> Figures:
 def write(kind: str) -> Figures:
     """One file of 5,000 panels."""
     from spheremesh.fabrication.model import Model
-    from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
+    from spheremesh.fabrication.rhino_models.writer import RhinoOptions, write_3dm
     from spheremesh.fabrication.step.writer import write_step
     from spheremesh.nodes import cluster_radii, fit_spheres, minimize_angles, panels, roof_mesh
 

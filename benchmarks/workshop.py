@@ -17,6 +17,7 @@ from pathlib import Path
 from exactness import judge_step
 
 from spheremesh.fabrication.audit.report import audit_model
+from spheremesh.fabrication.drawings.drawing_set import write_drawings
 from spheremesh.fabrication.drawings.moulds import write_mould_drawings
 from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.opennurbs.render_meshes import (
@@ -24,7 +25,8 @@ from spheremesh.fabrication.opennurbs.render_meshes import (
     mesh_streams,
     panel_meshes,
 )
-from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
+from spheremesh.fabrication.rhino_models.writer import RhinoOptions, write_3dm
+from spheremesh.fabrication.schedules.record_files import write_tables
 from spheremesh.fabrication.schedules.writer import write_schedule
 from spheremesh.fabrication.step.check import check_part21
 from spheremesh.fabrication.step.writer import StepOptions, write_step
@@ -106,6 +108,10 @@ def main() -> None:
     clock("schedule.json", lambda: write_schedule(Model(made), folder / "s.json").path)
     clock("moulds.dxf", lambda: write_mould_drawings(Model(made), folder / "m.dxf").path)
     clock("moulds.svg", lambda: write_mould_drawings(Model(made), folder / "m.svg").path)
+    clock("tables.xlsx", lambda: write_tables(Model(made), folder / "t.xlsx").path)
+    clock("panel_edges.csv", lambda: write_tables(Model(made), folder / "panel_edges.csv").path)
+    clock("drawings.pdf", lambda: write_drawings(Model(made), folder / "d.pdf").path)
+    clock("drawings.dxf", lambda: write_drawings(Model(made), folder / "d.dxf").path)
     if sys.argv[1:] == ["exact"]:
         for side in ("inward", "centred"):
             print(side)

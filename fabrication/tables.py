@@ -2,19 +2,24 @@
 
 import csv
 import io
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, TypeAlias, cast
+from types import NoneType
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
 from ..kernel.errors import MissingLibraryError
 
+_UNDATED: Final = datetime(2000, 1, 1, tzinfo=UTC).replace(tzinfo=None)
+"""When every workbook was made, as it says itself."""
+
 LARGE = 1e3
 """Numbers from here on are written with six decimals."""
 
 
-# What comes from openpyxl is not typed.
+# What comes from xlsxwriter is not typed.
 _Untyped: TypeAlias = Any
 
 
@@ -30,65 +35,89 @@ def write_csv(rows: Iterable[Mapping[str, Any]], path: Path) -> None:
     what is None is an empty cell, or a dash in a list.
     """
     with path.open("w", encoding="utf-8-sig", newline="") as file:
-        writer: csv.DictWriter[str] | None = None
-        for row in rows:
-            if writer is None:
-                writer = csv.DictWriter(file, list(row))
-                writer.writeheader()
-            writer.writerow({name: _cell(value) for name, value in row.items()})
+        writer = csv.writer(file)
+        for number, row in enumerate(rows):
+            if number == 0:
+                writer.writerow(row)
+            writer.writerow(map(_cell, row.values()))
 
 
 def format_xlsx(sheets: Mapping[str, list[dict[str, Any]]]) -> bytes:
     """Tables as a workbook: rows of the same columns by the title of their sheet.
 
-    Lists are written as in CSV. Raises MissingLibraryError if openpyxl is missing.
+    Lists are written as in CSV. Raises MissingLibraryError if xlsxwriter is missing.
+    """
+    return format_sheets(
+        {
+            title: [
+                list(rows[0]) if rows else ["none"],
+                *([_plain(value) for value in row.values()] for row in rows),
+            ]
+            for title, rows in sheets.items()
+        }
+    )
+
+
+def _plain(value: object) -> object:
+    return value if isinstance(value, int | float) else _cell(value)
+
+
+def format_sheets(sheets: Mapping[str, Sequence[Sequence[object]]]) -> bytes:
+    """A workbook of rows of texts and numbers, the first of each sheet its header.
+
+    The header stays in sight. Numbers stay numbers, and text stays text, whatever it begins
+    with; what is None is an empty cell. The same tables give the same bytes. Raises
+    MissingLibraryError if xlsxwriter is missing.
     """
     try:
-        import openpyxl  # pyright: ignore[reportMissingModuleSource]
+        import xlsxwriter  # pyright: ignore[reportMissingTypeStubs]
     except ImportError as error:
         raise MissingLibraryError(
-            "a schedule in .xlsx needs openpyxl: install spheremesh[excel], or write .csv"
+            "a schedule in .xlsx needs xlsxwriter: install spheremesh[excel], or write .csv"
         ) from error
-    book = openpyxl.Workbook(write_only=True)
-    for title, rows in sheets.items():
-        sheet = book.create_sheet(title)
-        sheet.freeze_panes = "B2"
-        sheet.append(list(rows[0]) if rows else ["none"])
-        for row in rows:
-            sheet.append([_excel_cell(sheet, value) for value in row.values()])
     stream = io.BytesIO()
-    book.save(stream)
+    library: _Untyped = xlsxwriter
+    book = library.Workbook(stream, {"in_memory": True, "constant_memory": True})
+    book.set_properties({"created": _UNDATED})
+    bold = book.add_format({"bold": True})
+    for title, rows in sheets.items():
+        sheet = book.add_worksheet(title)
+        sheet.freeze_panes(1, 1)
+        sheet.set_row(0, None, bold)
+        for j, name in enumerate(rows[0]):
+            sheet.set_column(j, j, max(8, len(str(name))))
+        for i, row in enumerate(rows):
+            for j, value in enumerate(row):
+                if isinstance(value, int | float):
+                    sheet.write_number(i, j, value)
+                elif value is not None:
+                    sheet.write_string(i, j, str(value))
+    book.close()
     return stream.getvalue()
 
 
-def _excel_cell(sheet: _Untyped, value: object) -> object:
-    """Numbers stay numbers, and text stays text, whatever it begins with."""
-    if isinstance(value, int | float):
-        return value
-    text = _cell(value)
-    if not text.startswith("="):
-        return text
-    from openpyxl.cell import WriteOnlyCell  # pyright: ignore[reportMissingModuleSource]
-
-    cell: _Untyped = WriteOnlyCell(sheet, text)
-    cell.data_type = "s"
-    return cell
-
-
 def _cell(value: object) -> str:
-    if value is None:
-        return ""
-    if isinstance(value, float):
-        return _number(value)
-    if isinstance(value, list):
-        items = cast("list[object]", value)
-        separator = "; " if items and isinstance(items[0], list) else " "
-        return separator.join(_cell(item) or "-" for item in items)
-    return str(value)
+    return _FORMATS.get(type(value), str)(value)
+
+
+def _list(items: list[object]) -> str:
+    if items and isinstance(items[0], list):
+        return "; ".join(map(_cell, items))
+    return " ".join([_cell(item) or "-" for item in items])
 
 
 def _number(value: float) -> str:
     """Nine digits, and more where coordinates are large: in millimetres, a nanometre."""
-    if abs(value) < LARGE:
+    if -LARGE < value < LARGE:
         return f"{value:.9g}"
     return f"{value:.6f}".rstrip("0").rstrip(".")
+
+
+def _nothing(_value: None) -> str:
+    return ""
+
+
+_FORMATS: Final[dict[type, Callable[[Any], str]]] = {
+    float: _number, list: _list, NoneType: _nothing,
+}  # fmt: skip
+"""How values are written that are not text already, by their types."""

@@ -92,8 +92,10 @@ def run(  # numpydoc ignore=PR01
 def _run_targets(
     graph: "Graph", targets: tuple[str, ...], out: "OutputFolder", progress: "Progress"
 ) -> dict[str, Any]:
+    from .panel import said_to
+
     names = targets or tuple(step.name for step in graph.ends)
-    results = graph.run(*names, on_step=progress, write_to=out)
+    results = graph.run(*names, on_step=progress, on_event=said_to(progress), write_to=out)
     return dict(zip(names, (results,) if len(names) == 1 else results, strict=True))
 
 

@@ -180,6 +180,17 @@ class _PanelCommand(click.Command):
     default=0.1,
     help="Largest angle between a beam and a node axis, in degrees; 0.1 by default.",
 )
+@click.option(
+    "--tables",
+    type=click.Choice(["xlsx", "csv", "parquet"]),
+    help="Tidy tables besides: a row a panel, edge, mould, beam, end, hole and node.",
+)
+@click.option(
+    "--drawings",
+    type=click.Choice(["A4", "A3", "A2", "A1", "A0"]),
+    help="A set of drawings besides, on paper of that size: drawings.pdf and drawings.dxf.",
+)
+@click.option("--nest", is_flag=True, help="Beams in beams.dxf on as few sheets as found.")
 @click.option("--overwrite", is_flag=True, help="Replace files that spheremesh did not write.")
 @click.option("--strict", is_flag=True, help="Exit with 5 if the audit finds errors.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report alone.")
@@ -280,7 +291,7 @@ def _check_exact(options: dict[str, Any]) -> None:
 
 def _warn_of_no_beams(options: Mapping[str, Any]) -> None:
     """Options of beams say nothing where no beams are asked for."""
-    of_beams = ("depth", "beam_thickness", "node_radius", "bearing")
+    of_beams = ("depth", "beam_thickness", "node_radius", "bearing", "nest")
     names = [name for name in of_beams if options[name]]
     if names and not options["support"]:
         given = ", ".join(f"--{name.replace('_', '-')}" for name in names)

@@ -28,7 +28,7 @@ import numpy as np
 
 from spheremesh import nodes
 from spheremesh.fabrication.model import Model, Written
-from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
+from spheremesh.fabrication.rhino_models.writer import RhinoOptions, write_3dm
 from spheremesh.kernel.meshes.mesh import Mesh
 from spheremesh.kernel.parts.records import select_parts
 

@@ -8,6 +8,7 @@ from ...kernel.beams.beams import Beams, scale_beams
 from ...kernel.beams.drilling import NO_MARKS
 from ...kernel.beams.facts import BeamFacts, beam_facts
 from ...kernel.parts.findings import Finding
+from ..measures import measured_once
 from ..units import millimeters_per
 from .subjects import USUAL_LIMITS, AuditLimits, Subject
 
@@ -18,8 +19,13 @@ def beam_subject(
     beams: Beams, units: str = "m", limits: AuditLimits = USUAL_LIMITS
 ) -> BeamSubject:
     """Beams in millimetres, measured: what `check_beams` looks at."""
+    made, facts = measured_once(beams, units, lambda: _measure(beams, units))
+    return BeamSubject(made, facts, limits)
+
+
+def _measure(beams: Beams, units: str) -> tuple[Beams, BeamFacts]:
     made = scale_beams(beams, millimeters_per(units))
-    return BeamSubject(made, beam_facts(made), limits)
+    return made, beam_facts(made)
 
 
 def check_beams(subject: BeamSubject) -> list[Finding]:

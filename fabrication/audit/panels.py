@@ -5,10 +5,12 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray
+from ...kernel.panels.congruent import CongruentPanels, congruent_panels
 from ...kernel.panels.facts import PanelFacts, panel_facts
 from ...kernel.panels.panels import Panels, neighbor_ids, scale_panels
 from ...kernel.parts.findings import Finding
 from ...kernel.tolerances import CAP_ANGLE
+from ..measures import measured_once
 from ..units import millimeters_per
 from .subjects import USUAL_LIMITS, AuditLimits, Subject
 
@@ -19,8 +21,18 @@ def panel_subject(
     panels: Panels, units: str = "m", limits: AuditLimits = USUAL_LIMITS
 ) -> PanelSubject:
     """Panels in millimetres, measured: what `check_panels` looks at."""
+    made, facts = measured_once(panels, units, lambda: _measure(panels, units))
+    return PanelSubject(made, facts, limits)
+
+
+def _measure(panels: Panels, units: str) -> tuple[Panels, PanelFacts]:
     made = scale_panels(panels, millimeters_per(units))
-    return PanelSubject(made, panel_facts(made), limits)
+    return made, panel_facts(made)
+
+
+def same_shapes(panels: Panels) -> CongruentPanels:
+    """Which panels are identical, found once for all who ask."""
+    return measured_once(panels, "same", lambda: congruent_panels(panels))
 
 
 def check_panels(subject: PanelSubject) -> list[Finding]:

@@ -13,7 +13,7 @@ def cylinder_batch(
 
     They begin at discs about the bases (n, 3) and run along unit directions (n, 3).
     """
-    x = _across(directions)
+    x = perpendiculars(directions)
     discs = [bases, bases + heights[:, None] * directions]
     corners = [disc + radius * x for disc in discs]
     radii = np.full((len(bases), 1), radius)
@@ -32,7 +32,7 @@ def cylinder_batch(
     return brep_batch(np.arange(len(bases)), corners, edges, faces)
 
 
-def _across(directions: FloatArray) -> FloatArray:
+def perpendiculars(directions: FloatArray) -> FloatArray:
     """Unit vectors at right angles to others."""
     least = np.eye(3)[np.abs(directions).argmin(axis=1)]
     return unit(np.cross(directions, least))

@@ -6,7 +6,7 @@ elementary: lines, circles and ellipses on planes, spheres and cylinders.
 """
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -81,6 +81,17 @@ def brep_batch(
     """Parts of one topology with corners (m, 3) each; solids if the faces are closed."""
     points = np.stack(list(corners), axis=1)
     return BrepBatch(rows, points, tuple(edges), tuple(faces), is_solid)
+
+
+def select_rows(batch: BrepBatch, chosen: IntArray) -> BrepBatch:
+    """Some parts of a batch, by their places in it."""
+    edges, faces = (
+        tuple(replace(each, numbers=each.numbers[chosen]) for each in members)
+        for members in (batch.edges, batch.faces)
+    )
+    return replace(
+        batch, rows=batch.rows[chosen], corners=batch.corners[chosen], edges=edges, faces=faces
+    )
 
 
 def batches_by_kind(

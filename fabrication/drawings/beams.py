@@ -9,7 +9,7 @@ import math
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, TypeAlias
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
@@ -22,13 +22,14 @@ from ...kernel.support.node_axes import node_name
 from ..files import check_suffix, replacing
 from ..model import Model, Written, check_parts
 from ..units import millimeters_per
-from .dxf import drawing_text, fixed_ezdxf, millimeter_drawing, text_width
+from .drawing import Circle, Drawing, Line, Text, text_width
+from .dxf import format_dxf
+from .nesting import Grain, Stock, nest_rectangles
 
-# What comes from ezdxf is partly untyped.
-_Untyped: TypeAlias = Any
+_LAYERS: Final = ("CUT", "ENGRAVE", "DRILL", "SHEET")
 
-_LAYERS: Final = {"CUT": 1, "ENGRAVE": 3, "DRILL": 5, "SHEET": 8}
-"""Layers of a drawing and their colours, by AutoCAD's index."""
+_DECIMALS: Final = 9
+"""Of coordinates: contours are cut as they stand there."""
 
 _LABEL = 25.0
 """Largest height of a label, in millimetres."""
@@ -39,16 +40,43 @@ _LABEL_SHARE = 0.35
 
 @dataclass(frozen=True)
 class SheetOptions:
-    """The sheets that beams are cut from, in millimetres: width and height.
+    """The sheets that beams are cut from.
 
-    The spacing is the distance between pieces, and from the rim of the sheet.
+    Attributes
+    ----------
+    size : (float, float)
+        Width and height, in millimetres.
+    spacing : float
+        Distance between pieces, in millimetres: what a cut takes, and what shall stay.
+    margin : float, optional
+        Least distance from the rim, in millimetres; the spacing by default.
+    nesting : {"rows", "rectangles"}
+        One row above the other, at once; or as few sheets as a short search finds.
+    grain : {"along", "any"}
+        Whether beams lie along the width of the sheet or may be turned by a right angle.
     """
 
     size: tuple[float, float] = (3000.0, 1500.0)
     spacing: float = 10.0
+    margin: float | None = None
+    nesting: Literal["rows", "rectangles"] = "rows"
+    grain: Grain = "along"
 
 
 _USUAL_SHEETS: Final = SheetOptions()
+
+
+class _Layout(NamedTuple):
+    """Turns (B, 2, 2) and shifts (B, 2) of pieces; corners (n, 2, 2) of the sheets."""
+
+    turns: FloatArray
+    shifts: FloatArray
+    sheets: FloatArray
+    oversize: list[int]
+
+    def place(self, points: FloatArray) -> FloatArray:
+        """Points (B, n, 2) of pieces, where they lie."""
+        return np.einsum("bij,bnj->bni", self.turns, points) + self.shifts[:, None]
 
 
 def write_dxf(
@@ -61,39 +89,58 @@ def write_dxf(
     ``sheets``. The same beams give the same bytes: the dates in the file are fixed.
 
     Raises InputError if there are no beams, two have one name or one is not finite, the unit is
-    not known, sheet or spacing are no lengths, or the folder does not exist;
-    MissingLibraryError if ezdxf is missing.
+    not known, sheet, spacing or margin are no lengths, or the folder does not exist;
+    MissingLibraryError if rectpack is missing, which nests rectangles.
     """
     target = Path(path)
     check_suffix(target, ".dxf")
     scale = millimeters_per(model.units)
     beams = check_parts(model.beams, "beam", target)
-    sheet, spacing = options.size, options.spacing
-    if not (np.isfinite([*sheet, spacing]).all() and min(sheet) > 0 and spacing >= 0):
+    sheet, spacing, margin = options.size, options.spacing, options.margin or 0.0
+    if not (np.isfinite([*sheet, spacing, margin]).all() and min(sheet) > 0 <= spacing):
         raise InputError(f"sheet {sheet} and spacing {spacing} must be lengths in millimetres")
     beams = scale_beams(beams, scale)
     contours = beam_contours(beams)
-    boxes = contour_boxes(contours)
-    sizes = boxes[:, 1] - boxes[:, 0]
-    places, sheets, oversize = shelves(sizes, sheet, spacing)
-    corners = _sheet_corners(sizes, sheets, oversize, sheet, spacing)
-    shifts = places - boxes[:, 0] + corners[sheets, 0]
-    with fixed_ezdxf() as library:
-        document = millimeter_drawing(library, _LAYERS)
-        space = document.modelspace()
-        for low, high in corners.tolist():
-            ring = [low, [high[0], low[1]], high, [low[0], high[1]]]
-            space.add_lwpolyline(ring, close=True, dxfattribs={"layer": "SHEET"})
-        _add_contours(space, contours, shifts)
-        _add_labels(space, beams, contours, shifts)
-        if beams.marks is not None:
-            _add_marks(space, beams, beams.marks, shifts)
-        text = drawing_text(document)
+    layout = _layout(contour_boxes(contours), options)
+    corners = layout.sheets
+    drawing = Drawing((0.0, 0.0), (float(corners[:, 1, 0].max()), float(corners[-1, 1, 1])))
+    for low, high in corners.tolist():
+        drawing.add_rectangle("SHEET", low, high)
+    drawing.lines += _contour_lines(contours, layout)
+    drawing.texts += _labels(beams, contours, layout)
+    if beams.marks is not None:
+        drawing.circles += _holes(beams, beams.marks, layout)
+    text = format_dxf(drawing, _LAYERS, _DECIMALS)
     with replacing(target) as temporary:
         temporary.write_text(text, encoding="utf-8")
-    shown = ", ".join(beams.ids[i] for i in oversize[:8])
-    note = f"{len(oversize)} beams are larger than the sheet: {shown}"
-    return Written(target, notes=(note,) if oversize else (), counts={"sheets": len(corners)})
+    shown = ", ".join(beams.ids[i] for i in layout.oversize[:8])
+    note = f"{len(layout.oversize)} beams are larger than the sheet: {shown}"
+    counts = {"sheets": len(corners)}
+    return Written(target, notes=(note,) if layout.oversize else (), counts=counts)
+
+
+def _layout(boxes: FloatArray, options: SheetOptions) -> _Layout:
+    """Where rectangles about pieces, least and largest (B, 2, 2), lie on which sheets."""
+    sizes, spacing = boxes[:, 1] - boxes[:, 0], options.spacing
+    margin = spacing if options.margin is None else options.margin
+    if options.nesting == "rows":
+        room = (
+            options.size[0] - 2 * (margin - spacing),
+            options.size[1] - 2 * (margin - spacing),
+        )
+        places, sheets, oversize = shelves(sizes, room, spacing)
+        places = places + (margin - spacing)
+        is_turned = np.zeros(len(sizes), bool)
+    else:
+        stock = Stock(options.size, spacing, margin, options.grain)
+        found = nest_rectangles(sizes, stock)
+        places, oversize, is_turned = found.places, found.oversize, found.is_turned
+        sheets = found.sheets.tolist()
+    corners = _sheet_corners(sizes, sheets, oversize, options.size, margin)
+    quarter = np.array([[0.0, -1.0], [1.0, 0.0]])
+    turns = np.where(is_turned[:, None, None], quarter, np.eye(2))
+    low = np.where(is_turned[:, None], boxes[:, [1, 0], [1, 0]] * [-1.0, 1.0], boxes[:, 0])
+    return _Layout(turns, places - low + corners[sheets, 0], corners, oversize)
 
 
 def _sheet_corners(
@@ -101,34 +148,32 @@ def _sheet_corners(
     sheets: list[int],
     oversize: list[int],
     sheet: tuple[float, float],
-    spacing: float,
+    margin: float,
 ) -> FloatArray:
     """Lower left and upper right corners (n, 2, 2) of the sheets, one above the other."""
     extents = np.tile(np.array(sheet, float), (max(sheets) + 1, 1))
     for piece in oversize:
-        extents[sheets[piece]] = sizes[piece] + 2 * spacing
+        extents[sheets[piece]] = sizes[piece] + 2 * margin
     gap = 0.2 * sheet[1]
     heights = np.concatenate([[0.0], np.cumsum(extents[:-1, 1] + gap)])
     low = np.stack([np.zeros_like(heights), heights], 1)
     return np.stack([low, low + extents], 1)
 
 
-def _add_contours(space: _Untyped, contours: Contours, shifts: FloatArray) -> None:
-    corners = contours.corners + shifts[:, None]
+def _contour_lines(contours: Contours, layout: _Layout) -> list[Line]:
+    corners = layout.place(contours.corners)
     rows = np.concatenate([corners, contours.bulges[..., None]], -1)
-    for ring in rows.tolist():
-        space.add_lwpolyline(ring, format="xyb", close=True, dxfattribs={"layer": "CUT"})
+    return [Line("CUT", ring, is_closed=True) for ring in rows.tolist()]
 
 
-def _add_labels(space: _Untyped, beams: Beams, contours: Contours, shifts: FloatArray) -> None:
-    from ezdxf.enums import TextEntityAlignment
-
-    middle = TextEntityAlignment.MIDDLE_CENTER
-    centers = contours.centers + shifts[:, None]
+def _labels(beams: Beams, contours: Contours, layout: _Layout) -> list[Text]:
+    """Id of each beam in its middle, nodes and bevels near its ends."""
+    result: list[Text] = []
+    centers = layout.place(contours.centers)
     spans = contours.centers[:, 2, 0] - contours.centers[:, 0, 0]
     nodes: list[list[int]] = beams.annuli.edge_vertices.tolist()
     bevels: list[list[list[float]]] = np.degrees(contours.bevels).tolist()
-    turns, curvatures = _turns(contours.centers)
+    turns, curvatures = _turns(centers)
     for name, ends, cuts, points, span, width, along, curvature in zip(
         beams.annuli.ids, nodes, bevels, centers.tolist(), spans.tolist(),
         contours.widths.tolist(), np.degrees(turns).tolist(), curvatures.tolist(), strict=True,
@@ -143,10 +188,11 @@ def _add_labels(space: _Untyped, beams: Beams, contours: Contours, shifts: Float
             _LABEL, _LABEL_SHARE * width, span / sum(lengths),
             _straight_in_bow(max(lengths), width, curvature),
         )  # fmt: skip
-        for (text, share), point, turn in zip(texts, points, along, strict=True):
-            look = {"layer": "ENGRAVE", "rotation": turn}
-            entity = space.add_text(text, height=share * size, dxfattribs=look)
-            entity.set_placement(point, align=middle)
+        result += [
+            Text("ENGRAVE", text, x, y, share * size, "middle", turn)
+            for (text, share), (x, y), turn in zip(texts, points, along, strict=True)
+        ]
+    return result
 
 
 def _turns(points: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -165,7 +211,7 @@ def _straight_in_bow(length: float, width: float, curvature: float) -> float:
     return width / (0.5 + math.sqrt(0.25 + 2 * sagitta * width))
 
 
-def _add_marks(space: _Untyped, beams: Beams, marks: DrillMarks, shifts: FloatArray) -> None:
-    centers = (mark_centers(beams, marks) + shifts[:, None])[marks.fits]
-    for center in centers.reshape(-1, 2).tolist():
-        space.add_circle(center, marks.diameter / 2, dxfattribs={"layer": "DRILL"})
+def _holes(beams: Beams, marks: DrillMarks, layout: _Layout) -> list[Circle]:
+    centers = layout.place(mark_centers(beams, marks))[marks.fits]
+    radius = marks.diameter / 2
+    return [Circle("DRILL", x, y, radius) for x, y in centers.reshape(-1, 2).tolist()]

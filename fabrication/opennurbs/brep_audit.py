@@ -1,4 +1,4 @@
-"""Judges one-faced Breps from their bytes alone, before they reach a file.
+"""Judges Breps from their bytes alone, before they reach a file.
 
 openNURBS calls a Brep valid whose vertex is off by a thousandth, whose surface is shifted or
 whose loop runs backwards. Here the stream (layout: `brep_writer`) is parsed afresh,
@@ -10,6 +10,7 @@ every byte that is neither a float64 nor a checksum.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,15 +18,17 @@ from numpy.typing import NDArray
 from ...kernel.arrays import BoolArray, FloatArray, IntArray, dot, norm
 from ...kernel.spheres.incidence import normals, signed_distance
 from ...kernel.spheres.minkowski import minkowski
-from ...kernel.tolerances import EPSILON, EXACT_BREP
+from ...kernel.tolerances import BREP_VOLUME, EPSILON, EXACT_BREP
 from .brep_evaluation import (
+    brep_volumes,
     distances_to_edge,
     edge_points,
     stream_numbers,
+    surface_knots,
     surface_points,
     trim_points,
 )
-from .brep_layout import BrepLayout, Side, Surface
+from .brep_layout import BrepLayout, Face, Side, Surface
 from .brep_reader import parse_brep
 from .render_mesh_audit import audit_render_meshes
 from .stream_codes import CRC, PLANE_SURFACE, Checksum
@@ -37,7 +40,7 @@ _ROUNDING = 16
 
 @dataclass(frozen=True)
 class BrepErrors:
-    """How far the parts of a Brep of one face lie apart, in model units.
+    """How far the parts of a Brep lie apart, in model units: the largest of all faces.
 
     With a defect, which says why the stream cannot be judged, all errors are infinite.
     """
@@ -50,8 +53,9 @@ class BrepErrors:
     edge_to_vertex: float = np.inf  # ends of edges from vertices
     to_sphere: float = np.inf  # vertices, edges and surface from the sphere
     mesh_to_sphere: float = np.inf  # vertices of the render mesh from it; 0 without one
-    is_counter_clockwise: bool = False  # the loop, in (u, v)
-    is_outward: bool = False  # the normal of the face agrees with N of the sphere
+    is_counter_clockwise: bool = False  # the loops, in (u, v); holes run clockwise
+    is_outward: bool = False  # the face looks along N of the sphere, a solid away from itself
+    volume: float = np.nan  # what closed faces enclose
 
     @property
     def worst(self) -> float:
@@ -67,10 +71,11 @@ class BrepErrors:
             (self.mesh_to_sphere, "the render mesh leaves the sphere"),
         )
 
-    def reason(self) -> str:
+    def reason(self, volume: float | None = None) -> str:
         """Why the Brep is to be refused; empty for a sound one.
 
-        Its distances are at most `EXACT_BREP` times the scale, and rounding.
+        Its distances are at most `EXACT_BREP` times the scale, and rounding. If the volume of
+        the part is given, it is closed and encloses that, to `BREP_VOLUME` of it.
         """
         if self.defect:
             return self.defect
@@ -80,7 +85,11 @@ class BrepErrors:
                 return f"{text}: {distance:.3g} where {allowed:.3g} is allowed"
         if not self.is_counter_clockwise:
             return "the loop runs clockwise"
-        return "" if self.is_outward else "the face looks inwards"
+        if not self.is_outward:
+            return "the face looks inwards"
+        if volume is not None and not abs(self.volume - volume) <= BREP_VOLUME * volume:
+            return f"it encloses a volume of {self.volume:.9g} where {volume:.9g} is meant"
+        return ""
 
 
 def verify_breps(
@@ -90,10 +99,10 @@ def verify_breps(
 ) -> list[BrepErrors]:
     """Errors of Breps, measured from their bytes; those of the same layout together.
 
-    Takes P `ON_Brep` of one face and one loop, as written by `brep_streams` or by openNURBS;
-    unit rows (P, 5) that the faces must lie on, by default those of the surfaces; and origins
-    (P, 3) of the coordinates of the rows, by default the model's own. A stream that cannot be
-    read has a defect and no errors.
+    Takes P `ON_Brep`, as written by `brep_streams`, `solid_streams` or by openNURBS; unit rows
+    (P, 5) that the first faces must lie on, by default those of the surfaces of open Breps; and
+    origins (P, 3) of the coordinates of the rows, by default the model's own. A stream that
+    cannot be read has a defect and no errors.
     """
     result = [BrepErrors()] * len(streams)
     if origins is None:
@@ -130,30 +139,49 @@ def _measure(
     defects = _defects(streams, layout)
     # Defective streams may hold any number; their errors are not used.
     with np.errstate(all="ignore"):
-        samples = _samples(streams, layout)
-        if rows is None:
-            origins = samples.vertices.mean(1)
-            rows = _fit_spheres(samples, origins)
-        distances = _distances(samples, rows, origins)
-        on_meshes = np.zeros(len(streams))
-        if layout.mesh is not None:
-            on_meshes, found = audit_render_meshes(streams, layout.mesh, rows, origins)
-            for defect, is_bad in found:
-                for i in np.flatnonzero(is_bad):
-                    defects[i] = defects[i] or defect
-        distances = np.column_stack([distances, on_meshes])
-        turns = _signed_areas(samples.outlines)
-        faces = _facing(samples, rows, origins) * np.sign(turns)
-        if layout.is_reversed:
-            faces = -faces
+        faces = [_face_samples(streams, face) for face in layout.faces]
+        if rows is None and not layout.is_closed:
+            origins = faces[0].vertices.mean(1)
+            rows = _fit_spheres(faces[0], origins)
+        first = faces[0]
+        distances = np.max([_distances(samples) for samples in faces], axis=0)
+        columns = [_scales(faces, rows), _rounding(faces), *distances.T]
+        columns.append(_to_sphere(first, rows, origins))
+        columns.append(_mesh_errors(streams, layout, rows, origins, defects))
+        turns = np.min([samples.turns.min(axis=1) for samples in faces], axis=0)
+        is_outward = np.ones(len(streams), bool)
+        if rows is not None:
+            facing = _facing(first, rows, origins) * np.sign(first.turns[:, 0])
+            is_outward = (-facing if layout.faces[0].is_reversed else facing) > 0
+        volumes = np.full(len(streams), np.nan)
+        if layout.is_closed:
+            volumes = brep_volumes(streams, layout)
+            is_outward &= volumes > 0
+    table = np.column_stack([*columns, turns, is_outward, volumes]).tolist()
     return [
         BrepErrors(defect)
         if defect
-        else BrepErrors("", *row, is_counter_clockwise=turn > 0, is_outward=face > 0)
-        for defect, row, turn, face in zip(
-            defects, distances.tolist(), turns.tolist(), faces.tolist(), strict=True
-        )
+        else BrepErrors("", *row, is_counter_clockwise=turn > 0, is_outward=bool(out), volume=v)
+        for defect, (*row, turn, out, v) in zip(defects, table, strict=True)
     ]
+
+
+def _mesh_errors(
+    streams: NDArray[np.uint8],
+    layout: BrepLayout,
+    rows: FloatArray | None,
+    origins: FloatArray,
+    defects: list[str],
+) -> FloatArray:
+    """Distances of the render mesh of the first face from the sphere; its defects are added."""
+    mesh = layout.faces[0].mesh
+    if mesh is None or rows is None:
+        return np.zeros(len(streams))
+    distances, found = audit_render_meshes(streams, mesh, rows, origins)
+    for defect, is_bad in found:
+        for i in np.flatnonzero(is_bad):
+            defects[i] = defects[i] or defect
+    return distances
 
 
 # Numbers
@@ -167,10 +195,12 @@ def _defects(streams: NDArray[np.uint8], layout: BrepLayout) -> list[str]:
     ]
     found += [
         (defect, is_bad)
-        for side in layout.sides
+        for face in layout.faces
+        for side in face.sides
         for defect, is_bad in _side_defects(streams, side)
     ]
-    found += _surface_defects(streams, layout.surface)
+    for face in layout.faces:
+        found += _surface_defects(streams, face.surface)
     result = _checksum_defects(streams, layout.checksums)
     for defect, is_bad in found:
         for i in np.flatnonzero(is_bad.any(1)):
@@ -195,12 +225,14 @@ def _side_defects(streams: NDArray[np.uint8], side: Side) -> list[tuple[str, Boo
         domain = np.hstack([stream_numbers(streams, at, 1) for at in curve.domain])
         found.append(("a curve is used in part", stream_numbers(streams, place, 2) != domain))
         found.append(("a curve runs backwards", np.diff(domain) <= 0))
-    trim = side.trim
-    if trim.n_knots:
-        weights = stream_numbers(streams, trim.points, 3 * trim.n_points)[:, 2::3]
-        knots = stream_numbers(streams, trim.knots, trim.n_knots)
-        found.append(("a trim is not made of Bézier spans", _off_bezier(knots)))
-        found.append(("a weight is not positive", weights <= 0))
+    for name, curve in (("a trim", side.trim), ("an edge", side.edge)):
+        if curve.n_knots:
+            size = curve.dimension + 1
+            numbers = stream_numbers(streams, curve.points, size * curve.n_points)
+            knots = stream_numbers(streams, curve.knots, curve.n_knots)
+            is_off = _off_bezier(knots, curve.order - 1)
+            found.append((f"{name} is not made of Bézier spans", is_off))
+            found.append(("a weight is not positive", numbers[:, size - 1 :: size] <= 0))
     return found
 
 
@@ -212,20 +244,18 @@ def _surface_defects(
         return [("the extents of a plane are not its domains", domains != extents)]
     n_u, n_v = surface.n_points
     weights = stream_numbers(streams, surface.points, 4 * n_u * n_v)[:, 3::4]
-    knots = [
-        stream_numbers(streams, place, count + 1)
-        for place, count in zip(surface.knots, surface.n_points, strict=True)
-    ]
-    return [
-        ("a weight is not positive", weights <= 0),
-        *(("the surface is not made of Bézier spans", _off_bezier(k)) for k in knots),
-    ]
+    found = [("a weight is not positive", weights <= 0)]
+    for axis, order in enumerate(surface.orders):
+        is_off = _off_bezier(surface_knots(streams, surface, axis), order - 1)
+        found.append(("the surface is not made of Bézier spans", is_off))
+    return found
 
 
-def _off_bezier(knots: FloatArray) -> BoolArray:
-    """Where knots (n, 2 m) are not double, or do not increase from span to span."""
-    first, second = knots[:, ::2], knots[:, 1::2]
-    return np.hstack([first != second, np.diff(first, axis=1) <= 0])
+def _off_bezier(knots: FloatArray, degree: int) -> BoolArray:
+    """Where knots (n, ...) are not as often as the degree, or do not increase between spans."""
+    spans = knots.reshape(len(knots), -1, degree)
+    is_apart = (spans != spans[..., :1]).any(axis=2)
+    return np.hstack([is_apart, np.diff(spans[..., 0], axis=1) <= 0])
 
 
 # Geometry
@@ -233,68 +263,99 @@ def _off_bezier(knots: FloatArray) -> BoolArray:
 
 @dataclass(frozen=True)
 class _Samples:
-    """Points of n Breps of one layout with k sides.
+    """Points of a face of n Breps of one layout, which has k sides.
 
-    `vertices` (n, k, 3) in the order of the loop, `edges` (n, k, m, 3), `trims` (n, k, q, 3)
-    lifted to the surface, `off_edges` (n, k) largest distances of lifted trims from their
-    edges, `interior` (n, p, 3) points of the surface, `outlines` (n, p, 2) of the loops in
-    (u, v).
+    `vertices` (n, k, 3) where the sides begin, and `ends` (n, k, 2, 3) where each begins and
+    ends; `edges` (n, m, 3) in the sense of the loops, and `edge_ends` (n, k, 2, 3); `trims`
+    (n, q, 3) lifted to the surface, and `trim_ends`; `off_edges` (n, k) largest distances of
+    lifted trims from their edges, `interior` (n, p, 3) points of the surface, `turns` signed
+    areas (n, loops) in (u, v), those of holes negated.
     """
 
     vertices: FloatArray
+    ends: FloatArray
     edges: FloatArray
+    edge_ends: FloatArray
     trims: FloatArray
+    trim_ends: FloatArray
     off_edges: FloatArray
     interior: FloatArray
-    outlines: FloatArray
+    turns: FloatArray
 
 
-def _samples(streams: NDArray[np.uint8], layout: BrepLayout) -> _Samples:
-    sides = layout.sides
-    vertices = np.stack([stream_numbers(streams, side.start, 3) for side in sides], 1)
+def _face_samples(streams: NDArray[np.uint8], face: Face) -> _Samples:
+    sides = face.sides
+    ends = [[stream_numbers(streams, at, 3) for at in (side.start, side.end)] for side in sides]
     uv = [trim_points(streams, side.trim) for side in sides]
-    trims = [surface_points(streams, layout.surface, points) for points in uv]
+    trims = [surface_points(streams, face.surface, points) for points in uv]
+    edges = [edge_points(streams, side.edge) for side in sides]
+    edges = [
+        points[:, ::-1] if side.is_reversed else points
+        for side, points in zip(sides, edges, strict=True)
+    ]
     off_edges = [
         distances_to_edge(streams, side.edge, points).max(1)
         for side, points in zip(sides, trims, strict=True)
     ]
-    outlines = np.concatenate([points[:, :-1] for points in uv], 1)
-    center = outlines.mean(1, keepdims=True)
-    halfway = np.concatenate([center, (outlines + center) / 2], 1)
+    bounds = np.cumsum([0, *(len(loop) for loop in face.loops)])
+    outlines = [
+        np.concatenate([points[:, :-1] for points in uv[first:last]], 1)
+        for first, last in pairwise(bounds.tolist())
+    ]
+    center = outlines[0].mean(1, keepdims=True)
+    halfway = np.concatenate([center, (outlines[0] + center) / 2], 1)
+    turns = [_signed_areas(outline) for outline in outlines]
     return _Samples(
-        vertices,
-        np.stack([edge_points(streams, side.edge) for side in sides], 1),
-        np.stack(trims, 1),
+        np.stack([start for start, _ in ends], 1),
+        np.stack([np.stack(pair, 1) for pair in ends], 1),
+        np.concatenate(edges, 1),
+        np.stack([points[:, [0, -1]] for points in edges], 1),
+        np.concatenate(trims, 1),
+        np.stack([points[:, [0, -1]] for points in trims], 1),
         np.stack(off_edges, 1),
-        surface_points(streams, layout.surface, halfway),
-        outlines,
+        surface_points(streams, face.surface, halfway),
+        np.stack([turns[0], *(-turn for turn in turns[1:])], 1),
     )
 
 
-def _distances(samples: _Samples, rows: FloatArray, origins: FloatArray) -> FloatArray:
-    """Columns scale, rounding, trim to edge and vertex, edge to vertex, to sphere; (n, 6)."""
-    starts = samples.vertices
-    ends = np.stack([starts, np.roll(starts, -1, 1)], 2)
-    count = len(starts)
-    points = [starts, samples.edges, samples.trims, samples.interior]
-    local = np.concatenate([x.reshape(count, -1, 3) for x in points], 1) - origins[:, None]
-    size = 2 * norm(starts - starts.mean(1, keepdims=True)).max(1)
-    curvatures = 2 * np.abs(rows[:, 0])
-    is_curved = curvatures * size > EPSILON
+def _distances(samples: _Samples) -> FloatArray:
+    """Columns trim to edge and vertex, edge to vertex; (n, 3)."""
     return np.column_stack([
-        np.where(is_curved, 1 / curvatures, size),
-        _ROUNDING * EPSILON * np.abs(starts).max((1, 2)),
         samples.off_edges.max(1),
-        norm(samples.trims[:, :, [0, -1]] - ends).max((1, 2)),
-        norm(samples.edges[:, :, [0, -1]] - ends).max((1, 2)),
-        np.abs(signed_distance(rows[:, None], local)).max(1),
+        norm(samples.trim_ends - samples.ends).max((1, 2)),
+        norm(samples.edge_ends - samples.ends).max((1, 2)),
     ])  # fmt: skip
+
+
+def _scales(faces: list[_Samples], rows: FloatArray | None) -> FloatArray:
+    """What errors are relative to (n,): the radius of the first face, or the largest face."""
+    starts = [samples.edges for samples in faces]
+    sizes = [2 * norm(x - x.mean(1, keepdims=True)).max(1) for x in starts]
+    size = np.max(sizes, axis=0)
+    if rows is None:
+        return size
+    curvatures = 2 * np.abs(rows[:, 0])
+    return np.where(curvatures * size > EPSILON, 1 / curvatures, size)
+
+
+def _rounding(faces: list[_Samples]) -> FloatArray:
+    largest = np.max([np.abs(samples.vertices).max((1, 2)) for samples in faces], axis=0)
+    return _ROUNDING * EPSILON * largest
+
+
+def _to_sphere(samples: _Samples, rows: FloatArray | None, origins: FloatArray) -> FloatArray:
+    """How far vertices, edges and surface of a face are from its sphere, (n,)."""
+    if rows is None:
+        return np.zeros(len(samples.vertices))
+    points = [samples.vertices, samples.edges, samples.trims, samples.interior]
+    local = np.concatenate(points, 1) - origins[:, None]
+    return np.abs(signed_distance(rows[:, None], local)).max(1)
 
 
 def _fit_spheres(samples: _Samples, origins: FloatArray) -> FloatArray:
     """Unit rows, local to the origins, of the spheres that surfaces lie on."""
     count = len(origins)
-    points = np.concatenate([samples.trims.reshape(count, -1, 3), samples.interior], 1)
+    points = np.concatenate([samples.trims, samples.interior], 1)
     points = points - origins[:, None]
     size = norm(points).max(1)[:, None]
     points = np.nan_to_num(points / size[:, None])
@@ -310,7 +371,7 @@ def _fit_spheres(samples: _Samples, origins: FloatArray) -> FloatArray:
 def _facing(samples: _Samples, rows: FloatArray, origins: FloatArray) -> FloatArray:
     """Positive where the loop runs counter-clockwise about N of the rows, (n,)."""
     center = samples.vertices.mean(1)
-    spokes = samples.edges.reshape(len(center), -1, 3) - center[:, None]
+    spokes = samples.edges - center[:, None]
     normal = np.cross(spokes, np.roll(spokes, -1, 1)).sum(1)
     return dot(normal, normals(rows, center - origins))
 

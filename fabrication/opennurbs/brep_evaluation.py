@@ -1,14 +1,19 @@
-"""Evaluates the trims, edges and surfaces of Breps, many streams of one layout at a time."""
+"""Evaluates trims, edges, surfaces and volumes of Breps, many of one layout at a time."""
+
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...kernel.arrays import FloatArray, dot, norm
-from .brep_layout import Curve, Surface
-from .stream_codes import LINE_CURVE, PLANE_SURFACE
+from .brep_layout import BrepLayout, Curve, Face, Surface
+from .stream_codes import LINE_CURVE, NURBS_CURVE, PLANE_SURFACE
 
 _SAMPLES = 9
 """Points per Bézier span of a trim and per edge, the ends included."""
+
+_STEPS = 3
+"""From the nearest of the samples, towards the nearest point of a conic."""
 
 
 def stream_numbers(streams: NDArray[np.uint8], place: int, count: int) -> FloatArray:
@@ -21,23 +26,62 @@ def trim_points(streams: NDArray[np.uint8], curve: Curve) -> FloatArray:
     """Points (n, q, 2) of a trim in (u, v), ends included, in streams (n, bytes)."""
     if curve.uuid == LINE_CURVE:
         return _between(stream_numbers(streams, curve.points, 6).reshape(-1, 2, 3)[..., :2])
-    points = stream_numbers(streams, curve.points, 3 * curve.n_points).reshape(
-        -1, curve.n_points, 3
-    )
-    basis = _bernstein(np.linspace(0, 1, _SAMPLES))
-    spans = [basis @ points[:, i : i + 3] for i in range(0, curve.n_points - 2, 2)]
+    return _nurbs_points(streams, curve)
+
+
+def _spans(streams: NDArray[np.uint8], curve: Curve) -> list[FloatArray]:
+    """Homogeneous control points (n, order, dimension + 1) of each Bézier span."""
+    size = curve.dimension + 1
+    points = stream_numbers(streams, curve.points, size * curve.n_points)
+    points = points.reshape(len(streams), curve.n_points, size)
+    degree = curve.order - 1
+    return [points[:, i : i + degree + 1] for i in range(0, curve.n_points - 1, degree)]
+
+
+def _nurbs_points(streams: NDArray[np.uint8], curve: Curve) -> FloatArray:
+    basis = _bernstein(np.linspace(0, 1, _SAMPLES), curve.order - 1)
+    spans = [basis @ points for points in _spans(streams, curve)]
     joined = np.concatenate([spans[0], *(span[:, 1:] for span in spans[1:])], 1)
-    return joined[..., :2] / joined[..., 2:]
+    return joined[..., :-1] / joined[..., -1:]
+
+
+def trim_steps(
+    streams: NDArray[np.uint8], curve: Curve, shares: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Points and derivatives (n, q, 2) of a trim at shares (q,) of each of its Bézier spans."""
+    if curve.uuid == LINE_CURVE:
+        ends = stream_numbers(streams, curve.points, 6).reshape(-1, 2, 3)[..., :2]
+        step = ends[:, 1:] - ends[:, :1]
+        return ends[:, :1] + shares[:, None] * step, np.repeat(step, len(shares), axis=1)
+    degree = curve.order - 1
+    basis, slopes = _bernstein(shares, degree), _bernstein_slopes(shares, degree)
+    points: list[FloatArray] = []
+    steps: list[FloatArray] = []
+    for span in _spans(streams, curve):
+        x, dx = basis @ span, slopes @ span
+        flat = x[..., :2] / x[..., 2:]
+        points.append(flat)
+        steps.append((dx[..., :2] - flat * dx[..., 2:]) / x[..., 2:])
+    return np.concatenate(points, axis=1), np.concatenate(steps, axis=1)
 
 
 def _between(ends: FloatArray) -> FloatArray:
     """Points of segments (n, 2, d), (n, q, d)."""
     share = np.linspace(0, 1, _SAMPLES)[:, None]
-    return ends[:, :1] * (1 - share) + ends[:, 1:] * share
+    # A coordinate that stays the same must not leave the domain by rounding.
+    return ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * share
 
 
-def _bernstein(t: FloatArray) -> FloatArray:
-    return np.stack([(1 - t) ** 2, 2 * t * (1 - t), t**2], -1)
+def _bernstein(t: FloatArray, degree: int) -> FloatArray:
+    powers = [comb(degree, i) * t**i * (1 - t) ** (degree - i) for i in range(degree + 1)]
+    return np.stack(powers, -1)
+
+
+def _bernstein_slopes(t: FloatArray, degree: int) -> FloatArray:
+    lower = _bernstein(t, degree - 1)
+    zero = np.zeros((*t.shape, 1))
+    before, after = (np.concatenate(pair, -1) for pair in ((zero, lower), (lower, zero)))
+    return degree * (before - after)
 
 
 def surface_points(streams: NDArray[np.uint8], surface: Surface, uv: FloatArray) -> FloatArray:
@@ -48,34 +92,59 @@ def surface_points(streams: NDArray[np.uint8], surface: Surface, uv: FloatArray)
         points = plane[:, None, :3] + uv @ plane[:, 3:9].reshape(-1, 2, 3)
         beyond = np.maximum(domain[:, None, :, 0] - uv, uv - domain[:, None, :, 1]).max(2)
         return np.where(beyond[..., None] > 0, np.nan, points)
-    n_u, n_v = surface.n_points
-    net = stream_numbers(streams, surface.points, 4 * n_u * n_v).reshape(-1, n_u, n_v, 4)
+    net = surface_net(streams, surface)
     along_u, along_v = (
-        _spline_basis(stream_numbers(streams, place, count + 1), uv[..., axis])
-        for axis, (place, count) in enumerate(zip(surface.knots, surface.n_points, strict=True))
+        spline_basis(surface_knots(streams, surface, axis), uv[..., axis], order - 1)[0]
+        for axis, order in enumerate(surface.orders)
     )
     points = np.einsum("nqi,nqj,nijd->nqd", along_u, along_v, net, optimize=True)
     return points[..., :3] / points[..., 3:]
 
 
-def _spline_basis(knots: FloatArray, t: FloatArray) -> FloatArray:
-    """Quadratic basis functions over double knots (n, m + 1) at t (n, q): (n, q, m)."""
-    breaks = knots[:, ::2]
-    result = np.zeros((*t.shape, knots.shape[1] - 1))
+def surface_net(streams: NDArray[np.uint8], surface: Surface) -> FloatArray:
+    """Homogeneous control points (n, k, m, 4) of a rational surface."""
+    n_u, n_v = surface.n_points
+    return stream_numbers(streams, surface.points, 4 * n_u * n_v).reshape(-1, n_u, n_v, 4)
+
+
+def surface_knots(streams: NDArray[np.uint8], surface: Surface, axis: int) -> FloatArray:
+    """Knots of a rational surface in u or v, as openNURBS has them."""
+    count = surface.n_points[axis] + surface.orders[axis] - 2
+    return stream_numbers(streams, surface.knots[axis], count)
+
+
+def spline_basis(
+    knots: FloatArray, t: FloatArray, degree: int
+) -> tuple[FloatArray, FloatArray]:
+    """Basis functions and their slopes (n, q, m) at t (n, q), NaN outside of the domain.
+
+    Knots (n, ...) stand as often as the degree.
+    """
+    breaks = knots[:, ::degree]
+    shape = (*t.shape, knots.shape[1] - degree + 1)
+    values, slopes = np.zeros(shape), np.zeros(shape)
     is_open = (t >= breaks[:, :1]) & (t <= breaks[:, -1:])
-    result[~is_open] = np.nan
+    outside = ~is_open
     for span in range(breaks.shape[1] - 1):
-        low, high = breaks[:, span, None], breaks[:, span + 1, None]
-        here = is_open & (t <= high)
+        low, size = breaks[:, span, None], np.diff(breaks[:, span : span + 2])
+        here = is_open & (t <= breaks[:, span + 1, None])
         is_open = is_open & ~here
-        result[here, 2 * span : 2 * span + 3] = _bernstein((t - low) / (high - low))[here]
-    return result
+        share = np.where(here, (t - low) / size, 0.0)
+        place = slice(degree * span, degree * span + degree + 1)
+        values[..., place] += here[..., None] * _bernstein(share, degree)
+        slopes[..., place] += (
+            here[..., None] * _bernstein_slopes(share, degree) / size[..., None]
+        )
+    values[outside] = slopes[outside] = np.nan
+    return values, slopes
 
 
 def edge_points(streams: NDArray[np.uint8], curve: Curve) -> FloatArray:
     """Points (n, q, 3) of an edge, ends included, in streams (n, bytes)."""
     if curve.uuid == LINE_CURVE:
         return _between(stream_numbers(streams, curve.points, 6).reshape(-1, 2, 3))
+    if curve.uuid == NURBS_CURVE:
+        return _nurbs_points(streams, curve)
     circle = stream_numbers(streams, curve.points, 28)
     return _circle_points(circle, _between(circle[:, 26:28, None])[..., 0])
 
@@ -99,6 +168,8 @@ def distances_to_edge(
         chord = end - start
         share = np.clip(dot(points - start, chord) / dot(chord, chord), 0, 1)
         return norm(points - start - share[..., None] * chord)
+    if curve.uuid == NURBS_CURVE:
+        return np.min([_to_conic(span, points) for span in _spans(streams, curve)], axis=0)
     circle = stream_numbers(streams, curve.points, 28)
     relative = points - circle[:, None, :3]
     x, y = (dot(relative, circle[:, None, i : i + 3]) for i in (3, 6))
@@ -107,3 +178,82 @@ def distances_to_edge(
     turn = (np.arctan2(y, x) - middle + np.pi) % (2 * np.pi) - np.pi
     nearest = _circle_points(circle, middle + np.clip(turn, -half, half))
     return norm(points - nearest)
+
+
+def _to_conic(span: FloatArray, points: FloatArray) -> FloatArray:
+    """Distances (n, q) of points from rational quadratics (n, 3, 4), by Gauss and Newton."""
+    starts = np.linspace(0, 1, _SAMPLES)
+    curve = _bernstein(starts, 2) @ span
+    curve = curve[..., :3] / curve[..., 3:]
+    nearest = norm(points[:, :, None] - curve[:, None]).argmin(axis=2)
+    t = starts[nearest]
+    for _ in range(_STEPS):
+        x = np.einsum("nqi,nid->nqd", _bernstein(t, 2), span)
+        dx = np.einsum("nqi,nid->nqd", _bernstein_slopes(t, 2), span)
+        at = x[..., :3] / x[..., 3:]
+        step = (dx[..., :3] - at * dx[..., 3:]) / x[..., 3:]
+        t = np.clip(t + dot(points - at, step) / dot(step, step), 0, 1)
+    x = np.einsum("nqi,nid->nqd", _bernstein(t, 2), span)
+    return norm(points - x[..., :3] / x[..., 3:])
+
+
+# Volumes
+
+_NODES, _LENGTHS = np.polynomial.legendre.leggauss(10)
+_SHARES, _WEIGHTS = (_NODES + 1) / 2, _LENGTHS / 2
+
+
+def brep_volumes(streams: NDArray[np.uint8], layout: BrepLayout) -> FloatArray:
+    """Volumes (n,) that Breps of one layout enclose; negative if their faces look inwards.
+
+    By the theorem of Gauss a face adds a third of the integral of x · n over it, in (u, v) that
+    of ``x · (x_u × x_v)`` over the inside of its trims. By Green's that is the integral of
+    ``P dv`` along them, where P is the integral along u from the left of the domain: Gauss
+    points along every span of the trims and, for each, along u.
+    """
+    origins = stream_numbers(streams, layout.faces[0].sides[0].start, 3)
+    total = np.zeros(len(streams))
+    for face in layout.faces:
+        share = _face_share(streams, face, origins)
+        total += -share if face.is_reversed else share
+    return total / 3
+
+
+def _face_share(streams: NDArray[np.uint8], face: Face, origins: FloatArray) -> FloatArray:
+    steps = [trim_steps(streams, side.trim, _SHARES) for side in face.sides]
+    uv, changes = (np.concatenate(parts, axis=1) for parts in zip(*steps, strict=True))
+    weights = np.tile(_WEIGHTS, uv.shape[1] // len(_WEIGHTS))
+    if face.surface.uuid == PLANE_SURFACE:
+        plane = stream_numbers(streams, face.surface.points, 9).reshape(-1, 3, 3)
+        height = dot(plane[:, 0] - origins, np.cross(plane[:, 1], plane[:, 2]))
+        return height * ((uv[..., 0] * changes[..., 1]) @ weights)
+    return (_along_u(streams, face, origins, uv) * changes[..., 1]) @ weights
+
+
+def _along_u(
+    streams: NDArray[np.uint8], face: Face, origins: FloatArray, uv: FloatArray
+) -> FloatArray:
+    """Integrals (n, q) of x · (x_u × x_v) from the left of the domain to points."""
+    surface = face.surface
+    knots = [surface_knots(streams, surface, axis) for axis in (0, 1)]
+    net = surface_net(streams, surface)
+    net = np.concatenate(
+        [net[..., :3] - net[..., 3:] * origins[:, None, None], net[..., 3:]], -1
+    )
+    basis, slopes = spline_basis(knots[1], uv[..., 1], surface.orders[1] - 1)
+    # Curves in u through the points, and how they change with v: (n, q, k, 4).
+    curves, turns = (np.einsum("nqj,nkjd->nqkd", part, net) for part in (basis, slopes))
+    breaks = knots[0][:, :: surface.orders[0] - 1]
+    total = np.zeros(uv.shape[:2])
+    for low, high in zip(breaks.T[:-1], breaks.T[1:], strict=True):
+        end = np.clip(uv[..., 0], low[:, None], high[:, None])
+        length = end - low[:, None]
+        u = low[:, None, None] + length[..., None] * _SHARES
+        along, rises = spline_basis(knots[0], u.reshape(len(u), -1), surface.orders[0] - 1)
+        along, rises = (x.reshape(*u.shape, -1) for x in (along, rises))
+        x: FloatArray = np.matmul(along, curves)
+        x_u: FloatArray = np.matmul(rises, curves)
+        x_v: FloatArray = np.matmul(along, turns)
+        flux = dot(x[..., :3], np.cross(x_u[..., :3], x_v[..., :3])) / x[..., 3] ** 3
+        total += length * (flux @ _WEIGHTS)
+    return total

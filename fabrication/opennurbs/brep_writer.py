@@ -27,7 +27,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...kernel.arrays import FloatArray, unit
+from ...kernel.arrays import BoolArray, FloatArray, norm, unit
 from ...kernel.panels.panels import Panels, panel_arcs
 from ...kernel.spheres.arcs import ArcCircles, Arcs, arc_circles, arc_lengths
 from . import stream_codes as codes
@@ -109,22 +109,58 @@ def edge_streams(panels: Panels) -> list[bytes]:
 
     H objects, in model coordinates, from corner h to the next.
     """
-    arcs = panel_arcs(panels)
-    records = _edge_records(panels, arcs)
     is_line = panels.spheres[panels.corner_panels, 0] == 0
+    return _curve_streams(_edge_records(panels, panel_arcs(panels)), is_line)
+
+
+def arc_streams(arcs: Arcs) -> list[bytes]:
+    """Arcs, each as the stream of an `ON_ArcCurve`; of an `ON_LineCurve` if it is straight."""
+    circles, lengths, no_shift = arc_circles(arcs), arc_lengths(arcs), 0 * arcs.starts
+    is_line = np.isinf(circles.radii)
+    records = np.zeros((len(lengths), 30))
+    records[is_line, :8] = _line_records(arcs, no_shift, lengths)[is_line]
+    bent = ArcCircles(*(values[~is_line] for values in vars(circles).values()))
+    starts, shift = arcs.starts[~is_line], no_shift[~is_line]
+    records[~is_line] = _arc_records(bent, starts, shift, lengths[~is_line])
+    return _curve_streams(records, is_line)
+
+
+def line_streams(segments: FloatArray) -> list[bytes]:
+    """Segments (n, 2, 3), each as the stream of an `ON_LineCurve`."""
+    zero = np.zeros(len(segments))
+    lengths = norm(segments[:, 1] - segments[:, 0])
+    records = np.column_stack([segments.reshape(-1, 6), zero, lengths])
+    return _curve_streams(records, np.ones(len(segments), bool))
+
+
+def circle_streams(
+    centers: FloatArray, x: FloatArray, axes: FloatArray, radii: FloatArray
+) -> list[bytes]:
+    """Whole circles about unit axes (n, 3), each as the stream of an `ON_ArcCurve`.
+
+    They begin along unit vectors x (n, 3).
+    """
+    sweeps = np.full(len(centers), 2 * np.pi)
+    circles = ArcCircles(centers, axes, radii, sweeps)
+    starts = centers + radii[:, None] * x
+    records = _arc_records(circles, starts, 0 * centers, sweeps * radii)
+    return _curve_streams(records, np.zeros(len(centers), bool))
+
+
+def _curve_streams(records: FloatArray, is_line: BoolArray) -> list[bytes]:
     result = [b""] * len(records)
     for is_straight in np.unique(is_line).tolist():
         ids = np.flatnonzero(is_line == is_straight)
         curve = _edge_curve(0, is_straight=is_straight)
         streams = fill(curve, {"curve": records[ids, None]})
-        for edge, stream in zip(ids, streams, strict=True):
+        for edge, stream in zip(ids.tolist(), streams, strict=True):
             result[edge] = stream
     return result
 
 
 # Bytes
 
-_EMPTY_BOX = doubles(1, 0, 0, -1, 0, 0)
+EMPTY_BOX = doubles(1, 0, 0, -1, 0, 0)
 
 
 def _edge_curve(edge: int, *, is_straight: bool) -> Chunk:
@@ -138,7 +174,7 @@ def _trim_curve(trim: int, spans: int) -> Chunk:
         return class_object(codes.LINE_CURVE, b"\x10", Slot("trim", trim, 8), ints(2))
     count = 2 * spans + 1
     knots = doubles(*np.repeat(np.linspace(-1, 1, spans + 1), 2))
-    head = ints(2, 1, 3, count, 0, 0) + _EMPTY_BOX
+    head = ints(2, 1, 3, count, 0, 0) + EMPTY_BOX
     points = Slot("trim", trim, 3 * count)
     return class_object(
         codes.NURBS_CURVE, b"\x11", head, ints(count + 1), knots, ints(count), points, b"\0"
@@ -149,7 +185,7 @@ def _surface(spans: int) -> Chunk:
     if spans == 0:
         return class_object(codes.PLANE_SURFACE, b"\x11", Slot("patch", 0, 24))
     count = 2 * spans + 1
-    head = ints(3, 1, 3, 3, count, count, 0, 0) + _EMPTY_BOX
+    head = ints(3, 1, 3, 3, count, count, 0, 0) + EMPTY_BOX
     knots_u, knots_v = Slot("knots", 0, count + 1), Slot("knots", 1, count + 1)
     points = Slot("patch", 0, 4 * count * count)
     return class_object(
@@ -207,13 +243,16 @@ def _edge_records(panels: Panels, arcs: Arcs) -> FloatArray:
     records = np.zeros((len(shift), 30))
     lengths = arc_lengths(arcs)
     is_line = panels.spheres[panels.corner_panels, 0] == 0
-    lines = np.column_stack([arcs.starts + shift, arcs.ends + shift, 0 * lengths, lengths])
-    records[is_line, :8] = lines[is_line]
+    records[is_line, :8] = _line_records(arcs, shift, lengths)[is_line]
     circles = arc_circles(arcs)
     bent = ArcCircles(*(values[~is_line] for values in vars(circles).values()))
     bent_starts, bent_shift = arcs.starts[~is_line], shift[~is_line]
     records[~is_line] = _arc_records(bent, bent_starts, bent_shift, lengths[~is_line])
     return records
+
+
+def _line_records(arcs: Arcs, shift: FloatArray, lengths: FloatArray) -> FloatArray:
+    return np.column_stack([arcs.starts + shift, arcs.ends + shift, 0 * lengths, lengths])
 
 
 def _arc_records(
@@ -225,12 +264,14 @@ def _arc_records(
     to_x, to_y = circles.radii[:, None] * x_axes, circles.radii[:, None] * y_axes
     zero = np.zeros_like(lengths)
     return np.column_stack([
-        _planes(centers, x_axes, y_axes, circles.axes), circles.radii,
+        plane_records(centers, x_axes, y_axes, circles.axes), circles.radii,
         centers + to_x, centers + to_y, centers - to_x, zero, circles.sweeps, zero, lengths,
     ])  # fmt: skip
 
 
-def _planes(origins: FloatArray, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
+def plane_records(
+    origins: FloatArray, x: FloatArray, y: FloatArray, z: FloatArray
+) -> FloatArray:
     """Records of `ON_Plane`, (n, 16)."""
     # openNURBS refuses a plane whose equation does not vanish at its origin; summed in its own
     # order it does so exactly, wherever the site lies.
@@ -247,7 +288,7 @@ def _patch_numbers(charts: PanelCharts, spans: int) -> dict[str, FloatArray]:
     box = np.concatenate([hull.min(1), hull.max(1)], 1)
     if spans == 0:
         e1, e2, n_axes = charts.frames.transpose(1, 0, 2)
-        plane = _planes(charts.origins, e1, e2, n_axes)
+        plane = plane_records(charts.origins, e1, e2, n_axes)
         domains = knots[..., 1:3].reshape(-1, 4)
         patch, trims = np.column_stack([plane, domains, domains]), _line_trims(charts)
     else:

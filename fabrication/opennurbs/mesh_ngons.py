@@ -12,7 +12,7 @@ import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray
 from .stream_codes import ANONYMOUS, CHUNK_HEADER, CLASS, CLASS_DATA
-from .stream_reader import StreamReader, buffer_content
+from .stream_reader import StreamReader, UnreadableError, buffer_content
 
 _CLASS_DATA_START = 44
 """After the head of the class chunk (12 bytes) and the chunk of its id (12 + 16 + 4)."""
@@ -78,6 +78,8 @@ def _read_to_ngons(reader: StreamReader) -> tuple[FloatArray, IntArray]:
         if reader.data[reader.take(1)] == 1:
             reader.skip_chunk()
     (size,) = reader.ints(1)
+    if size not in (1, 2, 4):
+        raise UnreadableError(f"vertex ids of {size} bytes")
     place = reader.take(4 * size * n_faces)
     faces = np.frombuffer(reader.data, f"<u{size}", 4 * n_faces, place).reshape(-1, 4)
     vertices = np.frombuffer(_content(reader), "<f4").reshape(-1, 3)

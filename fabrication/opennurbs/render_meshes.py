@@ -1,16 +1,12 @@
-"""Render meshes of panels and beams as openNURBS objects, for viewers that cannot mesh solids.
+"""Render meshes of panels as openNURBS objects, for viewers that cannot mesh Breps.
 
-They are written into the streams of Breps and extrusions: the setters of rhino3dm crash it at
-exit. Layout of `ON_Mesh` 3.8 (`opennurbs_mesh.cpp`): ii counts of vertices and faces, domains
-that are not set, three empty boxes of floats, i -1, flags, faces of four indices each (a
-triangle repeats its last), buffers of float32 vertices and normals, empty buffers, the tag of
-no texture mapping, and a chunk with the vertices as float64, if that is needed.
-
-An extrusion keeps meshes in a chunk of version 1.0 (`ON_MeshCache`): for each a byte 1 and a
-chunk of version 1.0 with an id that says what it is for and the mesh; in the end a byte 0.
+They are written into the streams of Breps: the setters of rhino3dm crash it at exit. Layout of
+`ON_Mesh` 3.8 (`opennurbs_mesh.cpp`): ii counts of vertices and faces, domains that are not set,
+three empty boxes of floats, i -1, flags, faces of four indices each (a triangle repeats its
+last), buffers of float32 vertices and normals, empty buffers, the tag of no texture mapping,
+and a chunk with the vertices as float64, if that is needed.
 """
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
@@ -18,11 +14,10 @@ from typing import Final
 import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray, norm
-from ...kernel.beams.triangles import BeamTriangles
 from ...kernel.panels.panels import Panels
 from ...kernel.panels.tessellation import tessellate
 from ...kernel.tolerances import SINGLE_EPSILON, SINGLE_IS_ENOUGH
-from .stream_codes import ANONYMOUS, CHUNK_HEADER, MESH, MESH_VERSION
+from .stream_codes import ANONYMOUS, MESH, MESH_VERSION
 from .stream_writer import (
     Chunk,
     Piece,
@@ -30,7 +25,6 @@ from .stream_writer import (
     Slot,
     class_object,
     doubles,
-    encode,
     fill,
     ints,
 )
@@ -39,17 +33,13 @@ _UNSET_DOMAINS = doubles(*[-1.23432101234321e308] * 8) + bytes(16)
 MESH_TOLERANCE: Final = 0.004
 """Largest distance of a render mesh from its surface, relative to the radius of the piece."""
 
-_RENDER_MESH: Final = bytes.fromhex("a9bae3f5a2a7fd49b8a166eb274a5f91")
-_AROUND_CACHE: Final = (0, 44, 56)
-"""Where the chunks around the meshes of an extrusion begin: class, its data, extrusion."""
-
 _EMPTY_BOXES = np.array([*[1, 1, 1, -1, -1, -1] * 2, 1, 1, -1, -1], "<f4").tobytes()
 _IDENTITY = doubles(*np.eye(4).ravel().tolist())
 
 
 @dataclass(frozen=True)
 class RenderMeshes:
-    """Triangles of panels or beams, those of the same triangulation together.
+    """Triangles of panels, those of the same triangulation together.
 
     Vertices are written as float64 too where the model lies so far from the origin that float32
     would show.
@@ -86,27 +76,6 @@ def panel_meshes(panels: Panels, tolerance: float) -> RenderMeshes:
     has_doubles = _needs_doubles(points, tolerance * float(sizes.min(initial=np.inf)))
     ids, firsts = np.array(kinds, np.int64), np.array(starts, np.int64)
     return RenderMeshes(ids, shapes, firsts, points, pieces.normals, has_doubles)
-
-
-def gather_meshes(groups: Sequence[BeamTriangles], error: float) -> RenderMeshes:
-    """Triangulated beams or cylinders as render meshes, every piece once.
-
-    The error is the distance of the triangles of the smallest piece from its surface, in model
-    units.
-    """
-    n_pieces = sum(len(group.beams) for group in groups)
-    kinds, starts = np.zeros((2, n_pieces), np.int64)
-    n_points = 0
-    for kind, group in enumerate(groups):
-        n_beams, count = group.points.shape[:2]
-        kinds[group.beams] = kind
-        starts[group.beams] = n_points + count * np.arange(n_beams)
-        n_points += n_beams * count
-    points = np.concatenate([group.points.reshape(-1, 3) for group in groups])
-    normals = np.concatenate([group.normals.reshape(-1, 3) for group in groups])
-    triangles = tuple(group.triangles for group in groups)
-    has_doubles = _needs_doubles(points, error)
-    return RenderMeshes(kinds, triangles, starts, points, normals, has_doubles)
 
 
 def _needs_doubles(points: FloatArray, error: float) -> bool:
@@ -149,38 +118,10 @@ def _n_points(triangles: IntArray) -> int:
 
 def mesh_streams(meshes: RenderMeshes) -> list[bytes]:
     """Each mesh as the stream of an `ON_Mesh`, in model coordinates."""
-    return _filled(meshes, lambda mesh: mesh)
-
-
-def _filled(meshes: RenderMeshes, wrap: Callable[[Chunk], Chunk]) -> list[bytes]:
     result = [b""] * len(meshes.kinds)
     for kind in range(len(meshes.triangles)):
         members = np.flatnonzero(meshes.kinds == kind)
-        filled = fill(wrap(mesh_object(meshes, kind)), mesh_numbers(meshes, members))
-        for piece, stream in zip(members, filled, strict=True):
+        filled = fill(mesh_object(meshes, kind), mesh_numbers(meshes, members))
+        for piece, stream in zip(members.tolist(), filled, strict=True):
             result[piece] = stream
     return result
-
-
-def extrusions_with_meshes(extrusions: Sequence[bytes], meshes: RenderMeshes) -> list[bytes]:
-    """Put render meshes into `ON_Extrusion` that openNURBS encoded without meshes."""
-    caches = _filled(meshes, _cache)
-    empty = encode(_cache())
-    result: list[bytes] = []
-    for stream, cache in zip(extrusions, caches, strict=True):
-        data = bytearray(stream)
-        # Checksums leave out inner chunks: the lengths around the cache are all that changes.
-        for start in _AROUND_CACHE:
-            typecode, length = CHUNK_HEADER.unpack_from(data, start)
-            CHUNK_HEADER.pack_into(data, start, typecode, length + len(cache) - len(empty))
-        place = data.rindex(empty)
-        data[place : place + len(empty)] = cache
-        result.append(bytes(data))
-    return result
-
-
-def _cache(*meshes: Chunk) -> Chunk:
-    pieces: list[Piece] = [ints(1, 0)]
-    for mesh in meshes:
-        pieces += [b"\1", Chunk(ANONYMOUS, (ints(1, 0) + _RENDER_MESH, mesh))]
-    return Chunk(ANONYMOUS, (*pieces, b"\0"))

@@ -7,7 +7,7 @@ of its two panels; how far the other one misses it is the tolerance of the edge.
 from collections import defaultdict
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,10 +17,9 @@ from ...kernel.panels.panels import Panels, panel_arcs
 from ...kernel.spheres.arcs import arc_lengths, arc_points
 from .brep_writer import edge_streams, face_streams
 from .render_meshes import RenderMeshes, mesh_streams
-from .stream_codes import ANONYMOUS, BOUNDARY_TRIM, BREP, OUTER_LOOP
-from .stream_writer import Chunk, class_object, doubles, encode, ints, table
+from .stream_codes import ANONYMOUS, BOUNDARY_TRIM, BREP, MATED_TRIM, OUTER_LOOP
+from .stream_writer import Chunk, Encoded, Piece, class_object, doubles, encode, ints, table
 
-_MATED_TRIM: Final = 2
 _SAMPLES = 5
 
 
@@ -71,20 +70,20 @@ def join_panels(panels: Panels, largest_gap: float, meshes: RenderMeshes | None)
     points = panels.corners + panels.origins[panels.corner_panels]
     margin = largest_gap + np.abs(panels.spheres[:, 0]).max() * np.ptp(points, 0).max() ** 2
     box = [*(points.min(0) - margin).tolist(), *(points.max(0) + margin).tolist()]
-    face_meshes = [b"\0"] * panels.n_panels
+    face_meshes: list[Piece] = [b"\0"] * panels.n_panels
     if meshes is not None:
-        face_meshes = [b"\1" + stream for stream in mesh_streams(meshes)]
+        face_meshes = [x for mesh in mesh_streams(meshes) for x in (b"\1", Encoded(mesh))]
     brep = class_object(
         BREP, b"\x33",
-        table(0, [(one + trim,) for trim in trims]),
-        table(0, [(one + curves[first],) for first in firsts]),
-        table(0, [(one + surface,) for surface in surfaces]),
+        table(0, [(one, Encoded(trim)) for trim in trims]),
+        table(0, [(one, Encoded(curves[first])) for first in firsts]),
+        table(0, [(one, Encoded(surface)) for surface in surfaces]),
         table(0, _vertex_records(joints)),
         table(0, _edge_records(panels, joints)),
         table(0, _trim_records(panels, joints)),
         table(0, _loop_records(panels)),
         _face_table(panels),
-        doubles(*box), Chunk(ANONYMOUS, (b"".join(face_meshes),)),
+        doubles(*box), Chunk(ANONYMOUS, tuple(face_meshes)),
         Chunk(ANONYMOUS, (bytes(panels.n_panels),)), ints(0),
         Chunk(ANONYMOUS, (ints(1, 1), b"\0")),
     )  # fmt: skip
@@ -181,7 +180,7 @@ def _trim_records(panels: Panels, joints: _Joints) -> list[tuple[bytes]]:
     is_mated = np.bincount(joints.edges)[joints.edges] > 1
     columns = np.stack([
         joints.edges, joints.vertices, joints.vertices[panels.next_corners],
-        joints.is_reversed, np.where(is_mated, _MATED_TRIM, BOUNDARY_TRIM),
+        joints.is_reversed, np.where(is_mated, MATED_TRIM, BOUNDARY_TRIM),
         0 * joints.edges, panels.corner_panels,
     ], 1)  # fmt: skip
     rows: list[list[int]] = columns.tolist()

@@ -56,18 +56,32 @@ def panel_charts(panels: Panels, arcs: Arcs, ids: IntArray) -> PanelCharts:
     n_axes = unit(normals(rows, feet))
     corners = panels.corners[corner_ids] - feet[:, None]
     middles = arc_points(arcs, np.zeros(1))[corner_ids, 0] - feet[:, None]
+    charts = circle_charts(rows[:, 0], n_axes, corners, middles)
+    origins = feet + panels.origins[ids]
+    return replace(charts, ids=ids, corner_ids=corner_ids, origins=origins)
+
+
+def circle_charts(
+    curvatures: FloatArray, n_axes: FloatArray, corners: FloatArray, middles: FloatArray
+) -> PanelCharts:
+    """Charts of P pieces of spheres with k sides: their arcs by ends and middles (P, k, 3).
+
+    Points are relative to the origin of the chart, where the unit normals (P, 3) are N of rows
+    of these curvatures A (P,).
+    """
     # With u nearly along the first edge the patch is small, and its isocurves look natural.
     chords = corners[:, 1] - corners[:, 0]
     e1 = unit(chords - dot(chords, n_axes)[:, None] * n_axes)
     frames = np.stack([e1, np.cross(n_axes, e1), n_axes], 1)
-    frames = _turned(frames, _project_chart(rows[:, 0], frames, corners))
-    uv, middle_uv = (_project_chart(rows[:, 0], frames, x) for x in (corners, middles))
+    frames = turned(frames, _project_chart(curvatures, frames, corners))
+    uv, middle_uv = (_project_chart(curvatures, frames, x) for x in (corners, middles))
     first, second = middle_uv - uv, np.roll(uv, -1, 1) - middle_uv
     cross = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
     # The tangent turns by half of the sweep between the two half chords.
     bulges = cross / (norm(first) * norm(second) + dot(first, second))
+    ids = np.arange(len(curvatures))
     charts = PanelCharts(
-        ids, corner_ids, rows[:, 0], feet + panels.origins[ids], frames, uv, bulges, uv[:, 0]
+        ids, ids[:, None], curvatures, 0 * n_axes, frames, uv, bulges, uv[:, 0]
     )
     hull = trim_control_points(charts, 2)
     hull = (hull[..., :2] / hull[..., 2:]).reshape(len(ids), -1, 2)
@@ -76,7 +90,7 @@ def panel_charts(panels: Panels, arcs: Arcs, ids: IntArray) -> PanelCharts:
     return replace(charts, reaches=(1 + _MARGIN) * np.abs(hull).max(1))
 
 
-def _turned(frames: FloatArray, uv: FloatArray) -> FloatArray:
+def turned(frames: FloatArray, uv: FloatArray) -> FloatArray:
     """Frames turned about N so that no trim runs along u or v.
 
     openNURBS wants such trims flagged, by a tolerance of its own. The first of 1, 2, ...

@@ -20,6 +20,8 @@ CLASS_UUID: Final = 0x0002FFFB
 CLASS_DATA: Final = 0x0002FFFC
 CLASS_END: Final = 0x80027FFF
 ANONYMOUS: Final = 0x40008000
+OBJECT_TABLE: Final = 0x10000013
+OBJECT_RECORD: Final = 0x20008070
 
 CRC_FLAG: Final = 0x8000
 SHORT_FLAG: Final = 0x80000000
@@ -37,7 +39,10 @@ MESH: Final = bytes.fromhex("e4d4d74e47e9d311bfe50010830122f0")
 
 MESH_VERSION: Final = b"\x38"
 BOUNDARY_TRIM: Final = 1
+MATED_TRIM: Final = 2
+SEAM_TRIM: Final = 3
 OUTER_LOOP: Final = 1
+INNER_LOOP: Final = 2
 
 
 class Checksum(NamedTuple):

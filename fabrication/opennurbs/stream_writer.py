@@ -37,7 +37,13 @@ class PlainBuffer(NamedTuple):
     content: Slot
 
 
-Piece: TypeAlias = bytes | Slot | Chunk | PlainBuffer
+class Encoded(NamedTuple):
+    """A chunk that is laid out and filled: no checksum around it covers its bytes."""
+
+    data: bytes
+
+
+Piece: TypeAlias = bytes | Slot | Chunk | PlainBuffer | Encoded
 
 
 class _Template(NamedTuple):
@@ -51,6 +57,8 @@ class _Template(NamedTuple):
 def _assemble(piece: Piece) -> _Template:
     if isinstance(piece, bytes):
         return _Template(piece, (), ())
+    if isinstance(piece, Encoded):
+        return _Template(piece.data, (), ())
     if isinstance(piece, Slot):
         size = np.dtype(piece.dtype).itemsize * piece.size
         return _Template(bytes(size), ((piece, 0),), ())
@@ -74,11 +82,15 @@ def _assemble_chunk(chunk: Chunk) -> _Template:
         slots += [(slot, here + place) for slot, place in inner.slots]
         checksums += [_shifted(checksum, here) for checksum in inner.checksums]
         data += inner.data
-        if not isinstance(piece, Chunk):
+        if not isinstance(piece, Chunk | Encoded):
             own.append((here, len(data)))
     if chunk.typecode & codes.CRC_FLAG:
-        checksums.append(codes.Checksum(len(data), tuple(own)))
-        data += bytes(codes.CRC.size)
+        checksum = codes.Checksum(len(data), tuple(own))
+        if any(isinstance(piece, Slot | PlainBuffer) for piece in chunk.body):
+            checksums.append(checksum)
+            data += bytes(codes.CRC.size)
+        else:
+            data += codes.CRC.pack(checksum.compute(memoryview(bytes(data))))
     codes.CHUNK_HEADER.pack_into(data, 0, chunk.typecode, len(data) - codes.CHUNK_HEADER.size)
     return _Template(bytes(data), tuple(slots), tuple(checksums))
 

@@ -6,12 +6,13 @@ import numpy as np
 
 from ...kernel.arrays import FloatArray, dot, norm, unit
 from ...kernel.errors import InputError
-from ...kernel.spheres.arcs import Arcs, arc_circles
+from ...kernel.spheres.arcs import Arcs
 from ...kernel.spheres.circles import Circles
 from ...kernel.tolerances import CURVE_SHAPE
-from ..rhino.curves import arc_curve, circle_curve
+from ..breps.nodes import perpendiculars
+from ..opennurbs.brep_writer import arc_streams, circle_streams
 from ..rhino.isolation import isolated
-from .fields import Fields, decoded_objects
+from .fields import Fields, decoded_objects, object_fields
 
 _ADVICE: Final = "use arcs and lines, or whole circles"
 
@@ -28,12 +29,7 @@ def arc_fields(arcs: Arcs) -> list[Fields]:
     list of dict
         A curve for each, in their order.
     """
-    import rhino3dm
-
-    library: Any = rhino3dm
-    circles, zero = arc_circles(arcs), np.zeros(3)
-    count = len(arcs.sagittas)
-    return [dict(arc_curve(library, arcs, circles, i, zero).Encode()) for i in range(count)]
+    return [object_fields(stream) for stream in arc_streams(arcs)]
 
 
 def circle_fields(circles: Circles) -> list[Fields]:
@@ -48,16 +44,14 @@ def circle_fields(circles: Circles) -> list[Fields]:
     list of dict
         A closed curve for each real circle.
     """
-    import rhino3dm
-
-    library: Any = rhino3dm
     centers, normals = circles.centers.reshape(-1, 3), circles.normals.reshape(-1, 3)
     squares = np.ravel(circles.radii_squared)
     is_real = (squares > 0) & np.isfinite(np.column_stack([centers, normals, squares])).all(1)
-    return [
-        dict(circle_curve(library, centers[i], normals[i], float(squares[i] ** 0.5)).Encode())
-        for i in np.flatnonzero(is_real).tolist()
-    ]
+    axes = unit(normals[is_real])
+    streams = circle_streams(
+        centers[is_real], perpendiculars(axes), axes, np.sqrt(squares[is_real])
+    )
+    return [object_fields(stream) for stream in streams]
 
 
 def curves_of_fields(several: list[Fields]) -> Arcs | Circles:

@@ -1,4 +1,4 @@
-"""Writes panels as exact Breps in JSON, and beams as extrusions."""
+"""Writes panels and beams as exact Breps in JSON."""
 
 from typing import Any
 
@@ -10,13 +10,12 @@ from ...kernel.panels.checks import NO_PANEL
 from ...kernel.panels.panels import Panels
 from ...kernel.parts.records import RejectedPart, reject_parts
 from ..opennurbs.brep_audit import verify_breps
-from ..opennurbs.brep_writer import brep_streams
-from ..rhino.beam_writer import beam_extrusions, cylinder_extrusions
+from ..rhino_models.solids import beam_streams, cylinder_streams, panel_streams
 from .fields import Fields, object_fields
 
 
 def panel_breps(panels: Panels) -> tuple[list[Fields], tuple[RejectedPart, ...]]:
-    """The outer faces of panels: exact trimmed spheres, the bytes that .3dm files hold.
+    """Panels as exact Breps, the bytes that .3dm files hold: faces, or solids of a thickness.
 
     Parameters
     ----------
@@ -29,7 +28,7 @@ def panel_breps(panels: Panels) -> tuple[list[Fields], tuple[RejectedPart, ...]]
     rejected : tuple of RejectedPart
         The others, with their reasons.
     """
-    streams = brep_streams(panels)
+    streams = panel_streams(panels)
     errors = verify_breps(streams, panels.spheres, panels.origins)
     broken = {i: reason for i, each in enumerate(errors) if (reason := each.reason())}
     _, rejected = reject_parts(panels, broken, NO_PANEL)
@@ -38,7 +37,7 @@ def panel_breps(panels: Panels) -> tuple[list[Fields], tuple[RejectedPart, ...]]
 
 
 def beam_solids(beams: Beams) -> list[Fields]:
-    """Beams as capped extrusions of their contours, and node cylinders if there are any.
+    """Beams as exact solids, and node cylinders if there are any.
 
     Parameters
     ----------
@@ -48,20 +47,9 @@ def beam_solids(beams: Beams) -> list[Fields]:
     -------
     list of dict
         Beams in their order, then cylinders.
-
-    Raises
-    ------
-    InputError
-        If openNURBS refuses one.
     """
-    import rhino3dm
-
-    library: Any = rhino3dm
-    solids = beam_extrusions(library, beams)
-    cylinders = node_cylinders(beams)
-    if cylinders.n_nodes:
-        solids = [*solids, *cylinder_extrusions(library, cylinders)]
-    return [dict(solid.Encode()) for solid in solids]
+    streams = [*beam_streams(beams), *cylinder_streams(node_cylinders(beams))]
+    return [object_fields(stream) for stream in streams]
 
 
 def axis_lines(axes: Any) -> list[Fields]:  # noqa: ANN401

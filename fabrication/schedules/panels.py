@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from ...kernel.panels.congruent import CongruentPanels, congruent_panels
+from ...kernel.panels.congruent import CongruentPanels
 from ...kernel.panels.facts import panel_bulges
 from ...kernel.panels.mould_blanks import mould_blanks
 from ...kernel.panels.panels import Panels, neighbor_ids
-from ..audit.panels import PanelSubject, check_panels, panel_subject
+from ..audit.panels import PanelSubject, check_panels, panel_subject, same_shapes
 from ..audit.subjects import warning_texts
 from ..tables import finite_or_none
 from ..units import CUBIC_METER, SQUARE_METER
@@ -40,7 +40,7 @@ def panel_tables(panels: Panels, units: str) -> dict[str, list[dict[str, Any]]]:
     empty without clustering.
     """
     subject = panel_subject(panels, units)
-    same = congruent_panels(subject.parts)
+    same = same_shapes(subject.parts)
     return {"Panels": _panel_rows(subject, same), "Moulds": _mould_rows(subject, same)}
 
 

@@ -23,7 +23,7 @@ def write_schedule(model: Model, path: str | os.PathLike[str]) -> Written:
 
     Raises InputError if the suffix or the units are unknown, there is nothing to write, two
     parts have the same name or one is not finite, panels and beams are to share a ``.csv``, or
-    the file cannot be written; MissingLibraryError if openpyxl is missing, which writes
+    the file cannot be written; MissingLibraryError if xlsxwriter is missing, which writes
     ``.xlsx``.
     """
     target = Path(path)
@@ -48,7 +48,15 @@ def write_schedule(model: Model, path: str | os.PathLike[str]) -> Written:
         elif workbook:
             temporary.write_bytes(workbook)
         else:
-            content = {"units": "mm"} | {name.lower(): rows for name, rows in tables.items()}
-            text = json.dumps(content, indent=1, allow_nan=False) + "\n"
-            temporary.write_text(text, encoding="utf-8")
+            temporary.write_text(_json(tables), encoding="utf-8")
     return Written(target)
+
+
+def _json(tables: dict[str, list[dict[str, Any]]]) -> str:
+    """The lists by their names, a row on each line."""
+    encode = json.JSONEncoder(allow_nan=False).encode
+    lists = (
+        f'"{name.lower()}": [\n' + ",\n".join(map(encode, rows)) + "\n]"
+        for name, rows in tables.items()
+    )
+    return ",\n".join(('{"units": "mm"', *lists)) + "\n}\n"

@@ -6,10 +6,11 @@ shared by all parts. A part may stand in several places.
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import UTC, datetime
 from typing import Final, Literal
 
 from ...kernel.parts.colors import Color
+from ..dates import source_date
 from .bodies import Body
 from .values import numbers, real, references, string
 
@@ -102,7 +103,8 @@ class _Definition:
 def assembly_lines(root: Group, header: StepHeader) -> list[str]:
     """Lines of a STEP file in ASCII, in pieces of whole lines.
 
-    The same parts give the same text, but for the time in the header.
+    The same parts give the same text. The time in the header is that of SOURCE_DATE_EPOCH, or
+    the first second of 1970.
     """
     return [*_frame(header), *_Assembler(header).lines(root), _END]
 
@@ -112,10 +114,11 @@ _END: Final = "ENDSEC;\nEND-ISO-10303-21;\n"
 
 def _frame(header: StepHeader) -> Iterable[str]:
     title, system = string(header.title), string(header.system)
-    now = datetime.now().astimezone().strftime("%Y-%m-%dT%H:%M:%S")
+    date = source_date() or datetime(1970, 1, 1, tzinfo=UTC)
+    stamp = date.strftime("%Y-%m-%dT%H:%M:%S")
     yield "ISO-10303-21;\nHEADER;\n"
     yield f"FILE_DESCRIPTION(({title}),'2;1');\n"
-    yield f"FILE_NAME({title},'{now}',(''),(''),{system},{system},'');\n"
+    yield f"FILE_NAME({title},'{stamp}',(''),(''),{system},{system},'');\n"
     yield f"FILE_SCHEMA(('{_SCHEMAS[header.schema][0]}'));\nENDSEC;\nDATA;\n"
 
 

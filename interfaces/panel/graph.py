@@ -8,6 +8,7 @@ from ...nodes.graphs.graph import Graph
 from ...nodes.graphs.specification.wires import Param, Step, Wire
 from ...nodes.graphs.stores.entries import Store
 from .options import PanelOptions, SupportKind, fineness, model_units
+from .papers import add_papers
 from .pattern import add_pattern
 from .support import add_annuli, add_beams
 
@@ -75,8 +76,9 @@ def panel_graph(
         with a number of moulds also moulds, blanks, mould_drawing and mould_picture, with a
         bound on angles before these fewest, with `flat_below` flat, with prices cost, with a
         support also feasibility, annuli, beams, drawing and beam_table, with either plain, the
-        panels without them. Of a pattern mesh is the surface; gain, pattern and net follow it.
-        Its writers write relative to the folder of the run.
+        panels without them; tables and drawing sets if asked for. Of a pattern mesh is the
+        surface; gain, pattern and net follow it. Its writers write relative to the folder of
+        the run.
 
     Raises
     ------
@@ -126,14 +128,19 @@ def panel_graph(
     cost: dict[str, Any] = {}
     if options.prices is not None:
         cost["cost"] = graph.add("cost", "cost", **made, prices=str(options.prices.resolve()))
-    graph.add(
+    report = graph.add(
         "panel_report", "report", sphere_mesh=spheres, optimum=optimum.report,
         cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report, **plain, **cost,
         **(support.report if support else {}),
     )  # fmt: skip
     _add_writers(graph, pattern.surface if pattern else mesh, made)
+    add_papers(graph, options, made, has_moulds=clusters is not None)
     shown = {"findings": audit.findings, "cut": panels.report, "reference": spheres}
     graph.add("write_view", "view", **made, **shown, path="view.html", title=title)
+    graph.add(
+        "write_report", "summary", report=report, panels=panels.panels, sphere_mesh=spheres,
+        path="report.html", title=title,
+    )  # fmt: skip
     return graph
 
 

@@ -10,6 +10,7 @@ from ... import __version__
 from ...fabrication.output_folder import REPORT, OutputFolder, output_folder
 from ...kernel.errors import ConvergenceError, InputError
 from ...nodes.graphs.graph import Graph
+from ...nodes.graphs.running.events import Event
 from ...nodes.graphs.running.files import FileUses, Folders, note_known_files
 
 GRAPH: Final = "graph.json"
@@ -52,7 +53,8 @@ def run_job(
     folder : Path
         Where the files go; made if it does not exist.
     progress : callable
-        Called with the name of a step and its state, as `Graph.run` does.
+        Called with the name of a step and its state, as `Graph.run` does, or what the step says
+        of itself: how long it will take.
     graph_file : Path, optional
         Where the graph was read: it may take its own place, and no other file may.
     overwrite : bool
@@ -83,7 +85,9 @@ def run_job(
         allow_outside=allow_outside,
     ) as output:
         _check_files(graph, output)
-        run = partial(graph.run, on_step=clock.note, write_to=output)
+        run = partial(
+            graph.run, on_step=clock.note, on_event=said_to(progress), write_to=output
+        )
         if graph.steps["optimum"].node.name == "exact_support":
             _refuse_no_support(run("optimum.report"))
         _refuse_nothing(run("panels.report"), "panels")
@@ -180,6 +184,16 @@ def _refuse_few_beams(support: Mapping[str, Any], beams: Mapping[str, Any]) -> N
             f"{written + lost} upright beams {lost} cannot be made either; remesh it, let "
             "vertices move (--tolerance 0.1), or leave out --support"
         )
+
+
+def said_to(progress: Progress) -> Callable[[Event], None]:
+    """What steps say of themselves while they run, told as states are."""
+
+    def _tell(event: Event) -> None:
+        if event.state == "progress" and event.text:
+            progress(event.step, event.text)
+
+    return _tell
 
 
 class _StepClock:

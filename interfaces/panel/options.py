@@ -8,6 +8,8 @@ from ...fabrication.mesh_files.reader import read_content
 from ...kernel.errors import InputError
 
 SupportKind = Literal["axis", "exact", "bisector"]
+TableFormat = Literal["xlsx", "csv", "parquet"]
+Paper = Literal["A4", "A3", "A2", "A1", "A0"]
 PatternKind = Literal["quads", "hexagons", "triangles", "as-is"]
 
 
@@ -72,6 +74,12 @@ class PanelOptions:
         What the workshop allows between neighbours, in millimetres.
     allow_torsion : float
         What it allows between beams and node axes, in degrees.
+    tables : {"xlsx", "csv", "parquet"} or None
+        Which tidy tables to write; None for none.
+    drawings : {"A4", "A3", "A2", "A1", "A0"} or None
+        The paper of a set of drawings; None for none.
+    nest : bool
+        Whether beams are nested on as few sheets as a short search finds.
     """
 
     mesh: Path | None = None
@@ -104,6 +112,9 @@ class PanelOptions:
     allow_step: float = 5.0
     allow_gap: float = 5.0
     allow_torsion: float = 0.1
+    tables: TableFormat | None = None
+    drawings: Paper | None = None
+    nest: bool = False
 
 
 def model_units(options: PanelOptions) -> tuple[str, bool]:

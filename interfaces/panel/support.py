@@ -126,7 +126,8 @@ def add_beams(
     """
     annuli = support.annuli
     beams = _cut_beams(graph, options, support, panels)
-    graph.add("write_dxf", "drawing", beams=beams.beams, path="beams.dxf")
+    nesting = {"nesting": "rectangles"} if options.nest else {}
+    graph.add("write_dxf", "drawing", beams=beams.beams, path="beams.dxf", **nesting)
     graph.add("write_schedule", "beam_table", beams=beams.beams, path="beams.csv")
     audit = {
         "beams": beams.beams, "annuli_report": annuli.report, "beams_report": beams.report,

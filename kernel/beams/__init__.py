@@ -2,6 +2,7 @@
 
 beams           Beams: annuli of a thickness, cut at the nodes so that neighbours do not run
                 into each other.
+centroids       Centres of mass of beams.
 contours        Flat contours of beams, for cutting: two arcs and two lines in a plane.
 cutting         Cutting beams out of annuli: mitres between neighbours, or square ends before
                 a node cylinder.

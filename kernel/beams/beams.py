@@ -7,6 +7,7 @@ direction, so an end is told by three levels across the thickness - the lower si
 where its two planes meet, the upper side - and by how far the cut lies inside at each.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -237,24 +238,31 @@ def beam_volumes(beams: Beams) -> FloatArray:
     The areas of plane sections, integrated over the thickness with 6 Gauss points between the
     levels of the two ridges.
     """
-    half = np.full(beams.n_beams, beams.thickness / 2)
-    ridges = np.sort(beams.levels[:, :, 1], axis=1)
-    bounds = np.column_stack([-half, ridges, half])
+    planes = beams.annuli.frames[:, 2]
     total = np.zeros(beams.n_beams)
-    for low, high in zip(bounds.T[:-1], bounds.T[1:], strict=True):
-        for node, weight in zip(_NODES, _WEIGHTS, strict=True):
-            heights = (low + high) / 2 + node * (high - low) / 2
-            total += weight * (high - low) / 2 * _section_areas(beams, heights)
+    for weights, _, outer, inner in beam_sections(beams):
+        diagonal, other = outer.ends - inner.starts, outer.starts - inner.ends
+        quadrilaterals = dot(np.cross(diagonal, other), planes) / 2
+        total += weights * (quadrilaterals + segment_areas(outer) - segment_areas(inner))
     return total
 
 
-def _section_areas(beams: Beams, heights: FloatArray) -> FloatArray:
-    insets = insets_at(beams.levels, beams.insets, heights)
-    corners = cut_corners(beams.annuli, insets[..., None])[0][:, :, :, 0]
-    outer, inner = level_arcs(beams, corners, np.zeros(beams.n_beams))
-    diagonal, other = outer.ends - inner.starts, outer.starts - inner.ends
-    quadrilaterals = dot(np.cross(diagonal, other), beams.annuli.frames[:, 2]) / 2
-    return quadrilaterals + segment_areas(outer) - segment_areas(inner)
+def beam_sections(beams: Beams) -> Iterator[tuple[FloatArray, FloatArray, Arcs, Arcs]]:
+    """Plane sections of beams at Gauss points over the thickness, between the ridges.
+
+    Weights and heights (B,) of each, and its outer and inner arcs as they lie in the plane of
+    the annulus.
+    """
+    half = np.full(beams.n_beams, beams.thickness / 2)
+    ridges = np.sort(beams.levels[:, :, 1], axis=1)
+    bounds = np.column_stack([-half, ridges, half])
+    for low, high in zip(bounds.T[:-1], bounds.T[1:], strict=True):
+        for node, weight in zip(_NODES, _WEIGHTS, strict=True):
+            heights = (low + high) / 2 + node * (high - low) / 2
+            insets = insets_at(beams.levels, beams.insets, heights)
+            corners = cut_corners(beams.annuli, insets[..., None])[0][:, :, :, 0]
+            outer, inner = level_arcs(beams, corners, np.zeros(beams.n_beams))
+            yield weight * (high - low) / 2, heights, outer, inner
 
 
 def node_axis_segments(beams: Beams) -> tuple[tuple[int, ...], FloatArray]:

@@ -32,6 +32,8 @@ STRAY = 0.1
 Number = TypeVar("Number", np.int64, np.float64)
 LEAST_COSINE = 0.5
 SLIVER_GAIN = 1000
+INDEPENDENT_ROUNDS = 8
+SCATTER, SCATTER_RANGE = 2654435761, 2**32
 
 
 def split_long_edges(triangles: Triangles) -> Triangles:
@@ -322,17 +324,34 @@ def _may_flip(triangles: Triangles, edges: Edges, quads: IntArray) -> BoolArray:
 
 
 def _independent(edges: Edges, chosen: IntArray, values: FloatArray, reach: int) -> BoolArray:
-    """Edges of least value among all those with an end at most `reach` edges away."""
-    # What is equal but for rounding is told apart by the index.
-    ranks = _ranks(np.round(values / SAME_LENGTH))
-    least = np.full(len(edges.is_rim_vertex), len(chosen), np.int64)
-    np.minimum.at(least, edges.ends[chosen], ranks[:, None])
+    """Edges, least values first, of which no two have ends at most `reach` edges apart."""
+    # What is equal but for rounding comes in scattered order: in that of the indices, each edge
+    # of a grid would wait for the one before.
+    scattered = np.arange(len(chosen)) * SCATTER % SCATTER_RANGE
+    ranks = np.empty(len(chosen), np.int64)
+    ranks[np.lexsort((scattered, np.round(values / SAME_LENGTH)))] = np.arange(len(chosen))
+    ends, is_open, result = edges.ends[chosen], np.ones(len(chosen), bool), ranks < 0
+    for _ in range(INDEPENDENT_ROUNDS):
+        least = np.full(len(edges.is_rim_vertex), len(chosen), np.int64)
+        np.minimum.at(least, ends[is_open], ranks[is_open, None])
+        first = is_open & (_spread(edges, least, reach)[ends] == ranks[:, None]).all(axis=1)
+        if not first.any():
+            break
+        result |= first
+        distance = np.ones(len(least), np.int64)
+        distance[ends[first]] = 0
+        is_open &= (_spread(edges, distance, reach)[ends] > 0).all(axis=1)
+    return result
+
+
+def _spread(edges: Edges, least: IntArray, reach: int) -> IntArray:
+    """Least of the values (V,) up to so many edges away."""
     for _ in range(reach):
         spread = least.copy()
         np.minimum.at(spread, edges.ends[:, 0], least[edges.ends[:, 1]])
         np.minimum.at(spread, edges.ends[:, 1], least[edges.ends[:, 0]])
         least = spread
-    return (least[edges.ends[chosen]] == ranks[:, None]).all(axis=1)
+    return least
 
 
 def _ranks(values: FloatArray | IntArray) -> IntArray:

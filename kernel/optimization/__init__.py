@@ -25,11 +25,13 @@ pencil_energy       Energies of the angles between neighbours, one unknown per f
 pencil_newton       Newton's method for them: bounds, negative curvature, saddles left.
 target_starts       Where to start when neighbours shall meet at an angle.
 strips              Rows of faces whose spheres join smoothly along the row, and only there.
+pieces              Separate pieces of a mesh, each measured by itself.
 radius_clustering   Few moulds: the radii of a sphere mesh gathered into clusters.
 flat_panels         Panels that bulge less than an eye can tell, as planes.
 line_clusters       Clusters of numbers on a line with the least sum of squares, exactly.
 comparison          Is an optimum better than doing nothing?
 whole_energy        Energy (6): smooth spheres, upright planes between them, nodes with axes.
+costs               What it will take, said beforehand where it is much.
 energies            The terms of energy (6) and their table.
 descent             How their sum falls, and what has to hold.
 """

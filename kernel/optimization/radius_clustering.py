@@ -7,18 +7,21 @@ would decide alone. The side to which a panel curves is no property of the mould
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
+from typing import NamedTuple
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, sum_by
 from ..errors import InputError
-from ..meshes.mesh import Mesh
+from ..meshes.mesh import Mesh, mean_edge_length
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.circles import Circles, circle_pencils, face_circles, pencil_spheres
-from ..tolerances import SAME_CURVATURE
+from ..tolerances import COMMON_VERTEX, SAME_CURVATURE
 from .angle_minimization import pencil_angles
+from .comparison import smoothness
 from .energies.table import EnergyWeights
 from .line_clusters import each_line_clusters, line_clusters
+from .pieces import Piece, join_pieces, mesh_pieces
 from .whole_energy import Conditions, Optimization, move_vertices
 
 RELAXED_CLOSENESS = 0.05
@@ -209,7 +212,7 @@ def relax_moulds(
     sphere_mesh : SphereMesh
         Spheres of the moulds' radii, as `cluster_radii` returns them.
     tolerance : float
-        How far vertices may move, in mean edges.
+        How far vertices may move, in mean edges of their piece.
     regularity, support : float
         Weights of upright planes and of nodes without torsion.
     edge_weights : (E,) float array, optional
@@ -228,14 +231,67 @@ def relax_moulds(
     InputError
         If the tolerance is negative or not finite.
 
+    Notes
+    -----
+    Of a mesh of several pieces each is relaxed by itself, in its own mean edges; a piece whose
+    vertices do not reach their spheres, or whose spheres would meet no more smoothly, stays as
+    it is. What is said of the whole is in its mean edges, of the pieces that moved if any did.
+
     References
     ----------
     Meshes with Spherical Faces, Sec. 4.3.
     """
-    radii = np.maximum(clusters.radii[clusters.labels], _circle_radii(sphere_mesh.mesh))
-    conditions = Conditions(edge_weights=edge_weights, tolerance=tolerance, fixed_radii=radii)
+    mesh = sphere_mesh.mesh
+    radii = np.maximum(clusters.radii[clusters.labels], _circle_radii(mesh))
     weights = EnergyWeights(closeness=RELAXED_CLOSENESS, regularity=regularity, support=support)
-    return move_vertices(sphere_mesh, weights, conditions)
+    smooth = np.ones(len(mesh.topology.edge_corners)) if edge_weights is None else edge_weights
+    pieces = mesh_pieces(mesh)
+    if len(pieces) == 1:
+        conditions = Conditions(edge_weights=smooth, tolerance=tolerance, fixed_radii=radii)
+        return move_vertices(sphere_mesh, weights, conditions)
+    tried: list[_Relaxed] = []
+    for piece in pieces:
+        part, part_weights = piece.spheres(sphere_mesh), piece.edge_values(mesh, smooth)
+        conditions = Conditions(
+            edge_weights=part_weights, tolerance=tolerance, fixed_radii=radii[piece.faces]
+        )
+        found, run = move_vertices(part, weights, conditions)
+        gain = smoothness(part, part_weights).mean - smoothness(found, part_weights).mean
+        tried.append(_Relaxed(piece, found, run, gain))
+    gained = [each for each in tried if each.is_better]
+    kept = gained or tried
+    result = join_pieces(
+        sphere_mesh, [each.piece for each in kept], [each.found for each in kept]
+    )
+    return result, _of_pieces(kept, mesh_edge=mean_edge_length(mesh))
+
+
+class _Relaxed(NamedTuple):
+    """What became of a piece, and by how much its mean angle fell."""
+
+    piece: Piece
+    found: SphereMesh
+    run: Optimization
+    gain: float
+
+    @property
+    def is_better(self) -> bool:
+        return self.run.vertex_miss <= COMMON_VERTEX and self.gain > 0
+
+
+def _of_pieces(pieces: list[_Relaxed], mesh_edge: float) -> Optimization:
+    """One report of several runs; what did not converge comes last."""
+    pieces = sorted(pieces, key=lambda each: not each.run.converged)
+    runs = [each.run for each in pieces]
+    edges = [mean_edge_length(each.piece.mesh) / mesh_edge for each in pieces]
+    return Optimization(
+        tuple(stage for run in runs for stage in run.stages),
+        "common",
+        max(run.vertex_move * edge for run, edge in zip(runs, edges, strict=True)),
+        max(run.vertex_miss * edge for run, edge in zip(runs, edges, strict=True)),
+        all(run.is_held for run in runs),
+        min(run.lowest_eigenvalue for run in runs),
+    )
 
 
 def _circle_radii(mesh: Mesh) -> FloatArray:

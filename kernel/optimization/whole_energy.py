@@ -24,6 +24,7 @@ from ..spheres.rows import recenter, rescale
 from ..tolerances import COMMON_VERTEX, LOWEST_EIGENVALUE
 from .angle_minimization import check_angle_options, minimize_angles, pencil_angles
 from .comparison import Kept, Smoothness, smoother, smoothness
+from .costs import tell_cost
 from .descent.freedom import Boundary, Freedom, Interior, vertex_freedom
 from .descent.multipliers import BOUND_MARGIN, Stage, descend_energy, hold, stage_of
 from .descent.problem import EnergyProblem, energy_problem
@@ -185,6 +186,7 @@ def _asks_for_angles_alone(weights: EnergyWeights, conditions: Conditions) -> bo
 def _optimum(
     sphere_mesh: SphereMesh, weights: EnergyWeights, conditions: Conditions
 ) -> tuple[SphereMesh, Optimization]:
+    tell_cost(sphere_mesh.mesh.n_faces, moves=conditions.tolerance > 0)
     run = _angles_first(_prepared(sphere_mesh, conditions), weights)
     if conditions.tolerance == 0:
         return _finished(_held(run, weights, ()), "soft")

@@ -1,5 +1,6 @@
 """Panels: pieces of spheres cut out by planes, what is known of them, and their moulds.
 
+centroids     Centres of mass of panels.
 checks        What keeps a panel from being made: crossing boundaries, lost corners, caps too
               deep.
 congruent     Identical panels: those that a rigid motion carries onto each other.

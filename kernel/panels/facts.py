@@ -1,11 +1,13 @@
 """What is to be known of every panel: for schedules, drawings, files and audits."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, dot, norm, unit
 from ..spheres.arcs import (
+    Arcs,
     arc_circles,
     arc_lengths,
     arc_points,
@@ -14,12 +16,19 @@ from ..spheres.arcs import (
     patch_areas,
     sphere_arcs,
 )
-from ..spheres.incidence import normals
+from ..spheres.incidence import normals, project
 from ..spheres.minkowski import angle
 from ..spheres.rows import center_radius, offset, recenter
 from .joints import panel_joints
 from .mould_blanks import PanelCaps, panel_caps
-from .panels import Panels, corner_points, opposite_corners, panel_arcs, panel_areas
+from .panels import (
+    Panels,
+    boundaries,
+    corner_points,
+    opposite_corners,
+    panel_arcs,
+    panel_areas,
+)
 
 
 @dataclass(frozen=True)
@@ -156,30 +165,35 @@ def panel_facts(panels: Panels) -> PanelFacts:
     )
 
 
-_LAYERS, _LAYER_WEIGHTS = np.polynomial.legendre.leggauss(16)
+_LAYERS, _LAYER_WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 def panel_volumes(panels: Panels) -> FloatArray:
     """Volumes (P,) between the outer and inner faces, in cubed model units.
 
     The areas of the parallel layers between the two faces, integrated over the thickness with
-    16 Gauss points.
+    4 Gauss points.
     """
     total = np.zeros(panels.n_panels)
-    for node, weight in zip(_LAYERS, _LAYER_WEIGHTS, strict=True):
-        rows = offset(panels.spheres, -panels.thicknesses * (1 + node) / 2)
-        corners, _ = corner_points(
-            rows[panels.corner_panels], panels.plane_normals, panels.plane_offsets,
-            panels.offsets, panels.corners,
-        )  # fmt: skip
-        arcs = sphere_arcs(
-            rows[panels.corner_panels],
-            panels.plane_normals,
-            corners,
-            corners[panels.next_corners],
-        )
+    for weight, rows, arcs in panel_layers(panels):
         total += weight * patch_areas(rows, arcs, panels.corner_panels)
     return total * panels.thicknesses / 2
+
+
+def panel_layers(panels: Panels) -> Iterator[tuple[float, FloatArray, Arcs]]:
+    """Layers between the outer and the inner faces: their Gauss weights, rows and edges.
+
+    The weights add up to 2.
+    """
+    owners = panels.corner_panels
+    for node, weight in zip(_LAYERS.tolist(), _LAYER_WEIGHTS.tolist(), strict=True):
+        rows = offset(panels.spheres, -panels.thicknesses * (1 + node) / 2)
+        corners, _ = corner_points(
+            rows[owners], panels.plane_normals, panels.plane_offsets, panels.offsets,
+            panels.corners,
+        )  # fmt: skip
+        ends = corners[panels.next_corners]
+        yield weight, rows, sphere_arcs(rows[owners], panels.plane_normals, corners, ends)
 
 
 def corner_angles(panels: Panels) -> FloatArray:
@@ -203,23 +217,39 @@ def wall_tilts(panels: Panels) -> FloatArray:
 
 def bounding_sizes(panels: Panels) -> FloatArray:
     """Length, width and rise (P, 3) of the boxes around the outer faces."""
+    arcs = panel_arcs(panels)
+    return _box_sizes(panels, [(panels.spheres, arcs)])
+
+
+def packing_sizes(panels: Panels) -> FloatArray:
+    """Length, width and height (P, 3) of the boxes around whole panels, thickness included.
+
+    Their length is along the chord of the first edge, as in `bounding_sizes`.
+    """
+    return _box_sizes(panels, boundaries(panels))
+
+
+def _box_sizes(panels: Panels, faces: list[tuple[FloatArray, Arcs]]) -> FloatArray:
     first: IntArray = panels.offsets[:-1]
     up = unit(panels.spheres[:, 1:4])
     along = panels.corners[panels.next_corners[first]] - panels.corners[first]
     along = unit(along - dot(along, up)[:, None] * up)
     axes = np.stack([along, np.cross(up, along), up], 1)
     directions = axes[panels.corner_panels]
-    low = -np.maximum.reduceat(_reaches(panels, -directions), first)
-    high = np.maximum.reduceat(_reaches(panels, directions), first)
-    # The crown of the patch, above (or below) the local origin, belongs to the box as well.
-    crown = panels.spheres[:, 4] * 2 / (1 + norm(panels.spheres[:, 1:4]))
-    low[:, 2], high[:, 2] = np.minimum(low[:, 2], crown), np.maximum(high[:, 2], crown)
+    low, high = np.full((2, panels.n_panels, 3), np.inf)
+    high = -high
+    for rows, arcs in faces:
+        low = np.minimum(low, -np.maximum.reduceat(_reaches(panels, arcs, -directions), first))
+        high = np.maximum(high, np.maximum.reduceat(_reaches(panels, arcs, directions), first))
+        # The crown of the patch, above (or below) the local origin, belongs to the box too.
+        crown = dot(project(rows, np.zeros((panels.n_panels, 3))), up)
+        low[:, 2], high[:, 2] = np.minimum(low[:, 2], crown), np.maximum(high[:, 2], crown)
     return high - low
 
 
-def _reaches(panels: Panels, directions: FloatArray) -> FloatArray:
-    """How far outer edges reach in directions (H, 3, 3) of their own."""
-    arcs, planes = panel_arcs(panels), panels.plane_normals
+def _reaches(panels: Panels, arcs: Arcs, directions: FloatArray) -> FloatArray:
+    """How far edges reach in directions (H, 3, 3) of their own."""
+    planes = panels.plane_normals
     reaches: list[FloatArray] = []
     for direction in np.moveaxis(directions, 1, 0):
         across = dot(direction, planes)

@@ -40,10 +40,17 @@ def hexagon_angles(
     Spheres of the same curvature K that touch at a distance d have an angle of
     ``|(K - S) d|``, S the shape operator: the twist of the surface counts as well.
     """
+    return mixed_angles(first, second, np.sqrt(3) * edge, curvature)
+
+
+def mixed_angles(
+    first: FloatArray, second: FloatArray, distance: float, curvature: FloatArray | float
+) -> FloatArray:
+    """Touching spheres of given curvature whose neighbours lie at a distance to all sides."""
     one, other = curvature - first, curvature - second
-    return np.sqrt(3) * edge * _mean_over_directions(
+    return distance * _mean_over_directions(
         lambda turn: np.hypot(one * np.cos(turn), other * np.sin(turn))
-    )  # fmt: skip
+    )
 
 
 def triangle_angles(

@@ -23,7 +23,7 @@ SHARP_TURN = 1.0
 ROUND_GAP = 0.1
 """Ranges of k1 and k2 that lie nearer, in inverse edges, leave K no room between them."""
 
-ROUND_SHARE = 0.25
+ROUND_SHARE = 0.4
 """Difference of k1 and k2, relative to the larger, of a surface that is all but a sphere."""
 
 WORTH = 0.1
@@ -84,18 +84,34 @@ def check_edge(edge: float) -> None:
         )
 
 
-def gain_map(found: SurfaceCurvatures, edge: float, which: GainMap) -> FloatArray:
+def gain_map(
+    found: SurfaceCurvatures, edge: float, which: GainMap, convex: FloatArray | None = None
+) -> FloatArray:
     """Expected angles (V,) in one pattern, in radians.
 
-    Planes and spheres of one radius are those of quads, as spheres of smallest angles are.
+    Planes and spheres of one radius are those of quads, as spheres of smallest angles are. The
+    spheres of hexagons have given curvatures (V,), or the largest radii that there can be.
     """
     first, second = found.first, found.second
     if which == "hexagons":
-        return hexagon_angles(first, second, edge, convex_side(first, second, _side(found)))
+        if convex is None:
+            convex = convex_side(first, second, _side(found))
+        return hexagon_angles(first, second, edge, convex)
     if which == "triangles":
         return triangle_angles(first, second, edge, smoothest(first, second))
     choices = {"spheres": smoothest(first, second), "one-radius": found.best, "planes": 0.0}
     return quad_angles(first, second, edge, choices[which])
+
+
+def gain_maps(
+    found: SurfaceCurvatures,
+    edge: float,
+    which: Literal["hexagons", "triangles"],
+    convex: FloatArray | None = None,
+) -> tuple[FloatArray, FloatArray]:
+    """Expected angles (V,) with planes and with spheres, in radians."""
+    flat = {"hexagons": hexagon_angles, "triangles": triangle_angles}[which]
+    return flat(found.first, found.second, edge, 0.0), gain_map(found, edge, which, convex)
 
 
 def _side(found: SurfaceCurvatures) -> int:
@@ -120,8 +136,13 @@ def turn_p95(found: SurfaceCurvatures, edge: float) -> float:
     return found.quantile(largest, 0.95) * edge
 
 
-def gain_report(found: SurfaceCurvatures, edge: float) -> GainReport:
-    """The report of what spheres gain on a surface, with edges of a length."""
+def gain_report(
+    found: SurfaceCurvatures, edge: float, convex: FloatArray | None = None
+) -> GainReport:
+    """The report of what spheres gain on a surface, with edges of a length.
+
+    The spheres of hexagons may be given by their curvatures (V,).
+    """
     first, second, best = found.first, found.second, found.best
 
     def _mean(angles: FloatArray) -> float:
@@ -134,19 +155,9 @@ def gain_report(found: SurfaceCurvatures, edge: float) -> GainReport:
         "planes": planes, "spheres": spheres, "one_radius": one,
         "gain": _gain(planes, spheres), "one_radius_gain": _gain(planes, one),
     }  # fmt: skip
-    pairs = {
-        "hexagons": (
-            hexagon_angles(first, second, edge, 0.0),
-            gain_map(found, edge, "hexagons"),
-        ),
-        "triangles": (
-            triangle_angles(first, second, edge, 0.0),
-            gain_map(found, edge, "triangles"),
-        ),
-    }
     others: dict[str, Any] = {}
-    for name, (flat, bent) in pairs.items():
-        before, after = _mean(flat), _mean(bent)
+    for name in ("hexagons", "triangles"):
+        before, after = (_mean(each) for each in gain_maps(found, edge, name, convex))
         others[name] = {"planes": before, "spheres": after, "gain": _gain(before, after)}
     largest = np.maximum(np.abs(first), np.abs(second))
     angles = {"quads": spheres, **{name: each["spheres"] for name, each in others.items()}}

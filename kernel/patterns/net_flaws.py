@@ -46,74 +46,55 @@ class Flaw(NamedTuple):
 
 
 @dataclass(frozen=True)
-class NetJudgement:
-    """Measures of a net of spheres, lengths in mean edges, angles in radians.
+class PatternJudgement:
+    """Measures of a pattern of spheres, lengths in mean edges, angles in radians.
 
     Attributes
     ----------
     flaws : tuple of Flaw
         What keeps it from being built; nothing if it is usable.
-    planarity : float
-        Worst over the nodes.
     shortest : float
         Shortest edge.
-    lean_p95, lean_max : float
-        Angles of node axes with the normals.
     cap : float
         Largest half opening of a panel.
     angle, flat_angle : float
         Mean angle between neighbouring spheres, and between the planes of the same faces.
+    convex_share : float
+        Share of the faces that are visually convex.
     rejected_panels, rejected_beams : int
+        Parts that cannot be made; beams are tried where nodes have axes.
+    planarity : float
+        Worst over the nodes, 0 where none are asked for.
+    lean_p95, lean_max : float
+        Angles of node axes with the normals, 0 where none are asked for.
     """
 
     flaws: tuple[Flaw, ...]
-    planarity: float
     shortest: float
-    lean_p95: float
-    lean_max: float
     cap: float
     angle: float
     flat_angle: float
+    convex_share: float
     rejected_panels: int
-    rejected_beams: int
+    rejected_beams: int = 0
+    planarity: float = 0.0
+    lean_p95: float = 0.0
+    lean_max: float = 0.0
 
     @property
     def is_usable(self) -> bool:
-        """Whether the net can be built as it is."""
+        """Whether the pattern can be built as it is."""
         return not self.flaws
+
+    @property
+    def flawed_faces(self) -> list[int]:
+        """Faces with flaws, in rising order."""
+        return sorted({flaw.face for flaw in self.flaws if flaw.face is not None})
 
     @property
     def roughness(self) -> float:
         """Mean angle relative to that of planes."""
         return self.angle / self.flat_angle if self.flat_angle > 0 else 1.0
-
-
-@dataclass(frozen=True)
-class FaceJudgement:
-    """Measures of the faces of a sphere mesh, lengths in mean edges, angles in radians.
-
-    Attributes
-    ----------
-    flaws : tuple of Flaw
-        What keeps faces from being built.
-    shortest : float
-        Shortest edge.
-    convex_share : float
-        Share of the faces that are visually convex.
-    cap : float
-        Largest half opening of a panel.
-    angle, flat_angle : float
-        Mean angle between neighbouring spheres, and between the planes of the same faces.
-    rejected_panels : int
-    """
-
-    flaws: tuple[Flaw, ...]
-    shortest: float
-    convex_share: float
-    cap: float
-    angle: float
-    flat_angle: float
-    rejected_panels: int
 
 
 def judge_faces(
@@ -122,7 +103,7 @@ def judge_faces(
     *,
     convex: bool,
     shortest: float = 0.0,
-) -> FaceJudgement:
+) -> PatternJudgement:
     """Judge faces by their shape, and by panels that are cut on trial.
 
     Parameters
@@ -136,7 +117,7 @@ def judge_faces(
 
     Returns
     -------
-    FaceJudgement
+    PatternJudgement
         What was measured, and the flaws.
     """
     mesh = sphere_mesh.mesh
@@ -151,29 +132,29 @@ def judge_faces(
         *_short(sides, shortest),
         *panel_flaws,
     ]
-    return FaceJudgement(
+    return PatternJudgement(
         tuple(flaws),
         float(sides.min()),
-        float((shapes == CONVEX).mean()),
         cap,
         _mean(intersection_angles(sphere_mesh)),
         _mean(intersection_angles(face_planes(mesh))),
+        float((shapes == CONVEX).mean()),
         n_panels,
     )
 
 
-def judge_net(sphere_mesh: SphereMesh) -> NetJudgement:
+def judge_net(sphere_mesh: SphereMesh) -> PatternJudgement:
     """Judge a net as a workshop would: its nodes, faces, and a trial of panels and beams."""
     mesh = sphere_mesh.mesh
     nodes = measure_nodes(sphere_mesh)
     leans = node_axis_angles(sphere_mesh, nodes)[nodes.is_inner]
     lean_p95, lean_max = _upper(leans)
-    sides = _shortest_sides(mesh)
+    shapes, sides = face_shapes(sphere_mesh), _shortest_sides(mesh)
     panel_flaws, cap, n_panels = _trial_panels(sphere_mesh, "intersection")
     beam_flaws = _trial_beams(sphere_mesh)
     flaws = [
         *_named(_turned_over(mesh), "turned over against its neighbours"),
-        *_named(face_shapes(sphere_mesh) == CROSSING_FACE, "its boundary crosses itself"),
+        *_named(shapes == CROSSING_FACE, "its boundary crosses itself"),
         *_short(sides, SHORT_EDGE),
         *panel_flaws,
         *beam_flaws,
@@ -185,18 +166,18 @@ def judge_net(sphere_mesh: SphereMesh) -> NetJudgement:
         flaws.append(
             Flaw(None, f"node axes lean {np.degrees(lean_p95):.0f} degrees at 5 % of the nodes")
         )
-    flat = intersection_angles(face_planes(mesh))
-    return NetJudgement(
+    return PatternJudgement(
         flaws=tuple(flaws),
-        planarity=planarity,
         shortest=float(sides.min()),
-        lean_p95=lean_p95,
-        lean_max=lean_max,
         cap=cap,
         angle=_mean(intersection_angles(sphere_mesh)),
-        flat_angle=_mean(flat),
+        flat_angle=_mean(intersection_angles(face_planes(mesh))),
+        convex_share=float((shapes == CONVEX).mean()),
         rejected_panels=n_panels,
         rejected_beams=len(beam_flaws),
+        planarity=planarity,
+        lean_p95=lean_p95,
+        lean_max=lean_max,
     )
 
 

@@ -13,6 +13,7 @@ from ..arrays import FloatArray, IntArray, dot, norm, unit
 from ..congruences.curvature_spheres import touching_spheres
 from ..hexagons.delaunay_flips import dual_edge_lengths, flip_to_convex
 from ..hexagons.evolution import Evolution
+from ..hexagons.ortho_energy import axis_deviations
 from ..meshes.curvature import vertex_normals
 from ..meshes.mesh import Mesh, mean_edge_length
 from ..meshes.triangulation import triangulate
@@ -46,7 +47,25 @@ class _Ground(NamedTuple):
     normals: FloatArray
 
 
-def polish(found: Evolution, surface: Mesh) -> tuple[Mesh, FloatArray]:
+class Polished(NamedTuple):
+    """Triangles without short dual edges, and their spheres.
+
+    Attributes
+    ----------
+    mesh : Mesh
+        Triangles, some flipped.
+    spheres : (V, 5) float array
+        The spheres at their vertices.
+    axis_angles : (n,) float array
+        Angles of the node axes of faces with the surface normals, in radians.
+    """
+
+    mesh: Mesh
+    spheres: FloatArray
+    axis_angles: FloatArray
+
+
+def polish(found: Evolution, surface: Mesh) -> Polished:
     """Slide the vertices of a triangulation with grown spheres until hexagons have no slivers.
 
     Parameters
@@ -58,10 +77,8 @@ def polish(found: Evolution, surface: Mesh) -> tuple[Mesh, FloatArray]:
 
     Returns
     -------
-    mesh : Mesh
-        Triangles, some flipped.
-    spheres : (V, 5) float array
-        The spheres at their vertices.
+    Polished
+        Triangles, spheres, and what the slides did to the node axes.
     """
     size, origin = mean_edge_length(found.mesh), found.mesh.vertices.mean(axis=0)
     fine = triangulate(surface)
@@ -84,7 +101,11 @@ def polish(found: Evolution, surface: Mesh) -> tuple[Mesh, FloatArray]:
         sites = _flipped(_slid(sites, moves, ground))
     mesh = Mesh(origin + size * sites.points, sites.triangles[:, :: found.side])
     curvatures = found.side / (size * sites.offsets)
-    return mesh, touching_spheres(mesh.vertices, found.side * sites.normals, curvatures)
+    spheres = touching_spheres(mesh.vertices, found.side * sites.normals, curvatures)
+    angles = axis_deviations(sites.points, sites.normals, sites.triangles, sites.offsets)
+    # Triangles with all corners on the boundary are corners of no face.
+    counts = is_inner[sites.triangles].any(axis=1)
+    return Polished(mesh, spheres, angles[counts])
 
 
 def _upwards(found: Evolution) -> FloatArray:

@@ -8,21 +8,17 @@ import numpy as np
 from ..arrays import FloatArray
 from ..congruences.curvature_spheres import sphere_congruence
 from ..errors import ConvergenceError, InputError
-from ..meshes.isotropic_remeshing import remesh_triangles
 from ..meshes.mesh import Mesh
 from ..remesh import pipeline
-from ..remesh.planar.conditions import node_distances
-from ..remesh.planar.planarize import planarize_held
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..surfaces.surface import Surface
-from ..tolerances import CREASE
 from .expected_angles import quad_angles
-from .gain_report import check_edge, is_round, turn_p95
-from .net_flaws import Flaw, NetJudgement, judge_net
-from .surface_curvatures import SurfaceCurvatures, surface_curvatures
-
-FINENESS = 2.4
-"""Edges of the triangles under a net, as parts of its own edges."""
+from .gain_report import SHARP_TURN, check_edge, is_round, turn_p95
+from .held_nets import FARTHEST_NODE, HeldNet, held_nets
+from .net_flaws import Flaw, PatternJudgement, judge_net
+from .panel_scale import FINENESS, curvatures_on, even_triangles
+from .rim_repair import without_loose_corners
+from .surface_curvatures import SurfaceCurvatures
 
 SMALLEST_RADIUS = 1.5
 """Least radius of the spheres, in edges: panels are caps of 28 degrees at most."""
@@ -33,11 +29,14 @@ NEARLY_FLAT = 3.0
 SHARES: dict[str, float | None] = {"75 %": 0.75, "50 %": 0.5, "flat": None, "best": 1.0}
 """Curvatures to try, as shares of the best one: nets are worst at the best one itself."""
 
-EVENING_ROUNDS = 10
-"""How often the triangles are evened out."""
+STRETCHES = (0.93, 1.08)
+"""Other edges that the best curvature is tried with: singular points come to lie elsewhere."""
 
-FARTHEST_NODE = 0.02
-"""Largest distance of a node from the surface, in mean edges, for a net of that surface."""
+RIBBED = 1
+"""Curvatures that are tried where the surface turns too sharply for its panels."""
+
+EFFORT = 130_000
+"""Linear systems times faces after which nothing more is tried, about 15 s of one core."""
 
 ROUND = (
     "the two principal curvatures are nearly the same over most of the surface, as on a "
@@ -47,6 +46,9 @@ ROUND = (
 """Why a net is not planarised."""
 
 TryStatus = Literal["usable", "flawed", "not planarised", "failed"]
+
+
+_MADE = ("usable", "not planarised")
 
 
 class CurvatureChoice(NamedTuple):
@@ -64,21 +66,27 @@ class NetTry:
     Attributes
     ----------
     choice : CurvatureChoice
+    edge : float
+        Length of the edges asked for, in model units.
     status : {"usable", "flawed", "not planarised", "failed"}
     net : SphereMesh or None
-    judgement : NetJudgement or None
+    judgement : PatternJudgement or None
     distance : float
         Largest distance of a node inside from the surface, in mean edges.
     message : str
         Why there is no net, or none that is planar.
+    effort : int
+        Linear systems times faces that it took.
     """
 
     choice: CurvatureChoice
+    edge: float
     status: TryStatus
     net: SphereMesh | None
-    judgement: NetJudgement | None
+    judgement: PatternJudgement | None
     distance: float
     message: str
+    effort: int = 0
 
 
 @dataclass(frozen=True)
@@ -130,7 +138,7 @@ def expected_planes(found: SurfaceCurvatures, edge: float) -> float:
     return found.mean(quad_angles(found.first, found.second, edge, 0.0))
 
 
-def quad_pattern(source: Mesh | Surface, edge: float) -> QuadPattern:
+def quad_pattern(source: Mesh | Surface, edge: float, *, insists: bool = False) -> QuadPattern:
     """Cover a surface with quads whose spheres have a support structure.
 
     Parameters
@@ -139,6 +147,8 @@ def quad_pattern(source: Mesh | Surface, edge: float) -> QuadPattern:
         A dense mesh of any faces, or a surface with its exact shape.
     edge : float
         Length of the edges, in model units.
+    insists : bool
+        Whether nets are planarised even where a surface is all but a sphere.
 
     Returns
     -------
@@ -156,58 +166,93 @@ def quad_pattern(source: Mesh | Surface, edge: float) -> QuadPattern:
     """
     check_edge(edge)
     mesh = source.mesh if isinstance(source, Surface) else source
-    triangles = remesh_triangles(mesh, edge / FINENESS, EVENING_ROUNDS, CREASE)
-    found = _curvatures(source, triangles)
-    rounded = is_round(found, edge)
+    triangles = even_triangles(mesh, edge / FINENESS)
+    found = curvatures_on(source, triangles)
+    rounded = is_round(found, edge) and not insists
     diagonal = float(np.linalg.norm(np.ptp(triangles.vertices, axis=0)))
+    turn = turn_p95(found, edge)
+    # On ribs sharper than the panels all nets fail alike.
+    choices = curvature_choices(found, edge, diagonal)[: RIBBED if turn > SHARP_TURN else None]
     tries: list[NetTry] = []
-    for choice in curvature_choices(found, edge, diagonal):
+    for choice in choices:
         tries.append(_try(triangles, choice, edge, planar=not rounded))
-        if tries[-1].status in {"usable", "not planarised"}:
+        if _is_enough(tries):
             break
+    for stretch in () if turn > SHARP_TURN else STRETCHES:
+        if _is_enough(tries):
+            break
+        likely = min(tries, key=_badness).choice
+        tries.append(_try(triangles, likely, stretch * edge, planar=True))
     best = min(tries, key=_badness)
     if best.net is None:
         raise InputError(
             f"no quads of edges of {edge:g} can be made on this surface: {best.message}"
         )
-    return QuadPattern(best, tuple(tries), triangles, found, rounded, turn_p95(found, edge))
+    return QuadPattern(best, tuple(tries), triangles, found, rounded, turn)
 
 
-def _curvatures(source: Mesh | Surface, triangles: Mesh) -> SurfaceCurvatures:
-    """Exact curvatures where they are known; else at the scale of the panels."""
-    if isinstance(source, Surface):
-        return surface_curvatures(source)
-    found = surface_curvatures(triangles)
-    inner = np.where(triangles.topology.is_boundary_vertex, 0.0, found.weights)
-    return replace(found, weights=inner / inner.sum()) if inner.sum() > 0 else found
+def _is_enough(tries: list[NetTry]) -> bool:
+    """Whether a net is found, or has cost what it may."""
+    is_found = tries[-1].status in _MADE
+    return is_found or sum(each.effort for each in tries) > EFFORT
 
 
 def _try(triangles: Mesh, choice: CurvatureChoice, edge: float, *, planar: bool) -> NetTry:
     """One net: remeshed, planarised and judged."""
-    spheres = _touching(triangles, choice.curvature)
+    effort = 0
+    nets: list[NetTry] = []
     try:
-        done = pipeline.remesh(triangles, spheres, edge)
-        net, message = done.sphere_mesh, ROUND
-        if planar:
-            net, message = planarize_held(net, done.surface)[0].sphere_mesh, ""
-        judgement = judge_net(net)
-        distances = node_distances(done.surface, net.mesh)
+        done = pipeline.remesh(triangles, _touching(triangles, choice.curvature), edge)
+        start = done.sphere_mesh
+        if not planar:
+            judgement = judge_net(start)
+            return NetTry(choice, edge, "not planarised", start, judgement, 0.0, ROUND)
+        for held in held_nets(start, done.surface):
+            effort += held.iterations * start.mesh.n_faces
+            nets.append(_judged(choice, edge, held, done.n_flipped))
+            if nets[-1].status == "usable" or not _touches_rim(nets[-1]):
+                break
     except (InputError, ConvergenceError) as error:
-        return NetTry(choice, "failed", None, None, np.inf, str(error))
-    if done.n_flipped:
-        text = f"{done.n_flipped} triangles of the map are flipped: faces overlap"
+        nets.append(NetTry(choice, edge, "failed", None, None, np.inf, str(error)))
+    return replace(min(nets, key=_badness), effort=effort)
+
+
+def _judged(choice: CurvatureChoice, edge: float, held: HeldNet, n_flipped: int) -> NetTry:
+    """A net with what keeps it from being built."""
+    net, judgement = _judged_and_trimmed(held.net)
+    if n_flipped:
+        text = f"{n_flipped} triangles of the map are flipped: faces overlap"
         judgement = _with_flaw(judgement, text)
-    distance = float(distances[~net.mesh.topology.is_boundary_vertex].max(initial=0.0))
-    if distance > FARTHEST_NODE:
-        text = f"nodes left the surface by up to {distance:.2g} edges"
+    if held.distance > FARTHEST_NODE:
+        text = f"nodes left the surface by up to {held.distance:.2g} edges"
         judgement = _with_flaw(judgement, text)
     status: TryStatus = "usable" if judgement.is_usable else "flawed"
-    if not planar:
-        status = "not planarised"
-    return NetTry(choice, status, net, judgement, distance, message)
+    return NetTry(choice, edge, status, net, judgement, held.distance, "")
 
 
-def _with_flaw(judgement: NetJudgement, cause: str) -> NetJudgement:
+def _judged_and_trimmed(net: SphereMesh) -> tuple[SphereMesh, PatternJudgement]:
+    """A net and its flaws; its cells at the boundary trimmed if that leaves fewer."""
+    judgement = judge_net(net)
+    faces = judgement.flawed_faces
+    trimmed = without_loose_corners(net, np.array(faces, np.int64)) if faces else net
+    if trimmed is net:
+        return net, judgement
+    after = judge_net(trimmed)
+    return (trimmed, after) if len(after.flaws) < len(judgement.flaws) else (net, judgement)
+
+
+def _touches_rim(found: NetTry) -> bool:
+    """Whether a flaw lies at the boundary, or nowhere in particular."""
+    if found.net is None or found.judgement is None:
+        return False
+    mesh, faces = found.net.mesh, found.judgement.flawed_faces
+    if any(flaw.face is None for flaw in found.judgement.flaws):
+        return True
+    at_rim = mesh.topology.is_boundary_vertex[mesh.corners]
+    return bool(np.logical_or.reduceat(at_rim, mesh.offsets[:-1])[faces].any())
+
+
+def _with_flaw(judgement: PatternJudgement, cause: str) -> PatternJudgement:
     return replace(judgement, flaws=(*judgement.flaws, Flaw(None, cause)))
 
 
@@ -220,4 +265,4 @@ def _badness(found: NetTry) -> tuple[int, int, float]:
     if judgement is None:
         return 2, 0, 0.0
     faces = {flaw.face for flaw in judgement.flaws}
-    return int(found.status != "usable"), len(faces), judgement.roughness
+    return int(found.status not in _MADE), len(faces), judgement.roughness

@@ -106,6 +106,8 @@ class NewtonDescent(Generic[State]):
     lowest : float
         A bound from below on the lowest eigenvalue of H at rest; minus infinity where it was
         not asked for.
+    solve : callable, optional
+        The last factors of H itself, for a descent that goes on from here.
     """
 
     state: State
@@ -113,6 +115,7 @@ class NewtonDescent(Generic[State]):
     history: FloatArray
     iterations: int
     lowest: float
+    solve: Solver | None
 
 
 class _Taken(NamedTuple, Generic[State]):
@@ -134,17 +137,25 @@ class _Step(NamedTuple):
     @property
     def is_least(self) -> bool:
         """Whether its factors prove that H itself is positive definite here."""
-        return self.is_exact and self.shift <= LEAST_SHIFT and not self.is_chord
+        return self.serves_again and not self.is_chord
+
+    @property
+    def serves_again(self) -> bool:
+        """Whether its factors are those of H itself, here or nearby."""
+        return self.is_exact and self.shift <= LEAST_SHIFT
 
     def chord(self, taken: _Taken[State], gradient: FloatArray) -> "_Step | None":
         """A step by the factors of this one, where they serve as well as new ones would."""
-        if not (self.is_exact and self.shift <= LEAST_SHIFT and taken.part == 1):
+        if not (self.serves_again and taken.part == 1):
             return None
-        step = self.solve(-gradient)
-        decrement = -float(dot(gradient, step))
-        if not 0 <= decrement <= CHORD * self.decrement:
-            return None
-        return self._replace(step=step, decrement=decrement, is_chord=True)
+        found = _chord(self.solve, gradient)
+        return found if 0 <= found.decrement <= CHORD * self.decrement else None
+
+
+def _chord(solve: Solver, gradient: FloatArray) -> _Step:
+    step = solve(-gradient)
+    decrement = -float(dot(gradient, step))
+    return _Step(LEAST_SHIFT, solve, step, decrement, is_exact=True, is_chord=True)
 
 
 class _Trust(NamedTuple):
@@ -198,6 +209,7 @@ def newton(
     *,
     is_exact: bool = True,
     leaves_saddles: bool = True,
+    last: Solver | None = None,
 ) -> NewtonDescent[State]:
     """Minimise an energy.
 
@@ -211,17 +223,22 @@ def newton(
         Whether the Hessian is used, or its convex part alone.
     leaves_saddles : bool
         Whether the lowest eigenvalue at rest is checked.
+    last : callable, optional
+        Factors of a descent that came to rest nearby, of an energy much the same. They serve as
+        long as their steps do.
 
     References
     ----------
     Nocedal, Wright 2006, Numerical Optimization, Secs. 3.4 and 3.5.
     """
     state, history = start, [problem.energies(start)]
-    trust = _Trust()
-    model, found, escapes, lowest, is_refused = None, None, 0, -np.inf, False
+    trust, model = _Trust(), problem.model(start)
+    found = None if last is None else _chord(last, model.gradient)
+    escapes, lowest, is_refused = 0, -np.inf, False
+    status: Status = "exhausted"
+    iteration = 0
     for iteration in range(1, max_iterations + 1):
         tell_progress(iteration - 1, max_iterations)
-        model = problem.model(state) if model is None else model
         energy = float(history[-1].sum())
         rest = tolerance * energy + LEAST_DECREMENT
         if found is None:
@@ -231,12 +248,15 @@ def newton(
         if found.decrement <= rest and is_exact and not (is_refused or knows_enough):
             # A shift makes steps short, and a convex model knows no saddle.
             found = _exact_step(model, LEAST_SHIFT, LARGEST_SHIFT) or found
+        last = found.solve if found.serves_again else last
         taken = _search(problem, state, found, energy) if found.decrement > rest else None
-        is_refused = taken is None and found.decrement > rest
-        if is_refused and found.decrement > _rounding(energy):
+        is_refused = taken is None and found.decrement > rest and not found.is_chord
+        if taken is None and found.decrement > max(rest, _rounding(energy)):
             if found.shift > LARGEST_SHIFT:
-                return NewtonDescent(state, "stalled", np.array(history), iteration, lowest)
-            trust, found = trust.renewed(found), None
+                status = "stalled"
+                break
+            trust = trust if found.is_chord else trust.renewed(found)
+            found = None
             continue
         if taken is None and leaves_saddles:
             if not found.is_exact:
@@ -245,13 +265,13 @@ def newton(
             if lowest < -LOWEST_EIGENVALUE and escapes < MOST_ESCAPES and vector.any():
                 taken, escapes = _escape(problem, state, vector, energy), escapes + 1
         if taken is None:
-            state = _last(problem, state, found, energy)
-            return NewtonDescent(state, "converged", np.array(history), iteration, lowest)
+            state, status = _last(problem, state, found, energy), "converged"
+            break
         state, model = taken.state, problem.model(taken.state)
         history.append(taken.terms)
         trust = trust.adapted(found, taken.part, taken.agreement)
         found = found.chord(taken, model.gradient)
-    return NewtonDescent(state, "exhausted", np.array(history), max_iterations, lowest)
+    return NewtonDescent(state, status, np.array(history), iteration, lowest, last)
 
 
 def _rounding(energy: float) -> float:

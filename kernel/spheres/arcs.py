@@ -184,6 +184,53 @@ def patch_areas(rows: FloatArray, arcs: Arcs, arc_rows: IntArray) -> FloatArray:
     return sum_by(arc_rows, integrand @ _WEIGHTS, len(rows))
 
 
+_NEARLY_FLAT = 0.1
+"""Sine of an angle below which a series has all digits, where the closed form cancels."""
+
+
+def patch_moments(rows: FloatArray, arcs: Arcs, arc_rows: IntArray) -> FloatArray:
+    """First moments (P, 3) of pieces of spheres about the origin: the integrals of position.
+
+    Rows, arcs and the row of each are those of `patch_areas`.
+
+    Notes
+    -----
+    In polar coordinates about the point o of `patch_areas`, with r from there to the boundary,
+    r' its part across the axis n, and θ measured from N(o): the closed integral of
+    ``(r' g + n (r·n) / (2 + 2 cos θ)) (x dy - y dx)``, where
+    ``g = (θ - sin θ cos θ) / (2 sin³ θ)``, which is 1/3 on planes.
+    """
+    origin = project(rows, np.zeros((len(rows), 3)))
+    axis = normals(rows, origin)[arc_rows][:, None]
+    relative = arc_points(arcs, _NODES) - origin[arc_rows][:, None]
+    turn = dot(np.cross(relative, _arc_derivatives(arcs, _NODES)), axis)
+    height = dot(relative, axis)
+    across = relative - height[..., None] * axis
+    curvature = 2 * rows[arc_rows, :1]
+    cosine, sine = 1 - curvature * height, np.abs(curvature) * norm(across)
+    small = sine < _NEARLY_FLAT
+    square = sine**2
+    series = 1 / 3 + square * (1 / 10 + square * (3 / 56 + square * (5 / 144 + square / 40)))
+    safe = np.where(small, 1.0, sine)
+    closed = (np.arctan2(safe, cosine) - safe * cosine) / (2 * safe**3)
+    share = np.where(small & (cosine > 0), series, closed)
+    moment = across * share[..., None] + axis * (height / (2 + 2 * cosine))[..., None]
+    moments = sum_by(arc_rows, np.einsum("hni,hn,n->hi", moment, turn, _WEIGHTS), len(rows))
+    return moments + patch_areas(rows, arcs, arc_rows)[:, None] * origin
+
+
+def segment_moments(arcs: Arcs) -> FloatArray:
+    """Moments (H,) of the areas between arcs and their chords, about the chords, along rises.
+
+    Positive to either side: area and distance change their signs together.
+    """
+    square = _bulges(arcs)[:, None] ** 2
+    denominator = 1 + square * _NODES**2
+    heights = arcs.sagittas[:, None] * (1 - _NODES**2) / denominator
+    speeds = (1 + square) * (1 - square * _NODES**2) / denominator**2
+    return norm(arcs.ends - arcs.starts) / 2 * ((heights**2 / 2 * speeds) @ _WEIGHTS)
+
+
 def arc_tangents(arcs: Arcs) -> tuple[FloatArray, FloatArray]:
     """Directions in which arcs leave their starts and reach their ends.
 

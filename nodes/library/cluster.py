@@ -59,7 +59,7 @@ class Clusters(NamedTuple):
     report: MouldsReport
 
 
-@node(version="3")
+@node(version="4")
 def cluster_radii(  # noqa: PLR0913, PLR0917 - a node has an input per choice
     sphere_mesh: SphereMesh,
     k: Annotated[int, Port(min=1)],
@@ -82,7 +82,8 @@ def cluster_radii(  # noqa: PLR0913, PLR0917 - a node has an input per choice
         Whether vertices may move within the tolerance, so that the panels of given radii meet
         more smoothly.
     tolerance : float
-        How far vertices may move, in mean edges; at 0 all stay.
+        How far vertices may move, in mean edges; at 0 all stay. Pieces that share no vertex
+        are relaxed one by one, each in its own mean edges.
     regularity, support : float
         Weights that keep planes upright and nodes free of torsion while vertices move, as in
         `optimize_spheres`.

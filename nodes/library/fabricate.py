@@ -5,10 +5,8 @@ from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
-from ...fabrication.drawings import beams as dxf
-from ...fabrication.drawings import moulds as mould_drawings
 from ...fabrication.model import Model, Written
-from ...fabrication.rhino import writer as rhino
+from ...fabrication.rhino_models import writer as rhino
 from ...fabrication.schedules import writer as schedule
 from ...fabrication.step import writer as step
 from ...kernel.beams.beams import Beams
@@ -170,7 +168,7 @@ def write_step(
     True
     """
     options = step.StepOptions(step_units, schema, copies=copies)
-    return _tell(step.write_step(Model(panels, beams, units), path, options))
+    return told_path(step.write_step(Model(panels, beams, units), path, options))
 
 
 @node
@@ -225,49 +223,7 @@ def write_3dm(
     mesh = reference.mesh if isinstance(reference, SphereMesh) else reference
     graph = running_graph()
     options = rhino.RhinoOptions(shape, layers, mesh, version=version, graph_json=graph)
-    return _tell(rhino.write_3dm(Model(panels, beams, units), path, options))
-
-
-@node
-def write_dxf(
-    beams: Beams,
-    path: WritePath,
-    units: Units = "m",
-    sheet: tuple[float, float] = (3000.0, 1500.0),
-    spacing: Length = 10.0,
-) -> str:
-    """Write cutting drawings of beams: exact contours, nested on sheets, in millimetres.
-
-    Parameters
-    ----------
-    beams : Beams
-    path : path
-        Ends in .dxf.
-    units : str
-    sheet : (float, float)
-        Width and height of the sheets, in millimetres.
-    spacing : float
-        Distance between pieces and from the rim, in millimetres.
-
-    Returns
-    -------
-    str
-        The path. Layers: CUT, ENGRAVE (ids, nodes, bevels of the ends in degrees), DRILL
-        (drilling marks) and SHEET.
-
-    Examples
-    --------
-    >>> from tempfile import TemporaryDirectory
-    >>> from spheremesh.nodes import annulus_support, beams, ellipsoid_mesh, model_change
-    >>> from spheremesh.nodes import write_dxf
-    >>> sphere_mesh = model_change(ellipsoid_mesh(12, 6), radius=4.0)
-    >>> made = beams(annulus_support(sphere_mesh, depth=0.1).annuli, thickness=0.02)
-    >>> with TemporaryDirectory() as folder:
-    ...     write_dxf(made.beams, f"{folder}/beams.dxf").endswith("beams.dxf")
-    True
-    """
-    options = dxf.SheetOptions(sheet, spacing)
-    return _tell(dxf.write_dxf(Model(beams=beams, units=units), path, options))
+    return told_path(rhino.write_3dm(Model(panels, beams, units), path, options))
 
 
 @node
@@ -305,39 +261,22 @@ def write_schedule(
     ...     len(Path(path).read_text("utf-8").splitlines())
     73
     """
-    return _tell(schedule.write_schedule(Model(panels, beams, units), path))
+    return told_path(schedule.write_schedule(Model(panels, beams, units), path))
 
 
-@node
-def write_mould_drawings(panels: Panels, path: WritePath, units: Units = "m") -> str:
-    """Draw every panel in the blank of its mould, with radius, sizes and ids, in millimetres.
+def told_path(written: Written) -> str:
+    """Warn of what differs from what was asked for.
 
     Parameters
     ----------
-    panels : Panels
-    path : path
-        Ends in .dxf or .svg.
-    units : str
+    written : Written
+        What a writer says.
 
     Returns
     -------
     str
         The path.
-
-    Examples
-    --------
-    >>> from tempfile import TemporaryDirectory
-    >>> from spheremesh.nodes import fit_spheres, panels, vase_mesh, write_mould_drawings
-    >>> made = panels(fit_spheres(vase_mesh(12, 6)))
-    >>> with TemporaryDirectory() as folder:
-    ...     write_mould_drawings(made.panels, f"{folder}/panels.svg").endswith("panels.svg")
-    True
     """
-    return _tell(mould_drawings.write_mould_drawings(Model(panels, units=units), path))
-
-
-def _tell(written: Written) -> str:
-    """Warn of what differs from what was asked for; the path."""
     name, rejected = written.path.name, written.rejected
     if rejected:
         shown = "; ".join(f"{part.id}: {part.reason}" for part in rejected[:8])

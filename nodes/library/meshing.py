@@ -99,7 +99,7 @@ def subdivide(
     return mesh
 
 
-@node
+@node(version=2)
 def remesh_triangles(
     mesh: Mesh,
     edge_length: Annotated[float, Port(min=0)],

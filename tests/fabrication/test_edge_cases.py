@@ -17,7 +17,7 @@ from spheremesh.fabrication.audit.subjects import USUAL_LIMITS, AuditLimits
 from spheremesh.fabrication.drawings.beams import write_dxf
 from spheremesh.fabrication.drawings.moulds import write_mould_drawings
 from spheremesh.fabrication.model import Model, Written
-from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
+from spheremesh.fabrication.rhino_models.writer import RhinoOptions, write_3dm
 from spheremesh.fabrication.schedules.panels import panel_tables
 from spheremesh.fabrication.schedules.writer import write_schedule
 from spheremesh.fabrication.solids.opencascade_panels import panel_shapes
@@ -204,7 +204,7 @@ def test_names_of_beams_in_any_script(tmp_path: Path) -> None:
     path = write_3dm(Model(beams=beams), tmp_path / "b.3dm").path
     model: Any = rhino3dm.File3dm.Read(str(path))
     found = [
-        each.Attributes for each in model.Objects if type(each.Geometry).__name__ == "Extrusion"
+        each.Attributes for each in model.Objects if type(each.Geometry).__name__ == "Brep"
     ]
     assert [each.Name for each in found] == list(names)
     assert [each.GetUserString("id") for each in found] == list(names)

@@ -14,7 +14,7 @@ from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication.drawings.beams import write_dxf
 from spheremesh.fabrication.drawings.moulds import write_mould_drawings
 from spheremesh.fabrication.model import Model
-from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
+from spheremesh.fabrication.rhino_models.writer import RhinoOptions, write_3dm
 from spheremesh.fabrication.schedules.panels import panel_tables
 from spheremesh.fabrication.step.writer import write_step
 from spheremesh.fabrication.units import millimeters_per
@@ -123,8 +123,6 @@ def rhino(job: Job, folder: Path) -> FloatArray:
     found: list[float] = []
     for item in model.Objects:
         geometry = item.Geometry
-        if isinstance(geometry, rhino3dm.Extrusion):
-            geometry = geometry.ToBrep(False)  # noqa: FBT003
         if isinstance(geometry, rhino3dm.Brep):
             found += [x for v in geometry.Vertices for x in coordinates(v.Location)]
         elif isinstance(geometry, rhino3dm.ArcCurve):

@@ -16,6 +16,7 @@
 
 freedom      Which way the unknowns may move.
 problem      The energy: its terms, what has to hold, what has limits.
+axes         Node axes follow the spheres.
 derivatives  Its first and second derivatives in the directions of moves.
 multipliers  Descents, and the rounds in which what has to hold comes to hold.
 """

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import FloatArray, dot
+from ...solvers.factorization import Solver
 from ...solvers.levenberg_marquardt import Status
 from ...solvers.newton import NewtonDescent, Problem, newton
 from ...tolerances import (
@@ -18,6 +19,7 @@ from ...tolerances import (
     SAME_OBJECTIVE,
 )
 from ..energies.setting import Group, Unknowns
+from .axes import with_best_axes
 from .derivatives import energy_model
 from .freedom import largest_part, moved, tangents
 from .problem import EnergyProblem, energies_of_terms, hard_misses, names
@@ -85,8 +87,12 @@ def descend_energy(
     *,
     is_exact: bool = True,
     leaves_saddles: bool = False,
+    last: Solver | None = None,
 ) -> NewtonDescent[Unknowns]:
-    """Minimise the energy under its multipliers; the history has a column per term."""
+    """Minimise the energy under its multipliers; the history has a column per term.
+
+    Factors of a descent nearby serve as long as they do.
+    """
     layout, freedom = problem.layout, problem.freedom
 
     def _steps(unknowns: Unknowns, step: FloatArray) -> tuple[FloatArray, ...]:
@@ -100,7 +106,8 @@ def descend_energy(
 
     def _move(unknowns: Unknowns, step: FloatArray) -> Unknowns:
         spheres, displacements, normals = _steps(unknowns, step)
-        return moved(freedom, unknowns, (spheres, displacements, normals))
+        free = moved(freedom, unknowns, (spheres, displacements, normals))
+        return with_best_axes(problem, free)
 
     def _reach(unknowns: Unknowns, step: FloatArray) -> float:
         steps = _steps(unknowns, step)[Group.VERTEX]
@@ -123,6 +130,7 @@ def descend_energy(
         tolerance,
         is_exact=is_exact,
         leaves_saddles=leaves_saddles,
+        last=last,
     )
 
 
@@ -160,16 +168,16 @@ def hold(
     stages: list[Stage] = []
     unknowns, objective = start, np.inf
     left = {name: _Left() for name in problem.hard}
-    number, is_settled = 0, False
+    number, is_settled, last = 0, False, None
     while True:
         is_last = number >= len(bound_weights) - 1
         weight = bound_weights[min(number, len(bound_weights) - 1)]
         problem = replace(problem, bound_weight=weight)
         tolerance = max(AT_REST, FIRST_ROUND * STRICTER**number)
-        # Saddles are left where the last weight comes in, and looked for once more at the end.
-        looks = is_settled or number == len(bound_weights) - 1
+        # Saddles of multipliers that are still rough are none of the problem.
+        looks = is_settled or (is_last and not problem.hard)
         descent = descend_energy(
-            problem, unknowns, max_iterations, tolerance, leaves_saddles=looks
+            problem, unknowns, max_iterations, tolerance, leaves_saddles=looks, last=last
         )
         unknowns, minimised = descent.state, problem
         stages.append(stage_of(problem, f"round {number + 1}", descent))
@@ -193,7 +201,9 @@ def hold(
         number += 1
         if is_stuck or number == MULTIPLIER_ROUNDS:
             break
-        problem = _harder(problem, {name for name, each in left.items() if each.slow})
+        slow = {name for name, each in left.items() if each.slow}
+        problem = _harder(problem, slow)
+        last = descent.solve if is_last and not slow else None
     # Where conditions depend on each other, multipliers grow on and on, and what is missing
     # falls slowly: less than what vertices may miss is as good as nothing.
     is_held = all(each.miss <= COMMON_VERTEX for each in left.values())

@@ -35,25 +35,16 @@ ALWAYS_PLANAR = 3
 
 
 class Misses(NamedTuple):
-    """How far nodes are from where they shall be.
+    """How far nodes are from where they shall be, and axes from how they shall stand.
 
     Attributes
     ----------
-    lengths, slopes : (V, k) and (V, k, 3) float arrays
-        Distances, in mean edges, and their gradients.
+    lengths, slopes : (V, k) and (V, k, 7) float arrays
+        Distances, in mean edges, and their gradients by the unknowns of the node.
     """
 
     lengths: FloatArray
     slopes: FloatArray
-
-
-Site: TypeAlias = Callable[[FloatArray], Misses]
-"""From shifts (V, 3) of the nodes, in mean edges, to what they miss."""
-
-
-def anywhere(shifts: FloatArray) -> Misses:
-    """Let nodes be where they like: a `Site` without misses, (V, 0)."""
-    return Misses(np.zeros((len(shifts), 0)), np.zeros((len(shifts), 0, 3)))
 
 
 @dataclass(frozen=True)
@@ -73,6 +64,15 @@ class NetState:
     rows: FloatArray
     shifts: FloatArray
     normals: FloatArray
+
+
+Site: TypeAlias = Callable[[NetState], Misses]
+"""From a net to what its nodes miss."""
+
+
+def anywhere(net: NetState) -> Misses:
+    """Let nodes be where they like: a `Site` without misses, (V, 0)."""
+    return Misses(np.zeros((len(net.shifts), 0)), np.zeros((len(net.shifts), 0, NODE)))
 
 
 @dataclass(frozen=True)
@@ -181,7 +181,7 @@ def planar_residuals(system: PlanarSystem, net: NetState) -> Residuals:
         np.stack([evaluate(rows, points), tilt], axis=1),
         minkowski(net.rows, net.rows) - 1,
         (dot(net.normals, net.normals) - 1) * system.is_planar,
-        system.site(net.shifts).lengths,
+        system.site(net).lengths,
     )
 
 
@@ -239,13 +239,15 @@ def split_step(step: FloatArray, n_faces: int) -> tuple[FloatArray, FloatArray, 
     return step[: FACE * n_faces].reshape(-1, FACE), nodes[:, :POINT], nodes[:, POINT:]
 
 
-def on_surface(surface: SmoothSurface, mesh: Mesh, weights: FloatArray) -> Site:
+def on_surface(
+    surface: SmoothSurface, mesh: Mesh, weights: FloatArray, slack: float = 0.0
+) -> Site:
     """Keep nodes on a smooth surface, and those of the boundary on its boundary.
 
     The mesh is the net at the start, in model coordinates, its boundary on that of the surface;
-    the weights (V,) say how much the height of each node counts, 0 where it does not. For nodes
-    of the boundary the height is the distance from its tangent at the start, for those at a
-    corner that from the corner.
+    the weights (V,) say how much the height of each node counts, 0 where it does not; heights
+    of at most the slack, in mean edges, miss nothing. Nodes of the boundary miss as well the
+    distance from its tangent at the start, those at a corner that from the corner.
     """
     size = mean_edge_length(mesh)
     unit_length = surface.mesh.size
@@ -253,12 +255,49 @@ def on_surface(surface: SmoothSurface, mesh: Mesh, weights: FloatArray) -> Site:
     _, upward = surface_heights(surface, points)
     held = _held_directions(mesh, upward)
 
-    def _misses(shifts: FloatArray) -> Misses:
-        heights, gradients = surface_heights(surface, points + step * shifts)
-        heights, gradients = heights * weights, gradients * weights[:, None]
-        across = np.einsum("vki,vi->vk", held, shifts)
-        lengths = np.concatenate([heights[:, None] / step, across], axis=1)
-        return Misses(lengths, np.concatenate([gradients[:, None], held], axis=1))
+    def _misses(net: NetState) -> Misses:
+        heights, gradients = surface_heights(surface, points + step * net.shifts)
+        heights = heights / step
+        beyond = np.maximum(np.abs(heights) - slack, 0.0)
+        gradients = gradients * (weights * ((beyond > 0) | (slack == 0)))[:, None]
+        heights = np.copysign(beyond, heights) * weights
+        across = np.einsum("vki,vi->vk", held, net.shifts)
+        lengths = np.concatenate([heights[:, None], across], axis=1)
+        slopes = np.zeros((*lengths.shape, NODE))
+        slopes[..., :POINT] = np.concatenate([gradients[:, None], held], axis=1)
+        return Misses(lengths, slopes)
+
+    return _misses
+
+
+def upright(site: Site, normals_there: FloatArray, largest: float) -> Site:
+    """A site whose node axes also lean by no more than an angle, in radians.
+
+    The normals (V, 3) are those of the surface at the nodes.
+
+    Notes
+    -----
+    Where neighbouring spheres are all but one, the plane of their circle, and with it the axes
+    of its nodes, may turn to any side at no cost. What leans less than allowed misses nothing.
+    """
+    slope = np.tan(largest)
+
+    def _misses(net: NetState) -> Misses:
+        there = site(net)
+        axes = net.normals[:, 1:]
+        rise = dot(axes, normals_there)
+        across = axes - rise[:, None] * normals_there
+        reach = norm(across)
+        excess = np.maximum(reach - slope * np.abs(rise), 0.0)
+        outward = across / np.where(reach > 0, reach, 1.0)[:, None]
+        slopes = np.zeros((len(axes), 1, NODE))
+        slopes[:, 0, POINT + 1 :] = (
+            outward - slope * np.sign(rise)[:, None] * normals_there
+        ) * (excess > 0)[:, None]
+        return Misses(
+            np.concatenate([there.lengths, excess[:, None]], axis=1),
+            np.concatenate([there.slopes, slopes], axis=1),
+        )
 
     return _misses
 

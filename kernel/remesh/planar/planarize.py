@@ -15,6 +15,7 @@ import numpy as np
 
 from ...arrays import FloatArray, dot, norm, sum_by
 from ...errors import InputError
+from ...meshes.curvature import vertex_normals
 from ...meshes.mesh import Mesh, face_vector_areas, mean_edge_length, shortest_edge
 from ...solvers.levenberg_marquardt import Descent, Status, levenberg_marquardt
 from ...sphere_meshes.sphere_mesh import SphereMesh
@@ -25,11 +26,13 @@ from .conditions import (
     NetState,
     PlanarSystem,
     Site,
+    anywhere,
     energies,
     move,
     node_distances,
     on_surface,
     planar_system,
+    upright,
 )
 from .steps import StepNorm, linearize, step_norm
 
@@ -81,6 +84,9 @@ def planarize(
     surface: SmoothSurface | None = None,
     rim_weight: float = 1.0,
     exact: float = NODE_EXACT,
+    lean: float | None = None,
+    approach: float = APPROACH,
+    slack: float = 0.0,
 ) -> Planarization:
     """Make the nodes of a sphere mesh planar in P⁴, and put them on their spheres.
 
@@ -99,6 +105,12 @@ def planarize(
         How much heights of the boundary count in the first steps, relative to those inside.
     exact : float
         Residuals of a node, in mean edges and radians, that count as zero.
+    lean : float, optional
+        Angle with the normals beyond which node axes are turned back in the first steps.
+    approach : float
+        The first steps end when one does not lower what is missed by this share.
+    slack : float
+        Distance from the surface, in mean edges, that counts as none.
 
     Returns
     -------
@@ -134,8 +146,8 @@ def planarize(
     system = replace(planar_system(sphere_mesh), exact=exact)
     size = step_norm(system, fairness)
     start, first = system.start, 0
-    for site, steps in [] if surface is None else _approach(system.mesh, surface, rim_weight):
-        descent = _descend(replace(system, site=site), start, size, steps, APPROACH)
+    for site, steps in _approach(system.mesh, surface, rim_weight, lean, slack):
+        descent = _descend(replace(system, site=site), start, size, steps, approach)
         start, first = descent.state, first + descent.iterations
     descent = _descend(system, start, size, STEPS - first, 0.0)
     result = _assembled(system, descent.state)
@@ -143,14 +155,27 @@ def planarize(
     return Planarization(result, shifts, descent.status, first + descent.iterations)
 
 
-def _approach(mesh: Mesh, surface: SmoothSurface, rim_weight: float) -> list[tuple[Site, int]]:
+def _approach(
+    mesh: Mesh,
+    surface: SmoothSurface | None,
+    rim_weight: float,
+    lean: float | None,
+    slack: float,
+) -> list[tuple[Site, int]]:
     """Where nodes shall be at first, and in how many steps: with the boundary, then without."""
+    if surface is None:
+        return [] if lean is None else [(_leaning_less(anywhere, mesh, lean), STEPS // 2)]
     is_rim = mesh.topology.is_boundary_vertex
     meets_rim = is_rim & (np.bincount(mesh.corners, minlength=mesh.n_vertices) > 1)
-    return [
-        (on_surface(surface, mesh, np.where(meets_rim, rim_weight, 1.0)), RIM_STEPS),
-        (on_surface(surface, mesh, np.where(meets_rim, 0.0, 1.0)), STEPS // 2),
+    sites = [
+        (on_surface(surface, mesh, np.where(meets_rim, weight, 1.0), slack), steps)
+        for weight, steps in ((rim_weight, RIM_STEPS), (0.0, STEPS // 2))
     ]
+    return [(_leaning_less(site, mesh, lean), steps) for site, steps in sites]
+
+
+def _leaning_less(site: Site, mesh: Mesh, lean: float | None) -> Site:
+    return site if lean is None else upright(site, vertex_normals(mesh), lean)
 
 
 def _descend(

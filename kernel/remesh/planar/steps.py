@@ -136,7 +136,7 @@ def linearize(
 
     mesh = system.mesh
     jacobian, miss = corner_jacobian(system, net), planar_residuals(system, net)
-    held = system.site(net.shifts).slopes
+    held = system.site(net).slopes
     factors = list(_factored_nodes(system, net, jacobian, held))
     mixed = jacobian.by_face.transpose(0, 2, 1) @ jacobian.by_node
     shape = (FACE * mesh.n_faces, NODE * mesh.n_vertices)
@@ -182,7 +182,7 @@ def _slopes(
     faces += 2 * miss.rows[:, None] * _dual(net.rows)
     nodes = sum_by(mesh.corners, by_node, mesh.n_vertices)
     nodes[:, POINT:] += 2 * miss.normals[:, None] * net.normals
-    nodes[:, :POINT] += np.einsum("vki,vk->vi", held, miss.sites)
+    nodes += np.einsum("vki,vk->vi", held, miss.sites)
     return faces.ravel(), nodes.ravel()
 
 
@@ -205,7 +205,7 @@ def _advanced(
         miss.corners + corners,
         miss.rows + 2 * minkowski(net.rows, rows),
         miss.normals + 2 * dot(net.normals, common),
-        miss.sites + np.einsum("vki,vi->vk", held, shifts),
+        miss.sites + np.einsum("vki,vi->vk", held, np.concatenate([shifts, common], axis=1)),
     )
 
 
@@ -240,7 +240,7 @@ def _factored_nodes(
         rows = np.zeros((len(nodes), n_rows, NODE))
         rows[:, :n_corner_rows] = jacobian.by_node[corners].reshape(-1, n_corner_rows, NODE)
         rows[:, n_corner_rows, POINT:] = 2 * net.normals[nodes]
-        rows[:, n_corner_rows + 1 : n_corner_rows + 1 + n_sites, :POINT] = held[nodes]
+        rows[:, n_corner_rows + 1 : n_corner_rows + 1 + n_sites] = held[nodes]
         left, values, right = np.linalg.svd(rows, full_matrices=False)
         yield _NodeFactors(nodes, corners, left[:, :n_corner_rows], values, right)
 

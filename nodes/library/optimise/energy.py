@@ -72,7 +72,7 @@ class EnergyOptimum(NamedTuple):
     report: EnergyReport
 
 
-@node(version="3")
+@node(version="4")
 def optimize_spheres(  # noqa: PLR0913, PLR0917 - a node has an input per weight
     sphere_mesh: SphereMesh,
     sphericity: Weight = 1.0,

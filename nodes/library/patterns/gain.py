@@ -7,11 +7,11 @@ import numpy as np
 from ....kernel.meshes.mesh import Mesh
 from ....kernel.patterns import gain_report as gains
 from ....kernel.patterns.gain_report import GainMap, GainReport
-from ....kernel.patterns.surface_curvatures import surface_curvatures
+from ....kernel.patterns.panel_scale import at_panel_scale, spread_to
 from ....kernel.surfaces.surface import Surface
 from ...graphs.node import node
 from ..arrays import VertexAngles
-from .reports import EdgeLength
+from .reports import EdgeLength, mesh_of
 
 
 class SphereGain(NamedTuple):
@@ -21,7 +21,7 @@ class SphereGain(NamedTuple):
     angles: VertexAngles
 
 
-@node
+@node(version=2)
 def sphere_gain(
     mesh: Mesh | Surface, edge_length: EdgeLength, pattern: GainMap = "spheres"
 ) -> SphereGain:
@@ -53,7 +53,9 @@ def sphere_gain(
     (0.18, (4608,))
     """
     gains.check_edge(edge_length)
-    found = surface_curvatures(mesh)
-    report = gains.gain_report(found, edge_length)
-    angles = np.degrees(gains.gain_map(found, edge_length, pattern))
-    return SphereGain(report, angles)
+    scale = at_panel_scale(mesh, edge_length)
+    found, convex = scale.curvatures, scale.convex
+    report = gains.gain_report(found, edge_length, convex)
+    angles = np.degrees(gains.gain_map(found, edge_length, pattern, convex))
+    places = mesh_of(mesh).vertices
+    return SphereGain(report, spread_to(places, scale.mesh.vertices, angles))

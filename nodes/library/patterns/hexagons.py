@@ -10,7 +10,7 @@ from ....kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ....kernel.surfaces.surface import Surface
 from ...graphs.node import node
 from ...graphs.ports import Port
-from .reports import EdgeLength, PatternReport, pattern_report
+from .reports import EdgeLength, PatternReport, dual_report
 
 
 class HexagonPattern(NamedTuple):
@@ -20,7 +20,7 @@ class HexagonPattern(NamedTuple):
     report: PatternReport
 
 
-@node
+@node(version=2)
 def hexagon_pattern(
     mesh: Mesh | Surface,
     edge_length: EdgeLength,
@@ -54,9 +54,9 @@ def hexagon_pattern(
     Examples
     --------
     >>> from spheremesh.nodes import ellipsoid_mesh, hexagon_pattern
-    >>> report = hexagon_pattern(ellipsoid_mesh(48, 24), 0.13, max_axis_angle=5).report
-    >>> report["convex_share"], [each["bound_deg"] for each in report["tries"]]
-    (1.0, [3.0, 5.0])
+    >>> report = hexagon_pattern(ellipsoid_mesh(24, 12), 0.25, max_axis_angle=5).report
+    >>> report["convex_share"], sorted({each["bound_deg"] for each in report["tries"]})
+    (1.0, [2.0, 3.0, 5.0])
     """
     best, tries = dual_patterns.hexagon_pattern(mesh, edge_length, max_axis_angle, boundary)
     if best.net is None or best.judgement is None:  # never: the kernel refuses such surfaces
@@ -65,13 +65,13 @@ def hexagon_pattern(
         {
             "bound_deg": each.bound,
             "spheres_deg": float(np.degrees(each.judgement.angle)),
-            "node_axis_p95_deg": float(np.degrees(each.lean_p95)),
+            "node_axis_p95_deg": float(np.degrees(each.judgement.lean_p95)),
             "shortest_edge": each.judgement.shortest,
             "flaws": float(len(each.judgement.flaws)),
         }
         for each in tries
         if each.judgement is not None
     ]
-    axes = {"p95": float(np.degrees(best.lean_p95)), "max": float(np.degrees(best.lean_max))}
-    report = pattern_report(mesh, edge_length, "hexagons", best.net, best.judgement, told, axes)
+    bound = float(np.radians(max_axis_angle))
+    report = dual_report(mesh, edge_length, "hexagons", best.net, best.judgement, told, bound)
     return HexagonPattern(best.net, report)

@@ -7,7 +7,7 @@ from ....kernel.patterns import dual_patterns
 from ....kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ....kernel.surfaces.surface import Surface
 from ...graphs.node import node
-from .reports import EdgeLength, PatternReport, pattern_report
+from .reports import EdgeLength, PatternReport, dual_report
 
 
 class TrianglePattern(NamedTuple):
@@ -17,7 +17,7 @@ class TrianglePattern(NamedTuple):
     report: PatternReport
 
 
-@node
+@node(version=2)
 def triangle_pattern(mesh: Mesh | Surface, edge_length: EdgeLength) -> TrianglePattern:
     """Cover a surface with triangles of nearly one size, and spheres that meet smoothly.
 
@@ -41,9 +41,9 @@ def triangle_pattern(mesh: Mesh | Surface, edge_length: EdgeLength) -> TriangleP
     --------
     >>> from spheremesh.nodes import ellipsoid_mesh, triangle_pattern
     >>> report = triangle_pattern(ellipsoid_mesh(24, 12), edge_length=0.5).report
-    >>> report["status"], report["gain"] > 0.3
+    >>> report["status"], report["gain"]["measured"] > 0.3
     ('usable', True)
     """
     net, judgement = dual_patterns.triangle_pattern(mesh, edge_length)
-    report = pattern_report(mesh, edge_length, "triangles", net, judgement, [], {})
+    report = dual_report(mesh, edge_length, "triangles", net, judgement, [])
     return TrianglePattern(net, report)

@@ -140,7 +140,7 @@ def test_trims_enclose_the_area_of_the_panel() -> None:
     slope = np.stack([share - 1, 1 - 2 * share, share], 1)
     for i, stream in enumerate(brep_streams(panels)):
         area = 0.0
-        for trim in (side.trim for side in parse_brep(stream).sides):
+        for trim in (side.trim for side in parse_brep(stream).faces[0].sides):
             numbers = struct.unpack_from(f"<{3 * trim.n_points}d", stream, trim.points)
             points = np.reshape(numbers, (-1, 3))
             for first in range(0, len(points) - 2, 2):
@@ -179,7 +179,7 @@ def test_far_site() -> None:
 def test_steep_panels_are_cut_into_spans() -> None:
     panels = random_panels(60, 6, flattest=1.5)
     streams = brep_streams(panels)
-    counts = [parse_brep(stream).surface.n_points for stream in streams]
+    counts = [parse_brep(stream).faces[0].surface.n_points for stream in streams]
     assert set(counts) == {(3, 3), (5, 5)}
     errors = verify_breps(streams, panels.spheres, panels.origins)
     assert [e.reason() for e in errors] == [""] * panels.n_panels
@@ -243,7 +243,7 @@ def reason(panels: Panels, stream: bytes) -> str:
 def test_specimen_is_sound(specimen: Specimen) -> None:
     panels, stream = specimen
     assert resealed(stream, parse_brep(stream)) == stream
-    assert changed(stream, parse_brep(stream).sides[0].start, lambda x: x) == stream
+    assert changed(stream, parse_brep(stream).faces[0].sides[0].start, lambda x: x) == stream
     assert errors_of(stream).reason() == ""
     assert errors_of(stream, panels.spheres[0], panels.origins[0]).reason() == ""
 
@@ -251,14 +251,14 @@ def test_specimen_is_sound(specimen: Specimen) -> None:
 def test_moved_vertex(specimen: Specimen) -> None:
     panels, stream = specimen
     radius = 0.5 / abs(panels.spheres[0, 0])
-    place = parse_brep(stream).sides[1].start
+    place = parse_brep(stream).faces[0].sides[1].start
     assert "vert" in reason(panels, changed(stream, place, lambda x: x + 1e-11 * radius))
 
 
 def test_shifted_surface(specimen: Specimen) -> None:
     panels, stream = specimen
     radius = 0.5 / abs(panels.spheres[0, 0])
-    surface = parse_brep(stream).surface
+    surface = parse_brep(stream).faces[0].surface
     count = 4 * surface.n_points[0] * surface.n_points[1]
 
     def shift(values: FloatArray) -> FloatArray:
@@ -271,7 +271,7 @@ def test_shifted_surface(specimen: Specimen) -> None:
 
 def test_shifted_pole(specimen: Specimen) -> None:
     panels, stream = specimen
-    surface = parse_brep(stream).surface
+    surface = parse_brep(stream).faces[0].surface
     count = surface.n_points[0] + 1
 
     def stretch(knots: FloatArray) -> FloatArray:
@@ -283,7 +283,7 @@ def test_shifted_pole(specimen: Specimen) -> None:
 def test_patch_of_another_pole(specimen: Specimen) -> None:
     """The same sphere and domain, projected from a pole beside the right one."""
     panels, stream = specimen
-    surface = parse_brep(stream).surface
+    surface = parse_brep(stream).faces[0].surface
     count = 4 * surface.n_points[0] * surface.n_points[1]
     center = -panels.spheres[0, 1:4] / panels.spheres[0, 0] / -2 + panels.origins[0]
     angle = 1e-9
@@ -306,7 +306,7 @@ def test_patch_of_another_pole(specimen: Specimen) -> None:
 def test_bulging_trim(specimen: Specimen) -> None:
     """A trim with the right ends that bulges a little more, or whose weight is off."""
     panels, stream = specimen
-    middle = parse_brep(stream).sides[0].trim.points + 24
+    middle = parse_brep(stream).faces[0].sides[0].trim.points + 24
     for place in (middle, middle + 8, middle + 16):
         assert "a trim leaves its edge" in reason(
             panels, changed(stream, place, lambda x: x + 1e-9)
@@ -315,7 +315,7 @@ def test_bulging_trim(specimen: Specimen) -> None:
 
 def test_bulging_surface(specimen: Specimen) -> None:
     panels, stream = specimen
-    surface = parse_brep(stream).surface
+    surface = parse_brep(stream).faces[0].surface
     middle = surface.points + 32 * (surface.n_points[0] * surface.n_points[1] // 2)
     assert reason(panels, changed(stream, middle, lambda x: x * (1 + 1e-9), 4))
 
@@ -324,14 +324,14 @@ def test_bulging_surface(specimen: Specimen) -> None:
 def test_wrong_arc(specimen: Specimen, index: int) -> None:
     """Radius, sweep and centre."""
     panels, stream = specimen
-    place = parse_brep(stream).sides[0].edge.points + 8 * index
+    place = parse_brep(stream).faces[0].sides[0].edge.points + 8 * index
     assert "edge" in reason(panels, changed(stream, place, lambda x: x + 1e-10))
 
 
 def test_complementary_arc(specimen: Specimen) -> None:
     """The same circle and ends, the other way round."""
     panels, stream = specimen
-    circle = parse_brep(stream).sides[0].edge.points
+    circle = parse_brep(stream).faces[0].sides[0].edge.points
 
     def other_way(values: FloatArray) -> FloatArray:
         values = values.copy()
@@ -344,7 +344,7 @@ def test_complementary_arc(specimen: Specimen) -> None:
 
 def test_open_loop(specimen: Specimen) -> None:
     panels, stream = specimen
-    place = parse_brep(stream).sides[0].trim.points
+    place = parse_brep(stream).faces[0].sides[0].trim.points
     assert reason(panels, changed(stream, place, lambda x: x + 1e-9))
     apart = errors_of(changed(stream, place, lambda x: x + 1e-3))
     assert apart.trim_to_vertex > 1e-4
@@ -352,7 +352,7 @@ def test_open_loop(specimen: Specimen) -> None:
 
 def test_reversed_trim(specimen: Specimen) -> None:
     panels, stream = specimen
-    trim = parse_brep(stream).sides[0].trim
+    trim = parse_brep(stream).faces[0].sides[0].trim
 
     def backwards(values: FloatArray) -> FloatArray:
         return values.reshape(-1, 3)[::-1].ravel()
@@ -387,7 +387,7 @@ def test_another_sphere(specimen: Specimen) -> None:
 def mesh_change(stream: bytes, buffer: str, change: Change, count: int, dtype: str) -> bytes:
     """The stream with some of the numbers of its render mesh replaced."""
     layout = parse_brep(stream)
-    start = getattr(layout.mesh, buffer).start
+    start = getattr(layout.faces[0].mesh, buffer).start
     data = bytearray(stream)
     values = np.frombuffer(stream, dtype, count, start)
     raw = change(values.astype(float)).astype(dtype).tobytes()
@@ -398,7 +398,7 @@ def mesh_change(stream: bytes, buffer: str, change: Change, count: int, dtype: s
 def test_moved_vertex_of_the_mesh(specimen: Specimen) -> None:
     panels, stream = specimen
     radius = 0.5 / abs(panels.spheres[0, 0])
-    has_doubles = parse_brep(stream).mesh.points is not None
+    has_doubles = parse_brep(stream).faces[0].mesh.points is not None
     buffer, dtype, lift = ("points", "<f8", 1e-11) if has_doubles else ("floats", "<f4", 1e-5)
     same = mesh_change(stream, buffer, lambda x: x, 3, dtype)
     assert same == stream
@@ -437,7 +437,7 @@ def test_wrong_normal_of_the_mesh(specimen: Specimen) -> None:
     panels, stream = specimen
     tilted = mesh_change(stream, "normals", lambda x: x + np.array([1e-5, 0, -1e-5]), 3, "<f4")
     assert "a normal of the render mesh" in reason(panels, tilted)
-    count = 3 * int(parse_brep(stream).mesh.triangles.max()) + 3
+    count = 3 * int(parse_brep(stream).faces[0].mesh.triangles.max()) + 3
     inside_out = mesh_change(stream, "normals", lambda x: -x, count, "<f4")
     assert "a normal of the render mesh" in reason(panels, inside_out)
 
@@ -495,7 +495,7 @@ def test_flipped_bits(specimen: Specimen) -> None:
         data[place] ^= 1 << int(rng.integers(8))
         assert errors_of(bytes(data)).reason(), place
     numbers = bytearray(stream)
-    place = parse_brep(stream).sides[0].start
+    place = parse_brep(stream).faces[0].sides[0].start
     numbers[place : place + 8] = struct.pack("<d", np.nan)
     assert "finite" in reason(panels, resealed(bytes(numbers), parse_brep(stream)))
 
@@ -504,7 +504,7 @@ def test_deflated_meshes_are_checked(specimen: Specimen) -> None:
     """As openNURBS writes them."""
     panels, stream = specimen
     written = encoded(decode(stream))
-    buffers = parse_brep(written).mesh[1:]
+    buffers = parse_brep(written).faces[0].mesh[1:]
     assert all(buffer.is_deflated for buffer in buffers if buffer)
     assert reason(panels, written) == ""
     for buffer in filter(None, buffers):
@@ -534,7 +534,9 @@ def test_one_bad_stream_does_not_touch_the_others() -> None:
     panels = FAMILIES["roof"]()
     streams = brep_streams(panels)
     streams[3] = streams[3][:-40]
-    streams[5] = changed(streams[5], parse_brep(streams[5]).sides[0].start, lambda x: x + 1)
+    streams[5] = changed(
+        streams[5], parse_brep(streams[5]).faces[0].sides[0].start, lambda x: x + 1
+    )
     streams[8] = b""
     errors = verify_breps(streams, panels.spheres, panels.origins)
     assert [i for i, e in enumerate(errors) if e.reason()] == [3, 5, 8]

@@ -11,7 +11,7 @@ from spheremesh import nodes
 from spheremesh.fabrication.mesh_files.reader import read_mesh
 from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.rhino.brep_faces import nurbs_surface
-from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
+from spheremesh.fabrication.rhino_models.writer import RhinoOptions, write_3dm
 from spheremesh.kernel.arrays import FloatArray
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import Mesh, face_normals, face_vector_areas

@@ -11,7 +11,7 @@ import rhino3dm
 
 from spheremesh.fabrication.drawings.moulds import write_mould_drawings
 from spheremesh.fabrication.model import Model
-from spheremesh.fabrication.rhino.writer import write_3dm
+from spheremesh.fabrication.rhino_models.writer import write_3dm
 from spheremesh.fabrication.schedules.panels import panel_tables
 from spheremesh.fabrication.step.writer import write_step
 from spheremesh.kernel.optimization.radius_clustering import cluster_radii

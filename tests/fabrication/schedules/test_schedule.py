@@ -162,10 +162,10 @@ def test_text_in_xlsx_is_what_it_is(panels: Panels, tmp_path: Path) -> None:
     assert any(row["neighbors"].value.startswith("- ") for row in cells)
 
 
-def test_xlsx_without_openpyxl_names_the_extra(
+def test_xlsx_without_xlsxwriter_names_the_extra(
     panels: Panels, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setitem(sys.modules, "openpyxl", None)
+    monkeypatch.setitem(sys.modules, "xlsxwriter", None)
     with pytest.raises(MissingLibraryError, match=r"install spheremesh\[excel\]"):
         write_schedule(Model(panels), tmp_path / "schedule.xlsx")
     assert not list(tmp_path.iterdir())

@@ -23,21 +23,19 @@ from OCP.TopoDS import TopoDS, TopoDS_Shape
 from spheremesh import Mesh, SphereMesh
 from spheremesh.fabrication.drawings.beams import write_dxf
 from spheremesh.fabrication.model import Model
-from spheremesh.fabrication.opennurbs.render_meshes import MESH_TOLERANCE, gather_meshes
-from spheremesh.fabrication.rhino.beam_writer import with_meshes
-from spheremesh.fabrication.rhino.model import new_model
-from spheremesh.fabrication.rhino.writer import RhinoOptions, write_3dm
+from spheremesh.fabrication.opennurbs.brep_audit import verify_breps
+from spheremesh.fabrication.opennurbs.brep_reader import read_brep_streams
+from spheremesh.fabrication.rhino_models.writer import RhinoOptions, write_3dm
 from spheremesh.fabrication.solids.cadquery_assembly import beams_to_cadquery
 from spheremesh.fabrication.solids.opencascade_beams import beam_shapes
 from spheremesh.fabrication.step.check import check_part21
 from spheremesh.fabrication.step.writer import write_step
-from spheremesh.kernel.arrays import FloatArray, dot, norm
+from spheremesh.kernel.arrays import FloatArray, norm
 from spheremesh.kernel.beams import cutting as beam_cutting
 from spheremesh.kernel.beams.beams import Beams, beam_volumes, node_axis_segments
 from spheremesh.kernel.beams.cutting import cut_beams
 from spheremesh.kernel.beams.drilling import drill_beams
 from spheremesh.kernel.beams.node_cylinders import node_cylinders
-from spheremesh.kernel.beams.triangles import cylinder_triangles
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.panels.cutting import cut_panels
@@ -245,7 +243,7 @@ def test_beams_without_any_panel(tmp_path: Path) -> None:
     beams = CASES["mitred"]
     contents = RhinoOptions(layers=("Edges", "Centres", "Moulds"))
     file = write_3dm(Model(none, beams), tmp_path / "m.3dm", contents)
-    assert file.counts == {"Extrusion": beams.n_beams, "LineCurve": 35}
+    assert file.counts == {"Brep": beams.n_beams, "LineCurve": 35}
     assert (
         len(read_solids(write_step(Model(none, beams), tmp_path / "m.step").path))
         == beams.n_beams
@@ -318,40 +316,29 @@ def point(value: Any) -> FloatArray:  # noqa: ANN401
 
 
 @pytest.mark.parametrize("case", ["mitred", "square", "straight", "1 mm", "1 km"])
-def test_extrusions_in_rhino(tmp_path: Path, case: str) -> None:
+def test_solids_in_rhino(tmp_path: Path, case: str) -> None:
+    """Those of STEP files: the same corners, the same volume."""
     beams = CASES[case]
-    model = rhino3dm.File3dm.Read(str(write_3dm(Model(beams=beams), tmp_path / "b.3dm").path))
-    objects = on_layer(model, "Beams")
+    path = write_3dm(Model(beams=beams), tmp_path / "b.3dm").path
+    objects = on_layer(rhino3dm.File3dm.Read(str(path)), "Beams")
     assert [item.Attributes.Name for item in objects] == list(beams.annuli.ids)
     size = norm(beams.sections[:, 0, 0] - beams.sections[:, 1, 0]).max()
     for i, item in enumerate(objects):
         solid = item.Geometry
         assert solid.IsValid
         assert solid.IsSolid
-        _check_render_mesh(solid, size)
-        z = beams.annuli.frames[i, 2]
-        brep = solid.ToBrep(False)  # noqa: FBT003
-        assert len(brep.Faces) == 6
-        corners = np.array([point(vertex.Location) for vertex in brep.Vertices])
-        corners = corners - beams.annuli.origins[i]
-        assert np.abs(np.abs(corners @ z) - beams.thickness / 2).max() < 1e-9 * size
-        flat = corners - (corners @ z)[:, None] * z
-        sections = beams.sections[i].reshape(-1, 3)
-        misses = norm(flat[:, None] - sections[None])
-        assert misses.min(axis=1).max() < 1e-9 * size
-        assert Counter(misses.argmin(axis=1).tolist()) == {0: 2, 1: 2, 2: 2, 3: 2}
-        rows = np.stack([beams.annuli.outer[i], beams.annuli.inner[i]])
-        for edge in brep.Edges:
-            middle = point(edge.PointAt((edge.Domain.T0 + edge.Domain.T1) / 2))
-            middle = middle - beams.annuli.origins[i]
-            height = float(middle @ z)
-            flat_middle = middle - height * z
-            level = rows[:, 0] * dot(flat_middle, flat_middle) - rows[:, 1:4] @ flat_middle
-            on_circle = np.abs(level + rows[:, 4]).min() < 1e-9 * size
-            assert on_circle or edge.IsLinear(1e-9 * size)
+        n_steps = np.where(beams.is_flat[i], 1, 2)
+        assert len(solid.Faces) == 4 + n_steps.sum()
+        found = np.array([point(vertex.Location) for vertex in solid.Vertices])
+        wanted = beams.corners[i].reshape(-1, 3) + beams.annuli.origins[i]
+        assert norm(found[:, None] - wanted).min(axis=1).max() < 1e-12 * size
+        assert len(found) == 4 * (n_steps + 1).sum() / 2
+    errors = verify_breps(read_brep_streams(path.read_bytes())[: beams.n_beams])
+    volumes = np.array([each.volume for each in errors])
+    np.testing.assert_allclose(volumes, beam_volumes(beams), rtol=1e-8)
 
 
-def test_extrusions_of_a_building_site(tmp_path: Path) -> None:
+def test_solids_of_a_building_site(tmp_path: Path) -> None:
     roof = roof_net(6, 5, 40.0)
     far = np.array([6.1e5, -5.3e6, 480.0])
     site = Mesh(roof.vertices + far, [list(face) for face in roof.faces])
@@ -371,51 +358,6 @@ def test_extrusions_of_a_building_site(tmp_path: Path) -> None:
         assert norm(moved - point(other.GetBoundingBox().Center)) < 1e-6
 
 
-def _check_render_mesh(solid: Any, size: float) -> None:  # noqa: ANN401
-    """It has the corners of the solid, and its triangles look outwards."""
-    mesh = solid.GetMesh(rhino3dm.MeshType.Render)
-    assert mesh.IsValid
-    points = [mesh.Vertices.Point3dAt(i) for i in range(len(mesh.Vertices))]
-    corners = [tuple(mesh.Faces[i][:3]) for i in range(mesh.Faces.Count)]
-    x = np.array([point(p) for p in points])
-    brep = solid.ToBrep(False)  # noqa: FBT003
-    for vertex in brep.Vertices:
-        assert norm(x - point(vertex.Location)).min() < 1e-5 * size
-    a, b, c = (x[corners] - x.mean(0)).transpose(1, 0, 2)
-    volume = dot(a, np.cross(b, c)).sum() / 6
-    assert volume > 0
-    vectors = np.array([(n.X, n.Y, n.Z) for n in mesh.Normals])[[t[0] for t in corners]]
-    assert (dot(np.cross(b - a, c - a), vectors) > 0).all()
-
-
-def test_any_extrusion_takes_a_render_mesh() -> None:
-    model = new_model("m")
-    origins = np.array([[0, 0, 0], [3.0, 1, 2]])
-    directions = np.array([[0, 0, 1.0], [0.6, 0, 0.8]])
-    solids: list[Any] = []
-    for origin, direction in zip(origins.tolist(), directions.tolist(), strict=True):
-        circle = rhino3dm.Circle(0.3)
-        circle.Plane = rhino3dm.Plane(rhino3dm.Point3d(*origin), rhino3dm.Vector3d(*direction))
-        cylinder = rhino3dm.Cylinder(circle, 0.5)
-        solids.append(rhino3dm.Extrusion.CreateCylinderExtrusion(cylinder, True, True))  # noqa: FBT003
-    shape = cylinder_triangles(origins, directions, np.full(2, 0.5), 0.3, MESH_TOLERANCE)
-    found = with_meshes(model, solids, gather_meshes([shape], MESH_TOLERANCE * 0.3))
-    for i, solid in enumerate(found):
-        assert solid.IsSolid
-        mesh = solid.GetMesh(rhino3dm.MeshType.Render)
-        points = [point(mesh.Vertices.Point3dAt(j)) for j in range(len(mesh.Vertices))]
-        assert np.abs(points - shape.points[i]).max() < 1e-6
-
-
-def test_a_model_without_render_meshes(tmp_path: Path) -> None:
-    contents = RhinoOptions(render_meshes=False)
-    beams = CASES["straight"]
-    file = write_3dm(Model(beams=beams), tmp_path / "b.3dm", contents)
-    assert file.counts["Extrusion"] == beams.n_beams
-    solid = on_layer(rhino3dm.File3dm.Read(str(file.path)), "Beams")[0].Geometry
-    assert solid.GetMesh(rhino3dm.MeshType.Any) is None
-
-
 @pytest.mark.parametrize("version", [6, 7, 8])
 def test_every_version_of_rhino(tmp_path: Path, version: int) -> None:
     panels, _ = cut_panels(TORUS, "intersection", labels=np.arange(35) % 3)
@@ -429,23 +371,10 @@ def test_every_version_of_rhino(tmp_path: Path, version: int) -> None:
     objects: list[Any] = [model.Objects[i] for i in range(len(model.Objects))]
     kinds = Counter(type(item.Geometry).__name__ for item in objects)
     assert kinds == file.counts
-    assert kinds["Extrusion"] == beams.n_beams
+    assert kinds["Brep"] == beams.n_beams + panels.n_panels + 3
     assert kinds["InstanceReference"] == panels.n_panels
     assert all(item.Geometry.IsValid for item in objects)
-    for item in on_layer(model, "Beams"):
-        assert item.Geometry.GetMesh(rhino3dm.MeshType.Render).IsValid
-
-
-def test_beams_far_from_the_origin_keep_precise_meshes(tmp_path: Path) -> None:
-    shift = np.array([5e5, -3e5, 2e5])
-    moved = Mesh(TORUS.mesh.vertices + shift, TORUS.mesh.faces)
-    beams = make(SphereMesh.from_local(moved, TORUS.local_spheres))
-    file = write_3dm(Model(beams=beams), tmp_path / "far.3dm")
-    items = on_layer(rhino3dm.File3dm.Read(str(file.path)), "Beams")
-    assert len(items) == beams.n_beams
-    for item in items:
-        # Float32 would miss by 0.03.
-        _check_render_mesh(item.Geometry, 1e-3)
+    assert all(item.Geometry.IsSolid for item in on_layer(model, "Beams"))
 
 
 def _check_view(view: Any, points: FloatArray) -> None:  # noqa: ANN401
@@ -502,29 +431,12 @@ def test_node_cylinders_in_rhino(tmp_path: Path) -> None:
         solid = item.Geometry
         assert solid.IsValid
         assert solid.IsSolid
-        ends = np.array([point(solid.PathStart), point(solid.PathEnd)])
-        tip = nodes.origins[i] + nodes.heights[i] * nodes.directions[i]
-        assert np.abs(np.sort(ends, 0) - np.sort([nodes.origins[i], tip], 0)).max() < 1e-12
-        rim = point(solid.Profile3d(0, 0.0).PointAtStart)
-        assert norm(rim - ends[0]) == pytest.approx(nodes.radius, rel=1e-9)
-
-
-def test_node_cylinders_carry_render_meshes(tmp_path: Path) -> None:
-    """What viewers show: closed, outwards, on the cylinder, and nearly of its volume."""
-    beams = CASES["square"]
-    nodes = node_cylinders(beams)
-    model = rhino3dm.File3dm.Read(str(write_3dm(Model(beams=beams), tmp_path / "n.3dm").path))
-    for i, item in enumerate(on_layer(model, "Nodes")):
-        mesh = item.Geometry.GetMesh(rhino3dm.MeshType.Render)
-        points = np.array([point(vertex) for vertex in mesh.Vertices])
-        faces = np.array([mesh.Faces[k][:3] for k in range(len(mesh.Faces))])
-        relative = points - nodes.origins[i]
-        along = relative @ nodes.directions[i]
-        off = norm(relative - along[:, None] * nodes.directions[i])
-        np.testing.assert_allclose(off, nodes.radius, rtol=1e-4)
-        a, b, c = np.moveaxis(relative[faces], 1, 0)
-        volume = dot(a, np.cross(b, c)).sum() / 6
-        assert volume == pytest.approx(np.pi * nodes.radius**2 * nodes.heights[i], rel=0.02)
+        assert len(solid.Faces) == 3
+        ends = np.array([point(vertex.Location) for vertex in solid.Vertices])
+        along = (ends - nodes.origins[i]) @ nodes.directions[i]
+        np.testing.assert_allclose(along, [0, nodes.heights[i]], atol=1e-12)
+        off = ends - nodes.origins[i] - along[:, None] * nodes.directions[i]
+        np.testing.assert_allclose(norm(off), nodes.radius, rtol=1e-9)
         assert model.Materials[item.Attributes.MaterialIndex].Name == "Nodes"
 
 

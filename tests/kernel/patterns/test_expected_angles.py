@@ -57,7 +57,7 @@ def mean_bend(sphere_mesh: SphereMesh) -> float:
 
 
 @pytest.mark.parametrize(
-    ("surface", "slack"), [(exact_torus(80), 2e-3), (exact_ellipsoid(80), 3e-3)]
+    ("surface", "slack"), [(exact_torus(90), 1e-3), (exact_ellipsoid(140), 1e-3)]
 )
 def test_nets_along_the_lines_of_curvature_meet_as_foretold(
     surface: Surface, slack: float

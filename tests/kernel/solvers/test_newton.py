@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from spheremesh.kernel.arrays import FloatArray
+from spheremesh.kernel.solvers.factorization import Solver
 from spheremesh.kernel.solvers.newton import Factorize, Model, NewtonDescent, Problem, newton
 
 
@@ -20,7 +21,12 @@ def dense(hessian: FloatArray) -> Factorize:
 
 
 def minimise(
-    function: object, start: list[float], steps: int = 100
+    function: object,
+    start: list[float],
+    steps: int = 100,
+    *,
+    leaves_saddles: bool = True,
+    last: Solver | None = None,
 ) -> NewtonDescent[FloatArray]:
     """A function of a point that gives energy, gradient, Hessian and its convex part."""
 
@@ -35,7 +41,9 @@ def minimise(
         lambda *_: 1.0,
         lambda before, after: float((after - before).sum()),
     )
-    return newton(problem, np.array(start), steps, 1e-12)
+    return newton(
+        problem, np.array(start), steps, 1e-12, leaves_saddles=leaves_saddles, last=last
+    )
 
 
 def rosenbrock(x: FloatArray) -> tuple[float, FloatArray, FloatArray, FloatArray]:
@@ -81,6 +89,29 @@ def test_a_saddle_is_left_to_the_side_that_is_preferred() -> None:
 
     found = minimise(_tilted, [0.0, 0.3, -0.2])
     assert found.state[0] < -0.9
+
+
+def test_factors_of_a_descent_nearby_serve_again() -> None:
+    made: list[float] = []
+
+    def _bowl(x: FloatArray) -> tuple[float, FloatArray, FloatArray, FloatArray]:
+        hessian = np.diag([2.0, 4.0]) + 0.01 * np.eye(2) * x[0]
+        made.append(x[0])
+        return float(x @ x + x[1] ** 2 + 1), np.array([2 * x[0], 4 * x[1]]), hessian, hessian
+
+    first = minimise(_bowl, [1.0, 1.0], leaves_saddles=False)
+    assert first.solve is not None
+    found = minimise(_bowl, [0.1, -0.1], leaves_saddles=False, last=first.solve)
+    assert found.status == "converged"
+    np.testing.assert_allclose(found.state, 0, atol=1e-6)
+    assert found.solve is first.solve
+
+
+@pytest.mark.parametrize("factor", [1e6, 1e-6, -1.0])
+def test_factors_that_do_not_serve_are_made_anew(factor: float) -> None:
+    found = minimise(rosenbrock, [-1.2, 1.0], last=lambda right: factor * right)
+    assert found.status == "converged"
+    np.testing.assert_allclose(found.state, 1, atol=1e-9)
 
 
 def test_a_flat_direction_is_not_gone_along() -> None:

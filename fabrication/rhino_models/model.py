@@ -1,8 +1,8 @@
 """A Rhino model under construction: layers, materials, groups, views, and ids."""
 
 import base64
-from collections import Counter
-from collections.abc import Callable
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple, TypeAlias
 from uuid import NAMESPACE_URL, UUID, uuid5
 
@@ -11,6 +11,7 @@ import numpy as np
 from ...kernel.arrays import FloatArray
 from ...kernel.parts.colors import Color
 from ..units import millimeters_per
+from .archive import FileObject, ObjectAttributes
 
 # What comes from rhino3dm is not typed: its stub lacks setters, indices and overloads.
 Untyped: TypeAlias = Any
@@ -32,12 +33,21 @@ _HALF_ANGLE = float(np.arctan(12 / _LENS))
 """Half the smaller angle of view of that lens, on film of 36 by 24 mm."""
 
 
-class RhinoModel(NamedTuple):
-    """The library rhino3dm, a model under construction, and how streams become objects."""
+@dataclass(frozen=True)
+class RhinoModel:
+    """The library rhino3dm, a model under construction, and the objects that it is to hold."""
 
     library: Untyped
     file: Untyped
-    decode: Callable[[bytes], Untyped]
+    objects: list[FileObject] = field(default_factory=list[FileObject])
+
+    def add(self, kind: str, stream: bytes, attributes: ObjectAttributes) -> None:
+        """Add an object by its kind, as openNURBS calls it, and its stream."""
+        self.objects.append(FileObject(kind, stream, attributes))
+
+    def add_geometry(self, geometry: Untyped, attributes: ObjectAttributes) -> None:
+        """Add an object that rhino3dm made."""
+        self.add(type(geometry).__name__, geometry_stream(geometry), attributes)
 
 
 class ModelLayer(NamedTuple):
@@ -86,18 +96,12 @@ def new_model(units: str) -> RhinoModel:
     settings.ModelUnitSystem = getattr(library.UnitSystem, _UNIT_SYSTEMS[units])
     settings.ModelAbsoluteTolerance = tolerance
     settings.ModelAngleToleranceDegrees = _ANGLE_TOLERANCE
-    return RhinoModel(library, file, _decoder(library))
+    return RhinoModel(library, file)
 
 
-def _decoder(library: Untyped) -> Callable[[bytes], Untyped]:
-    # The versions that go with a stream are those of any object.
-    header: dict[str, object] = library.Point(library.Point3d(0, 0, 0)).Encode()
-
-    def decode(stream: bytes) -> Untyped:
-        header["data"] = base64.b64encode(stream).decode("ascii")
-        return library.CommonObject.Decode(header)
-
-    return decode
+def geometry_stream(geometry: Untyped) -> bytes:
+    """The stream of an object that rhino3dm made."""
+    return base64.b64decode(geometry.Encode()["data"])
 
 
 def encode_model(model: RhinoModel, version: int) -> bytes:
@@ -111,23 +115,12 @@ def encode_model(model: RhinoModel, version: int) -> bytes:
     Returns
     -------
     bytes
-        Content of the file; empty if rhino3dm cannot encode it.
+        Content of the file without its objects; empty if rhino3dm cannot encode it.
     """
     options = model.library.File3dmWriteOptions()
     options.Version = version
     # File3dm.Write would store the path of the temporary file in the model.
     return base64.b64decode(model.file.Encode(options) or "")
-
-
-def count_objects(model: RhinoModel) -> dict[str, int]:
-    """How many objects of each kind a model holds.
-
-    Returns
-    -------
-    dict of str to int
-        Counts by openNURBS's names, members of blocks included.
-    """
-    return dict(Counter(type(item.Geometry).__name__ for item in model.file.Objects))
 
 
 def object_id(name: str, role: str) -> UUID:
@@ -200,7 +193,9 @@ def add_group(model: RhinoModel, name: str) -> int:
     return len(model.file.Groups) - 1
 
 
-def object_attributes(model: RhinoModel, name: str, role: str, place: ModelLayer) -> Untyped:
+def object_attributes(
+    name: str, role: str, place: ModelLayer, text: Mapping[str, str] | None = None
+) -> ObjectAttributes:
     """Attributes with a stable id: the colour of the layer, and its material if it has one.
 
     Parameters
@@ -211,21 +206,19 @@ def object_attributes(model: RhinoModel, name: str, role: str, place: ModelLayer
         What the object is; tells apart those of one name.
     place : ModelLayer
         Where it goes.
+    text : mapping of str to str, optional
+        User text.
 
     Returns
     -------
     ObjectAttributes
-        For `File3dm.Objects.Add`.
+    ----------
+        Those that go with its geometry.
     """
-    attributes = model.library.ObjectAttributes()
-    attributes.Id = object_id(name, role)
-    attributes.Name = name
-    attributes.LayerIndex = place.layer
-    if place.material is not None:
-        # Many viewers know materials of objects only, and show other surfaces in white.
-        attributes.MaterialSource = model.library.ObjectMaterialSource.MaterialFromObject
-        attributes.MaterialIndex = place.material
-    return attributes
+    # Many viewers know materials of objects only, and show other surfaces in white.
+    return ObjectAttributes(
+        object_id(name, role), name, place.layer, place.material, text=text or {}
+    )
 
 
 def add_views(model: RhinoModel, points: FloatArray) -> None:

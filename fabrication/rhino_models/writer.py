@@ -1,7 +1,9 @@
-"""Writes Rhino .3dm files of panels and beams; rhino3dm makes the file around their streams."""
+"""Writes Rhino .3dm files of panels and beams, which rhino3dm reads back."""
 
 import os
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from importlib.metadata import version as installed_version
 from pathlib import Path
 from typing import Final, get_args
@@ -12,24 +14,28 @@ from ...kernel.arrays import FloatArray
 from ...kernel.beams.beams import Beams
 from ...kernel.errors import InputError
 from ...kernel.meshes.mesh import Mesh
+from ...kernel.panels.checks import NO_PANEL
 from ...kernel.panels.panels import Panels
 from ...kernel.parts.colors import UNLABELLED
-from ...kernel.parts.records import RejectedPart
+from ...kernel.parts.findings import Finding
+from ...kernel.parts.records import RejectedPart, reject_parts
+from ...kernel.support.annulus_checks import NO_CUT
+from ..audit.subjects import warning_texts
 from ..files import check_suffix, replacing
 from ..model import Model, Written, check_model
-from ..opennurbs.brep_reader import read_brep_streams
+from ..rhino.mesh_writer import to_rhino_mesh
+from .archive import FileObject, refused_objects, write_archive
 from .beam_writer import add_beams
-from .mesh_writer import to_rhino_mesh
 from .model import (
     RhinoModel,
     add_layer,
     add_views,
-    count_objects,
     encode_model,
     new_model,
     object_attributes,
 )
-from .panel_writer import Layer, Shape, add_panels
+from .panel_writer import Layer, PanelOptions, Shape, add_panels
+from .to_check import add_rejected
 
 VERSIONS: Final = (6, 7, 8)
 """Versions of Rhino whose files can be written."""
@@ -45,7 +51,7 @@ _NOTE = (
 class RhinoOptions:
     """What a Rhino file holds, and how.
 
-    Attributes
+    ObjectAttributes
     ----------
     shape : {"panels", "blocks", "shell"}
         One Brep per panel; the same with a block definition and instances wherever panels are
@@ -55,8 +61,12 @@ class RhinoOptions:
         block for every mould, its blank, set under each of its panels.
     reference : Mesh, optional
         The design, for the layer ``Reference``.
+    findings : tuple of Finding
+        What an audit found: user text and a colour of the parts, texts on ``To check``.
+    rejected : tuple of mapping
+        ``id``, ``code`` and ``reason`` of parts that could not be made, for ``Rejected``.
     render_meshes : bool
-        Whether Breps and extrusions carry triangles for viewers that cannot mesh them.
+        Whether faces without thickness carry triangles for viewers that cannot mesh them.
     version : int
         Version of Rhino: 6, 7 or 8.
     title, graph_json : str
@@ -67,11 +77,15 @@ class RhinoOptions:
     shape: Shape = "panels"
     layers: tuple[Layer, ...] = ("Edges",)
     reference: Mesh | None = None
+    findings: tuple[Finding, ...] = ()
+    rejected: tuple[Mapping[str, str], ...] = ()
     render_meshes: bool = True
     version: int = 8
     title: str = ""
     graph_json: str = ""
 
+
+_REFUSED: Final = "openNURBS cannot read the Brep or finds it invalid"
 
 _PANELS_AND_EDGES: Final = RhinoOptions()
 
@@ -84,10 +98,10 @@ def write_3dm(
     Parameters
     ----------
     model : Model
-        At least one panel or beam. Of panels the outer faces are written. Beams are capped
-        extrusions of their flat contours on the layer ``Beams``, with the node axes as lines on
-        the layer ``Axes``, node cylinders on the layer ``Nodes`` and drilling marks on the
-        layer ``Drilling``.
+        At least one panel or beam. Panels are closed solids if they have a thickness, else
+        their outer faces. Beams are closed solids on the layer ``Beams``, with the node axes as
+        lines on the layer ``Axes``, node cylinders as solids on the layer ``Nodes`` and
+        drilling marks on the layer ``Drilling``: the solids of STEP files.
     path : path
         The file; an older one is replaced when the new one is whole.
     options : RhinoOptions
@@ -96,10 +110,10 @@ def write_3dm(
     Returns
     -------
     Written
-        The path; panels whose Breps are not exact, which are not in the file, with their
-        reasons; the numbers of objects by openNURBS's names (``Brep``, ``ArcCurve``, ...);
-        notes on edges that the shell leaves open, moulds whose blocks are not exact, a
-        reference mesh that Rhino refuses.
+        The path; panels and beams whose Breps are not exact, or that openNURBS refuses, which
+        are not in the file, with their reasons; the numbers of objects by openNURBS's names
+        (``Brep``, ``ArcCurve``, ...); notes on edges that the shell leaves open, moulds whose
+        blocks are not exact, a reference mesh that Rhino refuses.
 
     Raises
     ------
@@ -113,10 +127,12 @@ def write_3dm(
     Layers: ``Panels`` with a sub-layer ``Mould 01``, ... for every label (panels without a
     mould lie on ``Panels`` itself), ``Edges`` with one arc or line for every edge of every
     panel: neighbours' arcs differ by the joint and the edge gap, so both are there;
-    ``Creases`` with those on creases, if there are any; ``Centres``, ``Moulds`` and
-    ``Reference`` are switched off. Each mould has its colour on its layer and as a material,
-    and is a group. Named views: Top and Perspective. User text: `panel_text`. Object ids depend
-    on the panel's id and the object's role only. Two runs differ in the time of day alone.
+    ``Creases`` with those on creases, if there are any; ``To check`` with a text for every
+    part with findings, ``Rejected`` with the outlines of what is missing; ``Centres``,
+    ``Moulds`` and ``Reference`` are switched off. Each mould has its colour on its layer and
+    as a material, and is a group. Named views: Top and Perspective. User text: `panel_text`,
+    the volume of solids, findings. Object ids depend on the panel's id and the object's role
+    only, and the date is that of SOURCE_DATE_EPOCH, or 1970: two runs give the same bytes.
     """
     check_suffix(path, ".3dm")
     if options.version not in VERSIONS:
@@ -127,28 +143,67 @@ def write_3dm(
             f"{', '.join(get_args(Shape))}, and {', '.join(get_args(Layer))}"
         )
     check_model(model, path)
+    target = Path(path)
+    rejected: tuple[RejectedPart, ...] = ()
+    with replacing(target) as temporary:
+        while True:
+            document, found, notes = _document(model, options)
+            rejected += found
+            data = encode_model(document, options.version)
+            write_archive(document.library, data, document.objects, temporary)
+            refused = refused_objects(document.library, temporary, document.objects)
+            if not refused:
+                break
+            model, missing = _without(model, [document.objects[i] for i in refused])
+            rejected += missing
+    counts = Counter(each.kind for each in document.objects)
+    return Written(target, rejected, tuple(notes), dict(counts))
+
+
+def _document(
+    model: Model, options: RhinoOptions
+) -> tuple[RhinoModel, tuple[RejectedPart, ...], list[str]]:
+    """The model as Rhino's, the parts that are left out, and notes."""
     panels, beams, units = model.panels, model.beams, model.units
     document = new_model(units)
     _set_strings(document, options.graph_json, options.title)
+    warnings = warning_texts(options.findings)
     rejected: tuple[RejectedPart, ...] = ()
     notes: list[str] = []
-    if panels is not None:
-        rejected, notes = add_panels(
-            document, panels, units, options.shape, options.layers,
-            render_meshes=options.render_meshes,
-        )  # fmt: skip
-    if beams is not None:
-        add_beams(document, beams, units, render_meshes=options.render_meshes)
+    if panels is not None and panels.ids:
+        chosen = PanelOptions(options.shape, options.layers, options.render_meshes)
+        rejected, notes = add_panels(document, panels, units, chosen, warnings)
+    if beams is not None and beams.ids:
+        rejected += add_beams(document, beams, units, warnings)
+    notes += add_rejected(document, options.reference, options.rejected)
     add_views(document, _points(panels, beams))
     if options.reference is not None:
         notes += _add_reference(document, options.reference)
-    data, objects = encode_model(document, options.version), count_objects(document)
-    if len(read_brep_streams(data)) != objects.get("Brep", 0):
-        raise InputError(f"cannot write {path}: rhino3dm did not encode the model")
-    target = Path(path)
-    with replacing(target) as temporary:
-        temporary.write_bytes(data)
-    return Written(target, rejected, tuple(notes), objects)
+    return document, rejected, notes
+
+
+def _without(model: Model, refused: list[FileObject]) -> tuple[Model, tuple[RejectedPart, ...]]:
+    """The model without the panels and beams whose Breps openNURBS refuses."""
+    names = {each.attributes.name for each in refused}
+    others = [each for each in refused if each.kind != "Brep"]
+    if others:
+        raise InputError(f"openNURBS refuses the {others[0].kind} {others[0].attributes.name}")
+    panels, beams = model.panels, model.beams
+    rejected: tuple[RejectedPart, ...] = ()
+    if panels is not None:
+        rows = [i for i, name in enumerate(panels.ids) if name in names]
+        panels, rejected = reject_parts(panels, dict.fromkeys(rows, _REFUSED), NO_PANEL)
+        if rejected and not panels.ids:
+            raise InputError(
+                f"none of the {len(rejected)} panels has an exact Brep: {_REFUSED}"
+            )
+    if beams is not None:
+        rows = [i for i, name in enumerate(beams.ids) if name in names]
+        beams, missing = reject_parts(beams, dict.fromkeys(rows, _REFUSED), NO_CUT)
+        rejected += missing
+    if not rejected:
+        raise InputError(f"openNURBS refuses {', '.join(sorted(names)[:8])}")
+    return replace(model, panels=panels, beams=beams), rejected
 
 
 def _set_strings(model: RhinoModel, graph_json: str, title: str) -> None:
@@ -179,5 +234,5 @@ def _add_reference(model: RhinoModel, mesh: Mesh) -> list[str]:
         return [f"the reference is left out: {error}"]
     # It would flicker through the panels: it is there to be switched on.
     place = add_layer(model, "Reference", UNLABELLED, has_material=True, visible=False)
-    model.file.Objects.AddMesh(rhino_mesh, object_attributes(model, "Reference", "mesh", place))
+    model.add_geometry(rhino_mesh, object_attributes("Reference", "mesh", place))
     return []

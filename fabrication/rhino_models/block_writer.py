@@ -4,9 +4,9 @@ rhino3dm gives definitions random ids; their streams are written here (`ON_Insta
 `opennurbs_instance.cpp`), so that a file of the same panels has the same ids.
 """
 
+import base64
 from uuid import UUID
 
-from ...kernel.arrays import FloatArray
 from ...kernel.panels.mould_caps import mould_caps
 from ...kernel.panels.panels import Panels
 from ...kernel.parts.colors import UNLABELLED
@@ -15,6 +15,7 @@ from ..opennurbs.brep_writer import brep_streams
 from ..opennurbs.render_meshes import MESH_TOLERANCE, panel_meshes
 from ..opennurbs.stream_codes import ANONYMOUS
 from ..opennurbs.stream_writer import Chunk, class_object, doubles, encode, ints
+from .archive import ObjectAttributes, instance_stream
 from .model import RhinoModel, Untyped, add_layer, object_attributes, object_id
 
 _INSTANCE_DEFINITION = UUID("26f8bff6-2618-417f-a158-153d64a94989").bytes_le
@@ -27,21 +28,23 @@ _STATIC = 1
 
 
 def add_definition(
-    model: RhinoModel, name: str, definition: UUID, geometry: Untyped, attributes: Untyped
+    model: RhinoModel, name: str, definition: UUID, brep: bytes, attributes: ObjectAttributes
 ) -> None:
-    """Add a block of one object.
+    """Add a block of one Brep.
 
     Parameters
     ----------
-    geometry : CommonObject
-        The object, in the coordinates of the block.
+    brep : bytes
+        The stream of the Brep, in the coordinates of the block.
     attributes : ObjectAttributes
-        With an id.
+        Those of the Brep.
     """
-    attributes.Mode = model.library.ObjectMode.InstanceDefinitionObject
-    model.file.Objects.Add(geometry, attributes)
-    stream = _definition_stream(name, definition, attributes.Id)
-    model.file.InstanceDefinitions.AddInstanceDefinition(model.decode(stream))
+    model.add("Brep", brep, attributes._replace(is_member=True))
+    stream = _definition_stream(name, definition, attributes.id)
+    fields: dict[str, Untyped] = model.library.Point(model.library.Point3d(0, 0, 0)).Encode()
+    fields["data"] = base64.b64encode(stream).decode("ascii")
+    block = model.library.CommonObject.Decode(fields)
+    model.file.InstanceDefinitions.AddInstanceDefinition(block)
 
 
 def _definition_stream(name: str, definition: UUID, member: UUID) -> bytes:
@@ -59,33 +62,6 @@ def _definition_stream(name: str, definition: UUID, member: UUID) -> bytes:
         ANONYMOUS, (ints(1, 0), component, ints(_STATIC), no_units, bytes(12), box, members)
     )
     return encode(class_object(_INSTANCE_DEFINITION, body))
-
-
-def add_instance(
-    model: RhinoModel,
-    definition: UUID,
-    rotation: FloatArray,
-    translation: FloatArray,
-    attributes: Untyped,
-) -> None:
-    """Set a block into the model.
-
-    Parameters
-    ----------
-    definition : UUID
-        Id of the block.
-    rotation : (3, 3) float array
-        How the block is turned.
-    translation : (3,) float array
-        Where its origin goes.
-    """
-    transform = model.library.Transform(1.0)
-    for i in range(3):
-        for j in range(3):
-            setattr(transform, f"M{i}{j}", float(rotation[i, j]))
-        setattr(transform, f"M{i}3", float(translation[i]))
-    reference = model.library.InstanceReference(definition, transform)
-    model.file.Objects.Add(reference, attributes)
 
 
 def add_mould_blocks(model: RhinoModel, panels: Panels, *, render_meshes: bool) -> list[str]:
@@ -117,15 +93,15 @@ def add_mould_blocks(model: RhinoModel, panels: Panels, *, render_meshes: bool) 
             blocks.append(None)
             continue
         block = object_id(name, "mould block")
-        member = object_attributes(model, name, "mould member", place)
-        add_definition(model, name, block, model.decode(stream), member)
+        member = object_attributes(name, "mould member", place)
+        add_definition(model, name, block, stream, member)
         blocks.append(block)
     panel_ids: list[int] = found.members.tolist()
     rows: list[int] = found.rows.tolist()
     for i, (panel, row) in enumerate(zip(panel_ids, rows, strict=True)):
         block = blocks[row]
         if block is not None:
-            attributes = object_attributes(model, panels.ids[panel], "mould", place)
+            attributes = object_attributes(panels.ids[panel], "mould", place)
             turn, shift = found.rotations[i], found.translations[i]
-            add_instance(model, block, turn, shift, attributes)
+            model.add("InstanceReference", instance_stream(block, turn, shift), attributes)
     return notes
