@@ -134,6 +134,10 @@ def panel_graph(
         **(support.report if support else {}),
     )  # fmt: skip
     _add_writers(graph, pattern.surface if pattern else mesh, made)
+    if moves:
+        graph.add(
+            "write_move_drawing", "moves", mesh=mesh, sphere_mesh=spheres, path="moves.svg"
+        )
     add_papers(graph, options, made, has_moulds=clusters is not None)
     shown = {"findings": audit.findings, "cut": panels.report, "reference": spheres}
     graph.add("write_view", "view", **made, **shown, path="view.html", title=title)
