@@ -22,7 +22,7 @@ PARALLEL = OPENBLAS_NUM_THREADS=1 $(PYTEST) -n 2 --dist loadfile
 # bits. Haswell is what AMD processors get, Prescott the oldest. Ignored where there is no x86.
 CORETYPES := Haswell Prescott
 
-.PHONY: demo test test-long test-kernels release-check lint bench docs install system browser clean
+.PHONY: demo test test-long test-kernels release-check lint bench docs figures install system browser clean
 
 demo: system
 	$(BIN)/spheremesh panel -o out/demo --moulds 8 --thickness 0.02
@@ -61,6 +61,12 @@ bench: system
 docs: system
 	@$(BIN)/python -c 'import furo, myst_parser' 2>/dev/null || $(BIN)/python -m pip install -qq --group docs
 	$(BIN)/python docs/site/build.py out/docs
+
+# All pictures of README and docs, and the gallery with its numbers.
+figures: system browser
+	$(BIN)/python examples/pictures.py docs/images
+	$(BIN)/python examples/page_pictures.py docs/images
+	$(BIN)/python examples/figures/gallery.py
 
 install: $(INSTALLED)
 

@@ -88,7 +88,26 @@ def pencil() -> Image.Image:
     rows = pencil_spheres(*circle_pencils(face_circles(mesh)[0]), angles)
     spheres = SphereMesh.from_local(mesh, rows)
     made = panels(spheres, labels=np.arange(len(angles)))
-    return render_image(made.panels, direction=(0.25, -1.0, 0.3), width=1000, height=700)
+    return render_image(
+        made.panels, direction=(0.25, -1.0, 0.3), width=1000, height=700, legend=False
+    )
+
+
+def lights() -> Image.Image:
+    """A vase on its beams by the angle at edges, from below, and under a sky over houses."""
+    spheres = minimize_angles(fit_spheres(vase_mesh(16, 10))).sphere_mesh
+    support = axis_support(spheres)
+    carried = beams(support.annuli, thickness=0.02, node_radius=0.05).beams
+    cut = panels(spheres, edges="axis", axes=support.axes, thickness=0.02).panels
+    sheet = Image.new("RGB", (1500, 560))
+    views: list[dict[str, Any]] = [
+        {"beams": carried, "color_by": "angle"},
+        {"beams": carried, "direction": "below", "color_by": "none"},
+        {"shading": "mirror", "color_by": "none"},
+    ]
+    for place, view in enumerate(views):
+        sheet.paste(render_image(cut, width=500, height=560, **view), (500 * place, 0))
+    return sheet
 
 
 def mobius() -> Image.Image:
@@ -99,7 +118,7 @@ def mobius() -> Image.Image:
     sheet = Image.new("RGB", (1600, 560))
     for place, shape in enumerate((torus, image)):
         made = panels(shape).panels
-        picture = render_image(made, color_by="radius", width=800, height=560)
+        picture = render_image(made, color_by="radius", width=800, height=560, legend=False)
         sheet.paste(picture, (800 * place, 0))
     return sheet
 
@@ -118,7 +137,12 @@ def models() -> Image.Image:
     for place, shape in enumerate(shapes):
         made = panels(shape).panels
         picture = render_image(
-            made, color_by="radius", direction=(0.3, -1.0, 0.35), width=400, height=560
+            made,
+            color_by="radius",
+            direction=(0.3, -1.0, 0.35),
+            width=400,
+            height=560,
+            legend=False,
         )
         sheet.paste(picture, (400 * place, 0))
     return sheet
@@ -138,7 +162,7 @@ def hexagons() -> Image.Image:
     for place, (mesh, spheres, gap) in enumerate(designs):
         made = tangent_sphere_shex(mesh, spheres)
         cut = panels(made.sphere_mesh, edges="intersection", joint_gap=gap).panels
-        picture = render_image(cut, color_by="radius", width=450, height=420)
+        picture = render_image(cut, color_by="radius", width=450, height=420, legend=False)
         sheet.paste(picture, (450 * place, 0))
     return sheet
 
@@ -363,6 +387,7 @@ PICTURES = {
     "roof": roof,
     "roof-zebra": roof_zebra,
     "pencil": pencil,
+    "render": lights,
     "mobius": mobius,
     "models": models,
     "hexagons": hexagons,

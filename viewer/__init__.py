@@ -2,6 +2,7 @@
 
 assembly      Pictures of panels on their beams: from below, or near a node.
 page          A model as one HTML file that turns, shines and answers in any browser.
+report        What a panelling came to, as one page to read and to print.
 render        Pictures of panels, beams and other things without graphics hardware.
 surroundings  The ground that things stand on, with their shadows.
 shading       How a surface looks in its light: paint, and what polish mirrors.

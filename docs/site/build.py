@@ -19,9 +19,9 @@ from reference import library_nodes, reference_pages
 SITE = Path(__file__).resolve().parent
 ROOT = SITE.parents[1]
 GUIDES = (
-    "panels", "mesh-files", "surfaces", "patterns", "supports", "exact-supports", "beams",
-    "drawings", "tables", "assembly", "optimization", "remeshing", "hexagons", "models",
-    "graphs", "security", "limits",
+    "gallery", "panels", "mesh-files", "surfaces", "patterns", "supports", "exact-supports",
+    "beams", "drawings", "tables", "assembly", "optimization", "remeshing", "hexagons",
+    "models", "graphs", "security", "limits",
 )  # fmt: skip
 """Order of the pages of docs/; those that are not named come after them."""
 GRASSHOPPER = "grasshopper"

@@ -7,6 +7,7 @@ drawing_set   A set of drawings: key plans, sheets of panels by moulds, sheets o
 dxf           DXF as text, set into an empty document.
 key_plan      Key plans: where every panel, beam and node of the drawings is.
 moulds        Drawings of moulds as DXF or SVG: every panel in its blank.
+moves         Drawing of the design: how far an optimisation moved its vertices.
 nesting       Rectangles on stock sheets, as few as a short search finds.
 outlines      Outlines of panels as they are seen along an axis: circular arcs on paper.
 pages         Pages of paper: sizes, frames, title blocks, all pages in one drawing.

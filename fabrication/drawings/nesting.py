@@ -21,6 +21,10 @@ _THOROUGH: Final = 600
 """Rectangles up to which every way is tried that is slow for many."""
 
 
+_Placed: TypeAlias = tuple[int, int, int, int, int, int]
+"""Sheet, x, y, width, height and number of a piece."""
+
+
 @dataclass(frozen=True)
 class Stock:
     """Sheets to cut from, in millimetres.
@@ -94,7 +98,11 @@ def nest_rectangles(sizes: FloatArray, stock: Stock) -> Nesting:
     rows = np.flatnonzero(fits)
     needed = _whole(sizes[rows] + stock.kerf)
     bin_size = (np.floor((room + stock.kerf) * _STEPS_PER_MM)).astype(int).tolist()
-    best = _best_packing(needed, bin_size, can_turn=stock.grain == "any") if len(rows) else []
+    with_kerf = float((sizes[rows] + stock.kerf).prod(axis=1).sum())
+    bound = ceil(with_kerf / float((room + stock.kerf).prod()) - 1e-9)
+    best: list[_Placed] = []
+    if len(rows):
+        best = _best_packing(needed, bin_size, bound, can_turn=stock.grain == "any")
     n_sheets = 1 + max((place[0] for place in best), default=-1)
     for sheet, x, y, width, height, piece in best:
         row = rows[piece]
@@ -104,8 +112,6 @@ def nest_rectangles(sizes: FloatArray, stock: Stock) -> Nesting:
     oversize: list[int] = np.flatnonzero(~fits).tolist()
     sheets[oversize] = n_sheets + np.arange(len(oversize))
     areas = float(sizes[rows].prod(axis=1).sum())
-    with_kerf = float((sizes[rows] + stock.kerf).prod(axis=1).sum())
-    bound = ceil(with_kerf / float((room + stock.kerf).prod()) - 1e-9)
     total = n_sheets * stock.size[0] * stock.size[1]
     waste = 1 - areas / total if total else 0.0
     return Nesting(places, turned, sheets, oversize, n_sheets, bound, waste)
@@ -128,14 +134,10 @@ def _whole(sizes: FloatArray) -> list[tuple[int, int]]:
     return [(width, height) for width, height in numbers.tolist()]
 
 
-_Placed: TypeAlias = tuple[int, int, int, int, int, int]
-"""Sheet, x, y, width, height and number of a piece."""
-
-
 def _best_packing(
-    sizes: list[tuple[int, int]], bin_size: list[int], *, can_turn: bool
+    sizes: list[tuple[int, int]], bin_size: list[int], bound: int, *, can_turn: bool
 ) -> list[_Placed]:
-    """The fewest sheets of a few ways to fill them."""
+    """The fewest sheets of a few ways to fill them; no more ways once they are at the bound."""
     try:
         import rectpack  # pyright: ignore[reportMissingTypeStubs]
     except ImportError as error:
@@ -144,9 +146,9 @@ def _best_packing(
         ) from error
     library: _Untyped = rectpack
     ways = [
+        (library.GuillotineBssfSas, library.PackingBin.BFF),  # by far the fastest
         (library.MaxRectsBssf, library.PackingBin.BFF),
         (library.MaxRectsBaf, library.PackingBin.BFF),
-        (library.GuillotineBssfSas, library.PackingBin.BFF),
     ]
     if len(sizes) <= _THOROUGH:
         ways += [
@@ -164,4 +166,6 @@ def _best_packing(
         found: list[_Placed] = packer.rect_list()
         if not best or max(p[0] for p in found) < max(p[0] for p in best):
             best = found
+        if max(p[0] for p in best) < bound:
+            break
     return best

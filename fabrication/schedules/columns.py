@@ -16,6 +16,7 @@ from ...kernel.panels.facts import (
     edge_angles,
     panel_bulges,
     panel_radii,
+    wall_tilts,
 )
 from ...kernel.panels.panels import Panels, panel_arcs, panel_areas
 from ...kernel.spheres.arcs import arc_lengths
@@ -31,16 +32,18 @@ def panel_columns(panels: Panels | None, units: str) -> dict[str, Column]:
 
     ``id``, ``mould`` (from 1; None without), ``bulge``, ``radius_mm`` (None for planes),
     ``area_m2``, ``thickness_mm``, ``size_mm``, ``planarity_mm`` (how far corners are off their
-    plane), and of each edge in order ``edge_lengths_mm``, ``sagittas_mm``, ``angles_deg`` (to
-    the neighbour) and ``neighbors`` (rows; None where there is none).
+    plane), ``tilt_deg`` (of the wall that leans most from the normals), and of each edge in
+    order ``edge_lengths_mm``, ``sagittas_mm``, ``angles_deg`` (to the neighbour) and
+    ``neighbors`` (rows; None where there is none).
     """
     if panels is None or not panels.ids:
         names = (
             "id", "mould", "bulge", "radius_mm", "area_m2", "thickness_mm", "size_mm",
-            "planarity_mm", "edge_lengths_mm", "sagittas_mm", "angles_deg", "neighbors",
+            "planarity_mm", "tilt_deg",
+            "edge_lengths_mm", "sagittas_mm", "angles_deg", "neighbors",
         )  # fmt: skip
         return {name: [] for name in names}
-    scale, arcs = millimeters_per(units), panel_arcs(panels)
+    scale, arcs, tilts = millimeters_per(units), panel_arcs(panels), wall_tilts(panels)
     rows = {face: row for row, face in enumerate(panels.face_ids.tolist())}
     faces: list[int] = panels.neighbors.tolist()
     return {
@@ -52,6 +55,7 @@ def panel_columns(panels: Panels | None, units: str) -> dict[str, Column]:
         "thickness_mm": _rounded(panels.thicknesses * scale),
         "size_mm": [_rounded(size) for size in bounding_sizes(panels) * scale],
         "planarity_mm": np.round(corner_misses(panels) * scale, 3).tolist(),
+        "tilt_deg": _rounded(np.degrees(np.maximum.reduceat(tilts, panels.offsets[:-1])), 3),
         "edge_lengths_mm": _by_panel(panels, _rounded(arc_lengths(arcs) * scale)),
         "sagittas_mm": _by_panel(panels, _rounded(arcs.sagittas * scale, 3)),
         "angles_deg": _by_panel(panels, _rounded(np.degrees(edge_angles(panels)), 3)),

@@ -18,7 +18,7 @@ from spheremesh.kernel.surfaces.circular_nets import vase_net
 
 FILES = {
     "panels.step", "model.3dm", "schedule.csv", "schedule.json", "moulds.dxf", "moulds.svg",
-    "preview.png", "view.html", "graph.json", "report.json",
+    "preview.png", "view.html", "report.html", "graph.json", "report.json",
 }  # fmt: skip
 
 

@@ -24,9 +24,10 @@ from ...kernel.meshes.mesh import Mesh
 from ...kernel.panels.panels import Panels
 from ...kernel.parts.findings import Finding
 from ...kernel.parts.records import part_ids
+from ..light import sky_maps
 from .beams import beam_arrays, beam_points, node_arrays
 from .container import pack_arrays
-from .faces import Faces, face_arrays, panel_faces
+from .faces import Faces, cover, face_arrays, panel_faces
 from .grid import Grid, grid_about
 from .sky import GROUND, REACH, ground_openness, panel_openness, point_sky, point_spacing
 
@@ -123,6 +124,8 @@ def page_data(
     head: dict[str, Any] = {
         "title": texts.title,
         "solid": len(faces) == 2,
+        "tight": panels is not None and panels.joint_gap == 0,
+        "size_mm": grid.size * texts.millimeters,
         "low": low.tolist(),
         "high": (-low).tolist(),
         "home": [0.5, -0.8, 0.5] if low[0] <= low[1] else [0.8, 0.5, 0.5],
@@ -149,7 +152,10 @@ def _add_light(
 ) -> dict[str, Any]:
     """Light of the sky at the points of panels and on the ground; where that lies."""
     seen = faces[0].points if faces else points[0]
-    sky = point_sky(seen, point_spacing(seen))
+    if faces:
+        sky = sky_maps(seen, cover(faces[0]))
+    else:
+        sky = point_sky(seen, point_spacing(seen))
     for name, side in zip(("outer", "inner"), faces, strict=False):
         # Both sides count from the outer face, on which the light falls.
         normals = side.normals if name == "outer" else -side.normals

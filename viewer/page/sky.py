@@ -1,49 +1,20 @@
-"""How much light of the sky arrives at the points of panels.
-
-As `viewer.light` counts it for pictures, with fewer directions and from points in place of
-triangles: a page is written in a moment.
-"""
+"""How much light of the sky arrives at the points of panels: as `viewer.light` counts it."""
 
 from typing import Final
 
 import numpy as np
 
 from ...kernel.arrays import FloatArray, IntArray, norm
-from ..camera import view_axes
-from ..light import DepthMap, blurred, sky_openness
+from ..light import DepthMap, blurred, point_maps, sky_openness
 
 DIRECTIONS: Final = 14
-FINEST: Final = 64
-"""Pixels of a depth picture along the longest side, at most."""
+"""Of the sky, for pictures that are made quickly."""
 
 GROUND: Final = 48
 """Points of the ground along each side."""
 
 REACH: Final = 1.6
 """Side of the ground, in sizes of the model."""
-
-
-def point_sky(points: FloatArray, spacing: float) -> list[DepthMap]:
-    """Depth pictures of points (N, 3) that stand at most a spacing apart on their surfaces."""
-    index = np.arange(DIRECTIONS) + 0.5
-    height = index / DIRECTIONS
-    turn = np.pi * (1 + 5**0.5) * index
-    across = np.sqrt(1 - height**2)
-    directions = np.stack([across * np.cos(turn), across * np.sin(turn), height], axis=1)
-    return [_depth(points, direction, spacing) for direction in directions]
-
-
-def _depth(points: FloatArray, direction: FloatArray, spacing: float) -> DepthMap:
-    axes = view_axes(direction)
-    local = points @ axes.T
-    extent = float(np.ptp(local[:, :2], axis=0).max())
-    pixel = max(extent / (FINEST - 4), spacing) or 1.0
-    size = int(extent / pixel) + 5
-    corner = local[:, :2].min(axis=0) - 2 * pixel
-    column, row = ((local[:, :2] - corner) / pixel).astype(np.int64).T
-    heights = np.full(size * size, -np.inf)
-    np.maximum.at(heights, row * size + column, local[:, 2])
-    return DepthMap(axes, corner, pixel, heights.reshape(size, size))
 
 
 def panel_openness(points: FloatArray, normals: FloatArray, sky: list[DepthMap]) -> IntArray:
@@ -66,7 +37,12 @@ def ground_openness(points: FloatArray, sky: list[DepthMap]) -> IntArray:
     return np.rint(255 * soft).astype(np.int64)
 
 
+def point_sky(points: FloatArray, spacing: float) -> list[DepthMap]:
+    """Depth pictures of points (N, 3) that stand at most a spacing apart on their surfaces."""
+    return point_maps(points, spacing, DIRECTIONS)
+
+
 def point_spacing(points: FloatArray) -> float:
     """How far neighbouring points are apart on their surfaces, where they stand in order."""
     apart = norm(np.diff(points, axis=0)) if len(points) > 1 else np.zeros(1)
-    return 1.2 * float(np.quantile(apart, 0.9))
+    return float(np.quantile(apart, 0.9))

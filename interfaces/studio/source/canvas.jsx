@@ -18,7 +18,9 @@ function nodesOf(s, before) {
   const places = placesOf(s), known = new Map(before.map((node) => [node.id, node]));
   const made = (id, type, data, more = {}) => {
     const [x, y] = places[id] ?? [0, 0], old = known.get(id);
-    const position = old && old.position.x === x && old.position.y === y ? old.position : { x, y };
+    // What is on its way stays under the hand.
+    const isHeld = old && (old.dragging || unkept.has(id));
+    const position = isHeld || (old && old.position.x === x && old.position.y === y) ? old.position : { x, y };
     if (old && old.position === position && old.ariaLabel === more.ariaLabel) return old;
     return { ...(old ?? {}), id, type, data: old?.data ?? data, position, ...more };
   };
@@ -134,7 +136,8 @@ function Flow() {
   const onDragStop = useCallback((_, node, dragged) => {
     const ids = moving.current ? [...moving.current.at.keys()] : dragged.map((each) => each.id);
     moving.current = null;
-    setTimeout(() => keepPlaces(ids, flow), 0);
+    for (const id of ids) unkept.add(id);
+    setTimeout(() => keepPlaces(ids, flow).then(() => { for (const id of ids) unkept.delete(id); }), 0);
   }, []);
   const onNodeClick = useCallback((event, node) => {
     if (node.type !== "step" || event.target.closest("input, select, button, .react-flow__handle")) return;
@@ -152,7 +155,7 @@ function Flow() {
       return flow.screenToFlowPosition({ x: left + width / 2, y: top + height / 2 });
     };
     const context = { flow, middle, picked: () => picked, selectAll: () => setNodes((before) => before.map((each) => ({ ...each, selected: true }))),
-      select: (ids) => setNodes((before) => before.map((each) => ({ ...each, selected: ids.includes(each.id) }))),
+      select: (ids) => { set({ selected: ids }); setNodes((before) => before.map((each) => ({ ...each, selected: ids.includes(each.id) }))); },
       tidy: () => tidy(flow) };
     canvasActions.current = context;
     const press = (event) => keyPressed(event, context);
@@ -234,16 +237,21 @@ export function keepPlaces(ids, flow) {
     const node = all.find((each) => each.id === id), at = placed(id);
     return node && (!at || at[0] !== Math.round(node.position.x) || at[1] !== Math.round(node.position.y));
   });
-  if (known) edit([{ op: "move", steps, params }]);
+  return known ? edit([{ op: "move", steps, params }]) : Promise.resolve(true);
 }
 
 let byKeys = 0;
+const unkept = new Set();
 /** Arrows move nodes without a drag: their places are kept when the keys rest. */
 function keptByKeys(changes, flow) {
   const ids = changes.filter((change) => change.type === "position" && change.dragging === false && change.position).map((change) => change.id);
   if (!ids.length) return;
+  for (const id of ids) unkept.add(id);
   clearTimeout(byKeys);
-  byKeys = setTimeout(() => keepPlaces(ids, flow), 350);
+  byKeys = setTimeout(() => {
+    const moved = [...unkept];
+    keepPlaces(moved, flow).then(() => { for (const id of moved) unkept.delete(id); });
+  }, 350);
 }
 
 function tidy(flow) {

@@ -65,7 +65,11 @@ export function Range({ value, min, max, whole, label, onChange }) {
     <input type="range" className="nodrag nopan range" aria-label={label} min={min} max={max} step={step} value={shown}
       style={{ "--share": share }}
       onPointerDown={() => { gesture.current = newGesture(); }}
-      onKeyDown={(event) => { event.stopPropagation(); if (!event.repeat) gesture.current = newGesture(); }}
+      onKeyDown={(event) => {
+        if (!/^(Arrow|Page|Home|End)/.test(event.key)) return;
+        event.stopPropagation();
+        if (!event.repeat) gesture.current = newGesture();
+      }}
       onChange={(event) => {
         const number = Number(event.target.value);
         setHeld(number);

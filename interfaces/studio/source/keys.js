@@ -68,8 +68,9 @@ const PLAIN = {
 
 function remove(canvas) {
   const wires = [...canvas.picked()];
-  const focused = document.activeElement?.closest?.(".react-flow__node")?.dataset.id;
-  const selected = now().selected.length || !focused ? now().selected : [focused];
+  const focused = document.activeElement?.closest?.(".react-flow__node")?.dataset.id, { graph } = now().doc;
+  const isThere = (id) => id.slice(2) in ({ s: graph.steps, p: graph.params, g: graph.groups }[id[0]] ?? {});
+  const chosen = now().selected.filter(isThere), selected = chosen.length || !focused ? chosen : [focused];
   if (selected.length) removeSelected(selected);
   else if (wires.length) edit(wires.map((id) => { const to = id.split(">")[1]; return { op: "take", step: to.split(".")[0], port: to.split(".")[1] }; }));
 }

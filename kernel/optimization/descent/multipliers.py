@@ -9,7 +9,8 @@ import numpy as np
 from ...arrays import FloatArray, dot
 from ...solvers.factorization import Solver
 from ...solvers.levenberg_marquardt import Status
-from ...solvers.newton import NewtonDescent, Problem, newton
+from ...solvers.minimization import Problem
+from ...solvers.newton import NewtonDescent, newton
 from ...tolerances import (
     AT_REST,
     COMMON_VERTEX,
@@ -35,7 +36,7 @@ SLOW = 4.0
 """From round to round, what has to hold shall miss by so much less; else it weighs more."""
 HARDER = {"sphericity": 3.0, "support": 10.0}
 """How much more. Vertices that move slide along curved walls: too steep ones stop them."""
-PATIENCE = 2
+SLOW_ROUNDS = 2
 """What stays slow for more rounds than this, each with more weight, cannot hold."""
 
 
@@ -196,7 +197,7 @@ def hold(
         if is_settled and looks:
             return Held(unknowns, tuple(stages), descent.lowest, is_held=True)
         is_stuck = not (is_last and is_held) and any(
-            each.slow > (0 if is_used_up else PATIENCE) for each in left.values()
+            each.slow > (0 if is_used_up else SLOW_ROUNDS) for each in left.values()
         )
         number += 1
         if is_stuck or number == MULTIPLIER_ROUNDS:

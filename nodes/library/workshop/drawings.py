@@ -4,13 +4,15 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from ....fabrication.drawings import beams as dxf
-from ....fabrication.drawings import drawing_set, stock_sheets
+from ....fabrication.drawings import drawing_set, moves, stock_sheets
 from ....fabrication.drawings import moulds as mould_drawings
 from ....fabrication.drawings.nesting import Stock
 from ....fabrication.model import Model
 from ....kernel.beams.beams import Beams
+from ....kernel.meshes.mesh import Mesh
 from ....kernel.panels.panels import Panels
 from ....kernel.reports import Report
+from ....kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...graphs.node import node, warn
 from ...graphs.ports import Length, Units, WritePath
 from ..fabricate import told_path
@@ -94,6 +96,42 @@ def write_mould_drawings(panels: Panels, path: WritePath, units: Units = "m") ->
     True
     """
     return told_path(mould_drawings.write_mould_drawings(Model(panels, units=units), path))
+
+
+@node
+def write_move_drawing(
+    mesh: Mesh, sphere_mesh: SphereMesh, path: WritePath, units: Units = "m"
+) -> str:
+    """Draw the design and how far its vertices moved, in millimetres.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The design.
+    sphere_mesh : SphereMesh
+        The same mesh with vertices that an optimisation moved.
+    path : path
+        Ends in .dxf or .svg.
+    units : str
+
+    Returns
+    -------
+    str
+        The path. Layers: PLAN (edges of the design), MARK (a circle about every vertex that
+        moved, as large as its move in one scale) and TEXT (the largest move, and the scale).
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from spheremesh.nodes import fit_spheres, optimize_spheres, vase_mesh
+    >>> from spheremesh.nodes import write_move_drawing
+    >>> mesh = vase_mesh(12, 6)
+    >>> optimum = optimize_spheres(fit_spheres(mesh), tolerance=0.02)
+    >>> with TemporaryDirectory() as folder:
+    ...     write_move_drawing(mesh, optimum.sphere_mesh, f"{folder}/moves.svg")[-9:]
+    'moves.svg'
+    """
+    return told_path(moves.write_move_drawing(mesh, sphere_mesh.mesh, path, units))
 
 
 @node

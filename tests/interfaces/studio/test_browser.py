@@ -135,7 +135,8 @@ def test_a_slider_runs_what_depends_on_it_and_undo_gives_the_same_bytes(
     settled(page)
     assert set(studio.made()) <= {"few", "panels"}
     assert "few" in studio.made()
-    until(page, "document.querySelector('.words').innerText.includes('6 moulds')")
+    # Its five rings have five radii, however many moulds are asked for.
+    until(page, "document.querySelector('.words').innerText.includes('5 moulds')")
     page.locator(".canvas").press("Escape")
     while studio.session.document.content()["undo"]:
         rev = studio.session.document.rev
@@ -213,14 +214,15 @@ def test_keys_do_all_that_the_mouse_does(page: Page, studio: Studio) -> None:
     page.wait_for_selector(".tile[data-target='planarity.result']")
     page.keyboard.press("p")
     soon(lambda: graph(studio)["canvas"].get("pins") == ["planarity.result"])
-    page.keyboard.press("ArrowRight")
     place = graph(studio)["canvas"]["steps"]["planarity"]
+    page.keyboard.press("ArrowRight")
     soon(lambda: graph(studio)["canvas"]["steps"]["planarity"] != place)
     page.keyboard.press("F2")
     page.keyboard.type("flatness")
     page.keyboard.press("Enter")
     soon(lambda: "flatness" in graph(studio)["steps"])
     assert graph(studio)["canvas"]["pins"] == ["flatness.result"]
+    page.wait_for_selector('.react-flow__node[data-id="s:flatness"]')
     page.focus('.react-flow__node[data-id="s:flatness"]')
     page.keyboard.press("Enter")
     page.keyboard.press("Delete")
@@ -322,6 +324,7 @@ def test_a_graph_of_200_steps_is_dragged_without_long_frames(
     opened(page, studio)
     until(page, "document.querySelector('.canvas').dataset.nodes === '200'")
     settled(page)
+    until(page, "window.studioDrawn > 0")
     client = page.context.new_cdp_session(page)
     client.send("Performance.enable", {"timeDomain": "threadTicks"})
 
@@ -339,13 +342,19 @@ def test_a_graph_of_200_steps_is_dragged_without_long_frames(
         page.evaluate("new Promise(requestAnimationFrame)")
         costs.append(busy() - before)
     page.mouse.up()
-    node = page.locator(".step[data-step=few_3_2] strong").bounding_box()
-    page.mouse.move(node["x"] + 1, node["y"] + 1)
+    # In the middle, where a drag does not move the canvas as well.
+    x, y = page.evaluate(
+        """() => { const all = [...document.querySelectorAll('.step strong')];
+        const at = all.map((e) => e.getBoundingClientRect()).map((r) => [r.x + 2, r.y + 2]);
+        return at.sort((a, b) => Math.hypot(a[0] - 200, a[1] - 320)
+          - Math.hypot(b[0] - 200, b[1] - 320))[0]; }"""
+    )
+    page.mouse.move(x, y)
     page.mouse.down()
     for k in range(24):
         before = busy()
-        page.mouse.move(node["x"] + 5 * k, node["y"] + 3 * k)
+        page.mouse.move(x + 5 * (k % 12), y + 3 * k)
         page.evaluate("new Promise(requestAnimationFrame)")
         costs.append(busy() - before)
     page.mouse.up()
-    assert sorted(costs)[-3] < 100
+    assert sorted(costs)[-3] < 100, " ".join(f"{cost:.0f}" for cost in costs)

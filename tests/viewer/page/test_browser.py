@@ -3,6 +3,7 @@
 import base64
 import shutil
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +15,18 @@ from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.parts.findings import Finding
 from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.fit import fit_spheres
-from spheremesh.kernel.surfaces.circular_nets import vase_net
+from spheremesh.kernel.surfaces.circular_nets import ellipsoid_net, vase_net
 from spheremesh.nodes import beams as cut_beams
 from spheremesh.nodes import bisector_support
+from spheremesh.viewer.camera import SAMPLES, stand_at
+from spheremesh.viewer.colors import panel_colors
+from spheremesh.viewer.exposure import expose
 from spheremesh.viewer.page.document import PageTexts, page_text
+from spheremesh.viewer.page.faces import panel_faces
+from spheremesh.viewer.page.grid import grid_about
+from spheremesh.viewer.scene import gather
+from spheremesh.viewer.shading import Shading
+from spheremesh.viewer.shapes import panel_shape
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 FLAGS = [
@@ -92,7 +101,7 @@ def page(shared: Page) -> Page:
         """() => { const p = window.spheremesh;
         p.filter = null; p.select(-1); p.showTable(false);
         p.set({color: 'mould', shading: 0, flat: 'off', axis: '', depth: 0.5, explode: 0,
-               hidden: new Set()}); p.view.fit(p.home); }"""
+               hidden: new Set(['axes'])}); p.setMeasuring(false); p.view.fit(p.home); }"""
     )
     return shared
 
@@ -145,6 +154,161 @@ def test_picking_finds_the_part_that_is_seen(page: Page) -> None:
         assert selected(page) == ids[part]
     page.mouse.click(8, 150)
     assert not page.is_visible("#card")
+
+
+def test_fifty_random_parts_are_picked_right(page: Page) -> None:
+    """Against rays of ours: the nearest triangle of any part that a pixel's ray meets."""
+    page.evaluate("window.spheremesh.view.fit([0.4, -1, 0.6])")
+    rng = np.random.default_rng(7)
+    places = rng.uniform((150, 60), (SIZE["width"] - 380, SIZE["height"] - 60), (400, 2))
+    answers: list[tuple[int, int]] = page.evaluate(
+        """(places) => { const v = window.spheremesh.view, cross = (a, b) => [
+          a[1]*b[2]-a[2]*b[1], a[2]*b[0]-a[0]*b[2], a[0]*b[1]-a[1]*b[0]],
+          dot = (a, b) => a[0]*b[0]+a[1]*b[1]+a[2]*b[2],
+          sub = (a, b) => a.map((x, k) => x-b[k]);
+        const rows = v.shapes.surfaces.rows, eye = v.camera.position.toArray(), found = [];
+        const soups = [v.shapes.panels, v.shapes.walls, v.shapes.beams, v.shapes.nodes];
+        const nearest = (ray) => { let best = Infinity, second = Infinity, part = -1;
+          for (const soup of soups) for (let t = 0; t < soup.corners; t += 3) {
+            const [a, b, c] = [0, 1, 2].map((k) => soup.point(soup.ids[t + k]));
+            const e = sub(b, a), f = sub(c, a), p = cross(ray, f), d = dot(e, p);
+            if (Math.abs(d) < 1e-14) continue;
+            const s = sub(eye, a), u = dot(s, p) / d, q = cross(s, e), w = dot(ray, q) / d;
+            const z = dot(f, q) / d;
+            if (u < 0 || w < 0 || u + w > 1 || z <= 0) continue;
+            const own = rows[12 * soup.owners[soup.ids[t]] + 7];
+            if (z < best) { if (own !== part) second = best; best = z; part = own; }
+            else if (own !== part) second = Math.min(second, z);
+          } return [part, second - best]; };
+        for (const [x, y] of places) {
+          const ray = v.ray(Math.floor(x) + 0.5, Math.floor(y) + 0.5);
+          const [part, apart] = nearest(ray);
+          if (part < 0 || apart < 1e-4) continue;
+          found.push([v.pick(x, y), part]);
+          if (found.length === 50) break;
+        } return found; }""",
+        places.tolist(),
+    )
+    assert len(answers) == 50
+    assert len({part for _, part in answers}) > 15
+    assert [picked for picked, _ in answers] == [part for _, part in answers]
+
+
+@pytest.mark.parametrize(("light", "shading"), [(0, "studio"), (1, "zebra")])
+def test_shading_agrees_with_pictures(
+    browser: Browser, tmp_path: Path, light: int, shading: Shading
+) -> None:
+    """100 random pixels of a dome, on which no shadow falls, by the same camera: 2 %."""
+    spheres = fit_spheres(ellipsoid_net(24, 12, 2.0, 2.0, 0.9))
+    made, _ = cut_panels(spheres)
+    upper = select_parts(made, made.origins[:, 2] > 0.1)
+    path = tmp_path / "view.html"
+    about = PageTexts("dome", panel_columns(upper, "m"), beam_columns(None, None, "m"))
+    path.write_text(page_text(upper, None, about), encoding="utf-8")
+    page = browser.new_page(viewport={"width": 900, "height": 500})
+    page.goto(path.as_uri())
+    page.wait_for_selector("html[data-ready]", state="attached", timeout=30_000)
+    page.wait_for_timeout(400)
+    page.evaluate(f"window.spheremesh.set({{color: 'none', shading: {light}}})")
+    page.evaluate("window.spheremesh.set({hidden: new Set(['edges'])})")
+    page.evaluate("window.spheremesh.view.fit([0.2, -1, 0.22])")
+    shown = picture(page)
+    eye, target = np.array(
+        page.evaluate(
+            """(v => [v.camera.position.toArray(), v.controls.target.toArray()])
+            (window.spheremesh.view)"""
+        )
+    )
+    height, width, _ = shown.shape
+    page.close()
+    # The page has its own unit and an upright field of view; pictures one across.
+    corners = panel_faces(upper)[0].points
+    grid = grid_about(corners)
+    camera = stand_at(eye * grid.size, target * grid.size, SAMPLES * width, SAMPLES * height)
+    focal = SAMPLES * height / 2 / np.tan(np.radians(12.0))
+    camera = replace(camera, focal=float(focal), eye=camera.eye + grid.center)
+    colors, _ = panel_colors(upper, "none")
+    scene = gather([panel_shape(upper, colors, edges=False)])
+    own = replace(camera, eye=camera.eye - scene.origin)
+    exact = np.asarray(expose(scene, own, shading, ground=False)).astype(float)
+    inside = shown[..., 3] == 255
+    # Away from outlines, where the page draws nothing behind.
+    inside &= np.roll(inside, 2, 0) & np.roll(inside, -2, 0)
+    inside &= np.roll(inside, 2, 1) & np.roll(inside, -2, 1)
+    # Nor where two panels share a pixel: there the picture with edges has a line.
+    edged = gather([panel_shape(upper, colors)])
+    lines = np.asarray(expose(edged, own, shading, ground=False)).astype(float)
+    inside &= (lines == exact).all(axis=2)
+    # Nor near the outline, where stripes are finer than pixels.
+    seen = np.flatnonzero(inside.any(axis=0))
+    inside[:, : seen[0] + len(seen) // 8] = inside[:, seen[-1] - len(seen) // 8 :] = False
+    rows, columns = np.nonzero(inside)
+    chosen = np.random.default_rng(5).choice(len(rows), 100, replace=False)
+    apart = np.abs(exact - shown[..., :3])[rows[chosen], columns[chosen]] / 255
+    assert apart.max() < 0.02
+
+
+def test_fingers_pick_and_turn(browser: Browser, address: str) -> None:
+    context = browser.new_context(
+        viewport={"width": 390, "height": 700}, has_touch=True, is_mobile=True
+    )
+    page = context.new_page()
+    page.goto(address)
+    page.wait_for_selector("html[data-ready]", state="attached", timeout=30_000)
+    x, y = page.evaluate(
+        """() => { const v = window.spheremesh.view, b = v.canvas.getBoundingClientRect();
+        v.show(false); const w = b.width / 2;
+        for (let y = 120; y < b.height - 100; y += 3) if (v.pick(w, y) >= 0)
+          return [b.left + w, b.top + y + 4]; }"""
+    )
+    page.touchscreen.tap(x, y)
+    assert page.is_visible("#card")
+    eye = "window.spheremesh.view.camera.position.toArray()"
+    before = page.evaluate(eye)
+    session = context.new_cdp_session(page)
+    for kind, shift in (("touchStart", 0), ("touchMove", 30), ("touchMove", 60)):
+        points = [{"x": x + shift, "y": y}]
+        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+    session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    assert page.evaluate(eye) != before
+    assert page.is_visible("#card")
+    context.close()
+
+
+def test_distances_are_those_of_corners_and_points(page: Page) -> None:
+    page.evaluate("window.spheremesh.set({hidden: new Set(['beams', 'nodes', 'axes'])})")
+    page.click("#measuring button")
+    ends = page.evaluate(
+        """() => { const p = window.spheremesh, v = p.view;
+        const front = v.shapes.corners.map((c, i) => [i, v.project(v.shapes.centers[i])])
+          .filter(([i, [x, y]]) => v.pick(x, y) === i)[3];
+        const corners = v.shapes.corners[front[0]], [x, y] = front[1];
+        const inwards = (c) => v.project(c).map((u, k) => u + 0.35 * ([x, y][k] - u));
+        p.tap(...inwards(corners[0])); p.tap(...inwards(corners[1]));
+        return [corners[0], corners[1], p.measure.distance]; }"""
+    )
+    length = page.evaluate("window.spheremesh.head.size_mm") * np.linalg.norm(
+        np.subtract(ends[0], ends[1])
+    )
+    assert ends[2] == pytest.approx(length, rel=1e-6)
+    assert "mm" in page.text_content("#measure text")
+    far = page.evaluate(
+        """() => { const p = window.spheremesh, v = p.view;
+        const [i, [x, y]] = v.shapes.corners.map((c, i) => [i, v.project(v.shapes.centers[i])])
+          .filter(([i, [x, y]]) => v.pick(x, y) === i)[3];
+        const kept = v.shapes.corners[i]; v.shapes.corners[i] = [];
+        p.tap(x, y); v.shapes.corners[i] = kept;
+        const r = [...v.shapes.surfaces.rows], own = [];
+        for (let s = 0; s < v.shapes.surfaces.length; s++) if (r[12 * s + 7] === i) own.push(s);
+        const q = p.measure.points[0], k = 12 * own[0];
+        const d = q.map((u, j) => u - r[k + 4 + j]);
+        return r[k + 3] * (d[0]**2 + d[1]**2 + d[2]**2)
+          - (r[k] * d[0] + r[k + 1] * d[1] + r[k + 2] * d[2]); }"""
+    )
+    # On the sphere of the panel, but for its triangles.
+    assert abs(far) < 1e-3
+    page.keyboard.press("Escape")
+    assert page.evaluate("window.spheremesh.measure.points.length") == 0
 
 
 def test_beams_and_nodes_are_picked_where_panels_are_hidden(page: Page) -> None:
@@ -278,7 +442,9 @@ def test_an_address_shows_what_its_sender_saw(browser: Browser, address: str) ->
     page.wait_for_selector("html[data-ready]", state="attached", timeout=30_000)
     state = page.evaluate("(s => ({...s, hidden: [...s.hidden]}))(window.spheremesh.state)")
     assert (state["color"], state["shading"], state["flat"]) == ("radius", 1, "swipe")
-    assert (state["axis"], state["depth"], state["hidden"]) == ("z", 0.25, ["beams"])
+    assert (state["axis"], state["depth"], sorted(state["hidden"])) == (
+        "z", 0.25, ["axes", "beams"],
+    )  # fmt: skip
     assert selected(page) == "P0030"
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     page.close()

@@ -43,6 +43,7 @@ function panelRows(model, i) {
     + row("Size", `${p.size_mm[i].map(number).join(" × ")} mm`)
     + row("Thickness", p.thickness_mm[i] ? `${number(p.thickness_mm[i])} mm` : "surface")
     + row("Largest angle", p.angle_deg[i] === null ? "–" : `${number(p.angle_deg[i])}°`)
+    + row("Tilt of walls", `${number(p.tilt_deg[i])}°`)
     + row("Corners off plane", `${number(p.planarity_mm[i])} mm`)
     + `</dl><table class="edges"><thead><tr><th>Edge</th><th>Length mm</th><th>Rise mm</th><th>Angle °</th><th>Next</th></tr></thead><tbody>${edges}</tbody></table><dl>`;
 }

@@ -34,6 +34,7 @@ export function colorModes(model) {
   const measures = [
     ["radius", "Radius", panels.radius_mm, "mm", true],
     ["angle", "Angle at edges", panels.angle_deg, "°", false],
+    ["tilt", "Tilt of walls", panels.tilt_deg, "°", false],
     ["area", "Area", panels.area_m2, "m²", false],
     ["planarity", "Corners off their plane", panels.planarity_mm, "mm", false],
   ];

@@ -3,6 +3,7 @@
 import { cardMarkup, spoken } from "./card.js";
 import { BINS, colorModes, legendMarkup, partColors, passes, scaleOf } from "./colors.js";
 import { PartList } from "./list.js";
+import { locate, Measure } from "./measure.js";
 import { findPart, makeModel } from "./model.js";
 import { paint } from "./painter.js";
 import { buildShapes } from "./shapes.js";
@@ -11,7 +12,7 @@ import { unpackModel } from "./unpack.js";
 import { NAMED_VIEWS, View } from "./view.js";
 
 const $ = (id) => document.getElementById(id);
-const LAYERS = { panels: "Panels", edges: "Edges", beams: "Beams", nodes: "Nodes", missing: "Missing" };
+const LAYERS = { panels: "Panels", edges: "Edges", beams: "Beams", nodes: "Nodes", axes: "Node axes", missing: "Missing" };
 
 class Page {
   constructor(head, arrays) {
@@ -19,7 +20,7 @@ class Page {
     this.shapes = buildShapes(head, arrays);
     this.head = head;
     this.modes = colorModes(this.model);
-    this.state = { color: this.modes[0].key, shading: 0, flat: "off", axis: "", depth: 0.5, explode: 0, part: -1, hidden: new Set() };
+    this.state = { color: this.modes[0].key, shading: 0, flat: "off", axis: "", depth: 0.5, explode: 0, part: -1, hidden: new Set(["axes"]) };
     this.filter = null;
     this.home = head.home;
     try {
@@ -27,6 +28,8 @@ class Page {
     } catch {
       this.view = null;
     }
+    this.measure = this.view ? new Measure(this.view, $("measure"), head.size_mm) : null;
+    if (this.view) this.view.drawn = () => this.measure.draw();
     this.list = new PartList($("table"), this.model, (part) => this.choose(part));
   }
 
@@ -71,7 +74,7 @@ class Page {
 
   fillLayers() {
     const { model } = this;
-    const has = { panels: model.panels.id.length, edges: model.panels.id.length, beams: model.beams.id.length, nodes: model.nodes.id.length, missing: this.shapes.outlines.some((o) => o.length) };
+    const has = { panels: model.panels.id.length, edges: model.panels.id.length, beams: model.beams.id.length, nodes: model.nodes.id.length, axes: this.shapes.axes.size, missing: this.shapes.outlines.some((o) => o.length) };
     $("layers").querySelector(".checks").innerHTML = Object.entries(LAYERS).filter(([key]) => has[key])
       .map(([key, name]) => `<label><input type="checkbox" data-layer="${key}" checked>${name}</label>`).join("");
   }
@@ -90,6 +93,7 @@ class Page {
     buttons("shading", (value) => this.set({ shading: Number(value) }));
     buttons("flat", (value) => this.set({ flat: value }));
     buttons("axis", (value) => this.set({ axis: value }));
+    buttons("measuring", () => this.setMeasuring(!this.measure.on));
     buttons("views", (value) => { this.view.fit(NAMED_VIEWS[value] ?? this.home); this.writeAddress(); });
     $("color").addEventListener("change", (event) => this.set({ color: event.target.value }, true));
     $("depth").addEventListener("input", (event) => this.set({ depth: event.target.value / 1000 }));
@@ -120,7 +124,7 @@ class Page {
     canvas.addEventListener("pointerup", (event) => {
       const box = canvas.getBoundingClientRect();
       if (down && Math.hypot(event.clientX - down[0], event.clientY - down[1]) < 5) {
-        this.select(this.view.pick(event.clientX - box.left, event.clientY - box.top));
+        this.tap(event.clientX - box.left, event.clientY - box.top);
       }
       down = null;
     });
@@ -135,6 +139,27 @@ class Page {
       const step = { ArrowLeft: -0.02, ArrowRight: 0.02 }[event.key];
       if (step) { event.stopPropagation(); this.moveDivider(this.view.swipe + step); }
     });
+  }
+
+  /** A click or a touch of the picture: a part, or an end of a distance. */
+  tap(x, y) {
+    if (!this.measure.on) {
+      this.select(this.view.pick(x, y));
+      return;
+    }
+    this.measure.take(locate(this.view, x, y));
+    if (this.measure.distance !== null) $("spoken").textContent = this.measure.text().join("; ");
+    this.writeAddress();
+  }
+
+  /** Parts that are drawn apart are not where they are: there is nothing to measure. */
+  setMeasuring(on) {
+    this.measure.on = on && !this.state.explode;
+    if (!this.measure.on) this.measure.points = [];
+    $("measuring").firstElementChild.setAttribute("aria-pressed", String(this.measure.on));
+    $("stage").classList.toggle("measuring", this.measure.on);
+    this.measure.draw();
+    this.writeAddress();
   }
 
   moveDivider(share) {
@@ -195,13 +220,14 @@ class Page {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if (event.key === "Escape") {
       document.activeElement?.blur();
-      this.select(-1);
+      if (this.measure?.on) this.setMeasuring(false);
+      else this.select(-1);
       return;
     }
     if (event.target.closest?.("input, select, [role=slider]")) return;
     const turn = { ArrowLeft: [-0.08, 0], ArrowRight: [0.08, 0], ArrowUp: [0, 0.06], ArrowDown: [0, -0.06] }[event.key];
     const act = { "[": () => this.step(-1), "]": () => this.step(1), "/": () => $("search").querySelector("input").focus(),
-      f: () => this.view?.fit(this.home), t: () => this.showTable($("table").hidden) }[event.key.toLowerCase()];
+      f: () => this.view?.fit(this.home), m: () => this.view && this.setMeasuring(!this.measure.on), t: () => this.showTable($("table").hidden) }[event.key.toLowerCase()];
     if (turn && this.view && !event.target.closest?.("#table, #side")) this.view.orbit(...turn);
     else if (act) act();
     else return;
@@ -291,6 +317,8 @@ class Page {
     const { state, view } = this, { uniforms } = view;
     uniforms.shading.value = state.shading;
     uniforms.explode.value = state.explode;
+    if (state.explode && this.measure.on) this.setMeasuring(false);
+    $("measuring").firstElementChild.disabled = state.explode > 0;
     uniforms.cuts.value = state.axis !== "";
     const k = "xyz".indexOf(state.axis), { low, high } = this.head;
     if (k >= 0) {
@@ -316,7 +344,10 @@ class Page {
       if (state.color !== this.modes[0].key) words.set("color", state.color);
       if (state.shading) words.set("light", ["daylight", "zebra", "lamps"][state.shading]);
       if (state.flat !== "off") words.set("panels", state.flat);
-      if (state.hidden.size) words.set("hide", [...state.hidden].join(" "));
+      const hidden = [...state.hidden].filter((key) => key !== "axes");
+      if (hidden.length) words.set("hide", hidden.join(" "));
+      if (!state.hidden.has("axes")) words.set("show", "axes");
+      if (this.measure?.points.length) words.set("measure", this.measure.points.flat().map((v) => v.toFixed(6)).join(" "));
       if (state.axis) words.set("cut", `${state.axis} ${state.depth}`);
       if (state.explode) words.set("apart", state.explode);
       if (state.part >= 0) words.set("part", model.ids[state.part]);
@@ -339,6 +370,12 @@ class Page {
     state.shading = Math.max(0, ["daylight", "zebra", "lamps"].indexOf(words.get("light")));
     state.flat = get("panels", ["off", "swipe", "on"]) ?? "off";
     state.hidden = new Set((words.get("hide") ?? "").split(" ").filter((key) => key in LAYERS));
+    if (words.get("show") !== "axes") state.hidden.add("axes");
+    const ends = (words.get("measure") ?? "").split(" ").map(Number);
+    if (this.measure && ends.length % 3 === 0 && ends.every(Number.isFinite)) {
+      this.setMeasuring(true);
+      this.measure.points = [ends.slice(0, 3), ends.slice(3, 6)].filter((p) => p.length);
+    }
     const [axis, depth] = (words.get("cut") ?? "").split(" ");
     state.axis = ["x", "y", "z"].includes(axis) ? axis : "";
     state.depth = within(Number(depth), 0.5);
@@ -369,11 +406,13 @@ class Page {
 
 const within = (value, otherwise) => (Number.isFinite(value) && value >= 0 && value <= 1 ? value : otherwise);
 
-unpackModel("model").then(([head, arrays]) => {
+unpackModel("model").then(async ([head, arrays]) => {
   const page = new Page(head, arrays);
   page.start();
   window.spheremesh = page;
+  await page.view?.drawFirst();
   document.documentElement.dataset.ready = "";
+  performance.mark("ready");
 }).catch((error) => {
   $("message").textContent = `The model cannot be shown: ${error.message}.`;
 });

@@ -14,14 +14,15 @@ uniform mat4 modelViewMatrix, projectionMatrix;
 out vec3 own, world; out vec2 sky; flat out int row; flat out float kind;
 void main() {
   row = int(surface + 0.5); kind = side; sky = light; own = position;
-  world = position + shiftOf(int(surfaceTexel(row, 1).w + 0.5));
+  world = position;
+  if (explode > 0.0) world += shiftOf(int(surfaceTexel(row, 1).w + 0.5));
   gl_Position = projectionMatrix * modelViewMatrix * vec4(world, 1.0);
 }`;
 
 export const MESH_FRAGMENT = `${COMMON}
 in vec3 own, world; in vec2 sky; flat in int row; flat in float kind;
 uniform sampler2D colors;
-uniform int shading, selected; uniform bool picking, cuts, solid;
+uniform int shading, selected, picking; uniform bool cuts, solid;
 uniform vec3 eye, right, back, sun; uniform vec4 plane;
 out vec4 pixel;
 const float STRIPES = 14.0;
@@ -38,7 +39,15 @@ void main() {
   vec4 first = surfaceTexel(row, 0), second = surfaceTexel(row, 1);
   vec3 axis = surfaceTexel(row, 2).xyz;
   int part = int(second.w + 0.5);
-  if (picking) {
+  if (picking == 2) {
+    // The distance from the eye, in four bytes.
+    float rest = length(world - eye) / 64.0;
+    vec4 bytes;
+    for (int k = 0; k < 4; k++) { rest *= 256.0; bytes[k] = floor(rest); rest -= bytes[k]; }
+    pixel = bytes / 255.0;
+    return;
+  }
+  if (picking == 1) {
     int id = part + 1;
     pixel = vec4(float(id & 255), float((id >> 8) & 255), float((id >> 16) & 255), 255.0) / 255.0;
     return;
@@ -98,7 +107,8 @@ uniform float pull;
 out vec3 world; flat out int row;
 void main() {
   row = int(part + 0.5);
-  world = position + shiftOf(row);
+  world = position;
+  if (explode > 0.0) world += shiftOf(row);
   gl_Position = projectionMatrix * modelViewMatrix * vec4(world, 1.0);
   gl_Position.z -= pull * gl_Position.w;
 }`;

@@ -10,20 +10,16 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import {
   GROUND_FRAGMENT, GROUND_VERTEX, LINE_FRAGMENT, LINE_VERTEX, MESH_FRAGMENT, MESH_VERTEX,
 } from "./shaders.js";
-import { Lines } from "./shapes.js";
+import { Lines } from "./soup.js";
 import { add, cross, dot, length, scale, sub, unit } from "./vectors.js";
 
-const FIELD = 24;
+const FIELD = 24, MANY = 2000;
+const PULL = 4e-6; // of lines before the surfaces that they lie on, in depth
 export const NAMED_VIEWS = {
   home: null, top: [0, -0.001, 1], front: [0, -1, 0.12], side: [1, 0, 0.12], below: [0.5, -0.7, -0.6],
 };
 
-function table(rows, width, perRow) {
-  const height = Math.max(1, Math.ceil((rows.length * perRow) / width));
-  const data = new Float32Array(width * height * 4);
-  rows.forEach((row, i) => data.set(row, i * perRow * 4));
-  return texture(data, width, height, RGBAFormat, FloatType, NearestFilter);
-}
+const table = (data, width, height) => texture(data, width, height, RGBAFormat, FloatType, NearestFilter);
 
 function texture(data, width, height, format, type, filter) {
   const result = new DataTexture(data, width, height, format, type);
@@ -34,24 +30,26 @@ function texture(data, width, height, format, type, filter) {
 
 function meshGeometry(soup) {
   const result = new BufferGeometry();
-  result.setAttribute("position", new BufferAttribute(soup.positions.all, 3));
-  result.setAttribute("surface", new BufferAttribute(soup.surfaces.all, 1));
-  result.setAttribute("side", new BufferAttribute(soup.sides.all, 1));
-  result.setAttribute("light", new BufferAttribute(soup.lights.all, 2, true));
-  result.setIndex(new BufferAttribute(soup.triangles.all, 1));
+  result.setAttribute("position", new BufferAttribute(soup.positions, 3));
+  result.setAttribute("surface", new BufferAttribute(soup.surfaces, 1));
+  result.setAttribute("side", new BufferAttribute(soup.sides, 1));
+  result.setAttribute("light", new BufferAttribute(soup.lights, 2, true));
+  result.setIndex(new BufferAttribute(soup.triangles, 1));
   return result;
 }
 
 function lineGeometry(lines) {
   const result = new BufferGeometry();
-  result.setAttribute("position", new BufferAttribute(lines.positions.all, 3));
-  result.setAttribute("part", new BufferAttribute(lines.parts.all, 1));
+  result.setAttribute("position", new BufferAttribute(lines.positions, 3));
+  result.setAttribute("part", new BufferAttribute(lines.parts, 1));
   return result;
 }
 
-/** Displacement of each part where the model is drawn apart, for an amount of 1. */
-function shiftRows(shapes) {
-  return shapes.centers.map((c, i) => [...add(scale(c, 0.4), shapes.lifts[i], 0.07), 0]);
+/** Displacement of each part where the model is drawn apart, for an amount of 1: texels. */
+function shiftTexels(shapes) {
+  const rows = Math.ceil(Math.max(1, shapes.centers.length) / 1024), data = new Float32Array(4096 * rows);
+  shapes.centers.forEach((c, i) => data.set(add(scale(c, 0.4), shapes.lifts[i], 0.07), 4 * i));
+  return data;
 }
 
 export class View {
@@ -72,7 +70,8 @@ export class View {
     this.controls.addEventListener("start", () => { this.fitted = null; });
     this.flat = "off";
     this.swipe = 0.5;
-    this.visible = { panels: true, edges: true, beams: true, nodes: true, missing: true };
+    this.visible = { panels: true, edges: true, beams: true, nodes: true, axes: false, missing: true };
+    this.ready = true;
     this.target = new WebGLRenderTarget(1, 1);
     this.pending = 0;
     this.load(head, arrays, shapes);
@@ -111,12 +110,12 @@ export class View {
   }
 
   makeUniforms(parts) {
-    const rows = Math.ceil(Math.max(1, parts) / 1024);
+    const rows = Math.ceil(Math.max(1, parts) / 1024), [texels, height] = this.shapes.surfaces.texels(1536);
     return {
-      surfaces: { value: table(this.shapes.surfaces, 1536, 3) },
-      shifts: { value: table(shiftRows(this.shapes), 1024, 1) },
+      surfaces: { value: table(texels, 1536, height) },
+      shifts: { value: table(shiftTexels(this.shapes), 1024, rows) },
       colors: { value: texture(this.colorData, 1024, rows, RGBAFormat, UnsignedByteType, NearestFilter) },
-      shading: { value: 0 }, selected: { value: -1 }, picking: { value: false },
+      shading: { value: 0 }, selected: { value: -1 }, picking: { value: 0 },
       cuts: { value: false }, solid: { value: false }, explode: { value: 0 },
       eye: { value: new Vector3() }, right: { value: new Vector3(1, 0, 0) },
       back: { value: new Vector3(0, 1, 0) }, sun: { value: new Vector3(0, 0, 1) },
@@ -129,32 +128,33 @@ export class View {
     const material = (solid) => new RawShaderMaterial({
       vertexShader: MESH_VERTEX, fragmentShader: MESH_FRAGMENT, glslVersion: GLSL3, side: DoubleSide,
       uniforms: { ...uniforms, solid: { value: solid } },
-      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     });
-    const line = (ink, only = -1, pull = 0) => new RawShaderMaterial({
+    const line = (ink, only = -1, pull = PULL) => new RawShaderMaterial({
       vertexShader: LINE_VERTEX, fragmentShader: LINE_FRAGMENT, glslVersion: GLSL3, transparent: true,
       uniforms: { ...uniforms, ink: { value: new Vector4(...ink) }, only: { value: only }, pull: { value: pull } },
       depthWrite: false,
     });
     const mesh = (soup, solid) => new Mesh(meshGeometry(soup), material(solid));
     this.meshes = {
-      panels: mesh(shapes.panels, head.solid), flat: mesh(shapes.flat, false),
+      panels: mesh(shapes.panels, head.solid), walls: mesh(shapes.walls, head.solid), flat: mesh(shapes.flat, false),
       beams: mesh(shapes.beams, true), nodes: mesh(shapes.nodes, true),
     };
-    const ink = [0.13, 0.15, 0.18, 0.5];
+    const ink = [0.13, 0.15, 0.18, 0.5], edges = lineGeometry(shapes.edges);
     this.marked = line([0.78, 0.30, 0.02, 1], -1, 0.0006);
     this.lines = {
-      edges: new LineSegments(lineGeometry(shapes.edges), line(ink)),
+      edges: new LineSegments(edges, line(ink)),
       flatEdges: new LineSegments(lineGeometry(shapes.flatEdges), line(ink)),
-      marked: new LineSegments(lineGeometry(shapes.edges), this.marked),
+      marked: new LineSegments(edges, this.marked),
+      axes: new LineSegments(lineGeometry(shapes.axes), line([0.10, 0.30, 0.62, 0.9])),
       missing: new LineSegments(lineGeometry(outlines(shapes)), line([0.78, 0.16, 0.12, 1], -2)),
     };
     this.ground = ground(head, arrays);
+    // In this order: what hides most comes first, and what it hides is not shaded.
+    this.renderer.sortObjects = false;
     for (const each of [this.ground, ...Object.values(this.meshes), ...Object.values(this.lines)]) {
       each.frustumCulled = false;
       this.scene.add(each);
     }
-    this.ground.renderOrder = -1;
   }
 
   setColors(colors) {
@@ -172,7 +172,8 @@ export class View {
     this.camera.updateProjectionMatrix();
     // What was made to fit fits again; who has turned the model keeps the view.
     if (this.fitted) this.fit(this.fitted);
-    this.draw();
+    // At once: whoever prints the page does not wait.
+    if (this.ready) this.drawNow();
   }
 
   /** The nearest camera from a direction whose pyramid holds the model: `frame_scene`. */
@@ -241,7 +242,26 @@ export class View {
     if (!this.pending) this.pending = requestAnimationFrame(() => this.drawNow());
   }
 
+  /** A coarse picture at once, a fine one when that has been shown. */
+  async drawFirst() {
+    this.ready = false;
+    const next = () => new Promise((done) => { requestAnimationFrame(done); });
+    const ratio = this.renderer.getPixelRatio(), { beams, nodes } = this.visible;
+    this.renderer.setPixelRatio(ratio / 2);
+    // Below many panels little is seen of what carries them.
+    if (this.shapes.parts > MANY) Object.assign(this.visible, { beams: false, nodes: false });
+    this.drawNow();
+    Object.assign(this.visible, { beams, nodes });
+    await next();
+    setTimeout(() => {
+      this.ready = true;
+      this.renderer.setPixelRatio(ratio);
+      this.draw();
+    }, 150);
+  }
+
   drawNow() {
+    cancelAnimationFrame(this.pending);
     this.pending = 0;
     this.light();
     const { renderer } = this, size = this.canvas.parentElement;
@@ -258,19 +278,29 @@ export class View {
       this.show(this.flat === "on");
     }
     renderer.render(this.scene, this.camera);
+    this.drawn?.();
   }
 
   show(flat) {
     const { meshes, lines, visible } = this;
     meshes.panels.visible = visible.panels && !flat;
+    // Walls that touch are seen in a section, or where parts stand apart.
+    const open = this.uniforms.cuts.value || this.uniforms.explode.value > 0;
+    meshes.walls.visible = meshes.panels.visible && open;
     meshes.flat.visible = visible.panels && flat;
     lines.edges.visible = visible.panels && visible.edges && !flat;
     lines.flatEdges.visible = visible.panels && visible.edges && flat;
     lines.marked.visible = visible.panels && this.marked.uniforms.only.value >= 0 && !flat;
     lines.missing.visible = visible.missing;
+    lines.axes.visible = visible.axes;
     meshes.beams.visible = visible.beams;
     meshes.nodes.visible = visible.nodes;
     this.ground.visible = this.uniforms.explode.value === 0;
+    // Of closed things backs are seen in a section only.
+    for (const mesh of [meshes.panels, meshes.walls, meshes.beams, meshes.nodes]) {
+      const { solid, cuts } = mesh.material.uniforms;
+      mesh.material.side = solid.value && !cuts.value ? FrontSide : DoubleSide;
+    }
   }
 
   /** The sun stands behind the viewer, at the upper left. */
@@ -293,6 +323,12 @@ export class View {
 
   /** The part under a point of the canvas; -1 for none. */
   pick(x, y) {
+    const pixel = this.probe(x, y, 1);
+    return pixel[3] ? pixel[0] + 256 * pixel[1] + 65536 * pixel[2] - 1 : -1;
+  }
+
+  /** Four bytes that a pixel tells: of its part (1), or its distance (2). */
+  probe(x, y, what) {
     const { renderer, camera, scene, uniforms, target } = this;
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     const flat = this.flat === "on" || (this.flat === "swipe" && x < this.swipe * width);
@@ -300,7 +336,7 @@ export class View {
     this.show(flat);
     for (const each of [this.ground, ...Object.values(this.lines)]) each.visible = false;
     camera.setViewOffset(width, height, Math.floor(x), Math.floor(y), 1, 1);
-    uniforms.picking.value = true;
+    uniforms.picking.value = what;
     renderer.setScissorTest(false);
     renderer.setRenderTarget(target);
     renderer.clear();
@@ -309,9 +345,16 @@ export class View {
     renderer.readRenderTargetPixels(target, 0, 0, 1, 1, pixel);
     renderer.setRenderTarget(null);
     camera.clearViewOffset();
-    uniforms.picking.value = false;
-    this.draw();
-    return pixel[3] ? pixel[0] + 256 * pixel[1] + 65536 * pixel[2] - 1 : -1;
+    uniforms.picking.value = 0;
+    return pixel;
+  }
+
+  /** Direction from the eye through a point of the canvas. */
+  ray(x, y) {
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    this.camera.updateMatrixWorld();
+    const far = new Vector3((2 * x) / width - 1, 1 - (2 * y) / height, 0.5).unproject(this.camera);
+    return far.sub(this.camera.position).normalize().toArray();
   }
 
   /** Where a point of the model appears on the canvas. */

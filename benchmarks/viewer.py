@@ -1,0 +1,142 @@
+"""Figures of the viewer: what pictures and pages cost, and whether they agree.
+
+python benchmarks/viewer.py            all but the browser in a few seconds
+python benchmarks/viewer.py browser    with pages in the system's Chromium, drawing in software
+"""
+
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from spheremesh.kernel.beams.beams import Beams
+from spheremesh.kernel.panels.cutting import cut_panels
+from spheremesh.kernel.panels.panels import Panels
+from spheremesh.kernel.panels.tessellation import tessellate
+from spheremesh.kernel.sphere_meshes.fit import fit_spheres
+from spheremesh.kernel.surfaces.circular_nets import roof_net
+from spheremesh.nodes import beams as cut_beams
+from spheremesh.nodes import (
+    bisector_support,
+    minimize_angles,
+    panel_report,
+    panels,
+    render,
+    write_report,
+    write_view,
+)
+
+Result = TypeVar("Result")
+FLAGS = [
+    "--enable-unsafe-swiftshader",
+    "--no-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+]
+ROUNDS = 3
+
+
+def timed(call: Callable[[], Result]) -> tuple[Result, float]:
+    """A result and the CPU seconds that it took."""
+    start = time.process_time()
+    result = call()
+    return result, time.process_time() - start
+
+
+def model(rows: int, columns: int, *, carried: bool = True) -> tuple[Panels, Beams | None]:
+    """A roof of panels in eight moulds, with beams and node cylinders or without."""
+    spheres = fit_spheres(roof_net(rows, columns, 80.0))
+    labels = np.arange(rows * columns) % 8
+    made, _ = cut_panels(spheres, thickness=0.02 if carried else 0.0, labels=labels)
+    if not carried:
+        return made, None
+    annuli = bisector_support(spheres, depth=0.1).annuli
+    return made, cut_beams(annuli, thickness=0.02, node_radius=0.05).beams
+
+
+def pictures(folder: Path) -> None:
+    """Seconds and memory of pictures, in a process for each that does nothing else."""
+    for rows, columns in ((8, 12), (50, 100)):
+        for carried in ("", "beams"):
+            command = [sys.executable, __file__, "picture", str(rows), str(columns), carried]
+            subprocess.run(command, cwd=folder, check=True)
+
+
+def picture(rows: int, columns: int, carried: str) -> None:
+    """One picture of 1600 by 1000, file included, as a job draws it: in a fresh process."""
+    made, beams = model(rows, columns)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    shown = beams if carried else None
+    _, seconds = timed(lambda: render(made, "picture.png", beams=shown))
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(
+        f"picture of {made.n_panels} panels{' with beams' * bool(carried)}: "
+        f"{seconds:.2f} s CPU, {peak:.0f} MB in all, {peak - before:.0f} more than before"
+    )
+
+
+def triangles() -> None:
+    """Seconds of triangles, and whether panels are closed to the bit."""
+    made, _ = model(50, 100)
+    skin, seconds = timed(lambda: tessellate(made))
+    print(f"triangles of {made.n_panels} panels: {seconds:.2f} s CPU, {len(skin.triangles)}")
+
+
+def pages(folder: Path, *, browser: bool) -> None:
+    """Sizes of pages and seconds to write them; in a browser also those until they answer."""
+    for rows, columns, carried in ((50, 100, True), (50, 100, False), (100, 200, False)):
+        made, beams = model(rows, columns, carried=carried)
+        path = folder / "view.html"
+        _, seconds = timed(lambda: write_view(made, str(path), beams=beams))  # noqa: B023
+        words = f"page of {made.n_panels} {'solids with beams' if carried else 'surfaces'}"
+        print(f"{words}: {path.stat().st_size / 1e6:.2f} MB, written in {seconds:.2f} s CPU")
+        if browser:
+            opened(path)
+
+
+def report(folder: Path) -> None:
+    """Size of a report and seconds to write it."""
+    optimum = minimize_angles(fit_spheres(roof_net(50, 100, 80.0)))
+    cut = panels(optimum.sphere_mesh, thickness=0.02)
+    found = panel_report(optimum.sphere_mesh, optimum.report, cut.report)
+    path = folder / "report.html"
+    _, seconds = timed(lambda: write_report(found, cut.panels, optimum.sphere_mesh, str(path)))
+    size = path.stat().st_size / 1e6
+    print(f"report of {cut.panels.n_panels} panels: {size:.2f} MB, {seconds:.2f} s CPU")
+
+
+def opened(path: Path) -> None:
+    """When a page answers, counted from its address on, by its own clock."""
+    from playwright.sync_api import sync_playwright
+
+    program = shutil.which("chromium") or shutil.which("chromium-browser")
+    for _ in range(ROUNDS):
+        with sync_playwright() as play:
+            chromium = play.chromium.launch(executable_path=program, args=FLAGS)
+            page: Any = chromium.new_page(viewport={"width": 1280, "height": 800})
+            asked: list[str] = []
+            page.on("request", lambda request: asked.append(request.url))  # noqa: B023
+            page.goto(path.as_uri())
+            page.wait_for_selector("html[data-ready]", state="attached", timeout=120_000)
+            ready = page.evaluate("performance.getEntriesByName('ready')[0].startTime")
+            chromium.close()
+            print(f"  ready after {ready / 1000:.2f} s, {len(asked) - 1} requests")
+
+
+if __name__ == "__main__":
+    words = sys.argv[1:]
+    if words[:1] == ["picture"]:
+        picture(int(words[1]), int(words[2]), words[3])
+    else:
+        with tempfile.TemporaryDirectory() as name:
+            triangles()
+            report(Path(name))
+            pictures(Path(name))
+            pages(Path(name), browser="browser" in words)

@@ -1,0 +1,260 @@
+"""The page: before and after, moulds, gaps, what is wrong, how to reproduce it.
+
+One file of text without scripts, which asks for nothing else. What a user has named is escaped.
+"""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import Any, Final
+
+import numpy as np
+
+from ...kernel.arrays import FloatArray
+from ...kernel.panels.facts import edge_angles
+from ...kernel.panels.joints import panel_joints
+from ...kernel.panels.panels import Panels
+from ...kernel.parts.colors import mould_color
+from .charts import histogram
+from .diagram import graph_picture
+from .pictures import striped_pictures
+
+PLANES, SPHERES, GAPS = "#a9afb8", "#2c6fa6", "#b7793a"
+MOST_PARTS: Final = 12
+"""Parts that are named of each kind of finding; all are in report.json."""
+
+STYLE: Final = """
+body{font:15px/1.5 system-ui,sans-serif;color:#22262b;max-width:60rem;margin:2rem auto;padding:0 1.2rem}
+h1{font-size:1.9rem;margin:0}h2{font-size:1.15rem;margin:2.2rem 0 .6rem;border-bottom:1px solid #dfe2e6;padding-bottom:.3rem}
+.lead{color:#5b636d;margin:.2rem 0 1rem}.verdict{padding:.6rem .9rem;border-radius:.5rem;background:#eef5ee;border:1px solid #bcd6bd}
+.verdict.bad{background:#fbeeec;border-color:#e2b5ae}
+table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}th,td{text-align:right;padding:.25rem .6rem;border-bottom:1px solid #eceef0}
+th:first-child,td:first-child{text-align:left}th{font-weight:600;color:#5b636d}.words td,.words th{text-align:left;vertical-align:top}
+.pair{display:grid;grid-template-columns:1fr 1fr;gap:1rem}figure{margin:0}figure img{width:100%;border-radius:.4rem}figcaption{color:#5b636d;font-size:.9rem}
+svg{width:100%;height:auto;font:12px system-ui,sans-serif;fill:#3b4149}svg line{stroke:#9aa2ab}.keys{margin:.2rem 0;display:flex;gap:1.2rem}
+i{display:inline-block;width:.9em;height:.9em;border-radius:.2em;margin-right:.4em;vertical-align:-.1em}i,.verdict,pre{print-color-adjust:exact;-webkit-print-color-adjust:exact}
+.graph rect{fill:#f4f5f7;stroke:#c3c8ce}.graph path{fill:none;stroke:#b3bac2}.graph .fine{font-size:9px;fill:#78818b}
+code,pre{font:13px/1.45 ui-monospace,monospace;background:#f4f5f7;border-radius:.3rem}pre{padding:.7rem .9rem;white-space:pre-wrap}code{padding:.1rem .3rem}
+@media (max-width:40rem){.pair{grid-template-columns:1fr}}
+@media print{body{margin:0;max-width:none;font-size:11pt}h2,figure,svg,.verdict{break-inside:avoid;break-after:auto}h2{break-after:avoid}tr{break-inside:avoid}}
+"""  # noqa: E501 - lines of a style sheet
+
+
+@dataclass(frozen=True)
+class ReportFacts:
+    """What a report tells.
+
+    Attributes
+    ----------
+    title : str
+        Heading of the page.
+    report : mapping
+        The report of the panelling, as in report.json.
+    angles : (E,) float array
+        Angles between the planes of neighbouring faces, in degrees.
+    graph : str
+        The graph that made it, as JSON; or nothing.
+    version : str
+        Of spheremesh.
+    millimeters : float
+        Of a model unit.
+    """
+
+    title: str
+    report: Mapping[str, Any]
+    angles: FloatArray
+    graph: str
+    version: str
+    millimeters: float
+
+
+def report_text(panels: Panels, facts: ReportFacts) -> str:
+    """The page as text."""
+    report = facts.report
+    chapters = [
+        _verdict(report),
+        _before_and_after(panels, facts),
+        _moulds(report, facts.millimeters),
+        _gaps(panels, report, facts.millimeters),
+        _faults(report),
+        _cost(report),
+        _reproduction(facts),
+    ]
+    model = report["input"]
+    size = " × ".join(f"{side:.4g}" for side in model["size"])
+    lead = (
+        f"{report['panels']['written']:,} panels"
+        + (f", {report['beams']['written']:,} beams" if report["beams"]["written"] else "")
+        + f" on {model['faces']:,} faces, {size} {model['units']}"
+    )
+    title = escape(facts.title)
+    return (
+        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta http-equiv="Content-Security-Policy" content="default-src \'none\'; '
+        "style-src 'unsafe-inline'; img-src data:\">\n"
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{title}: report</title>\n<style>{STYLE}</style>\n</head>\n<body>\n"
+        f'<h1>{title}</h1>\n<p class="lead">{escape(lead)}</p>\n'
+        + "\n".join(chapter for chapter in chapters if chapter)
+        + "\n</body>\n</html>\n"
+    )
+
+
+def _verdict(report: Mapping[str, Any]) -> str:
+    errors: list[Mapping[str, Any]] = report["audit"]["errors"] if report["audit"] else []
+    rejected = [*report["panels"]["rejected"], *report["beams"]["rejected"]]
+    if report["buildable"]:
+        return (
+            '<p class="verdict"><b>Can be built:</b> no part is rejected, no error found.</p>'
+        )
+    texts = [f"{len(rejected)} parts cannot be made"] if rejected else []
+    if errors:
+        texts.append(f"{len(errors)} errors on parts that can")
+    reasons = escape("; ".join(texts))
+    return f'<p class="verdict bad"><b>Cannot be built as it is:</b> {reasons}. See below.</p>'
+
+
+def _table(heads: Sequence[str], rows: Sequence[Sequence[str]], kind: str = "numbers") -> str:
+    """A table of numbers, or of words; cells are HTML."""
+    head = "".join(f"<th>{escape(text)}</th>" for text in heads)
+    body = "".join(
+        "<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows
+    )
+    return f'<table class="{kind}"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
+
+
+def _before_and_after(panels: Panels, facts: ReportFacts) -> str:
+    angles: Mapping[str, Mapping[str, float]] = facts.report["angles_deg"]
+    names = {
+        "planar": "flat panels",
+        "unclustered": "spheres, a radius each",
+        "spherical": "spheres as built",
+    }
+    rows = [
+        (escape(name), f"{angles[key]['mean']:.2f}°", f"{angles[key]['max']:.1f}°")
+        for key, name in names.items()
+        if key in angles
+    ]
+    built = np.degrees(edge_angles(panels))[panels.edge_ids >= 0]
+    chart = histogram(
+        [("flat panels", PLANES, facts.angles), ("spheres as built", SPHERES, built)],
+        "°",
+        label="Angles between neighbouring panels, flat and spherical",
+    )
+    flat, round_panels = striped_pictures(panels)
+    return (
+        "<h2>Before and after</h2>"
+        + '<div class="pair">'
+        + f'<figure><img src="{flat}" alt="Flat panels under stripes">'
+        + "<figcaption>Flat panels: mirrored stripes break at every edge</figcaption></figure>"
+        + f'<figure><img src="{round_panels}" alt="Spherical panels under stripes">'
+        + "<figcaption>The same corners, on spheres</figcaption></figure></div>"
+        + "<h2>Angles between neighbours</h2>"
+        + _table(("", "mean", "largest"), rows)
+        + chart
+    )
+
+
+def _moulds(report: Mapping[str, Any], millimeters: float) -> str:
+    moulds = report["moulds"]
+    count = int(moulds["count"])
+    if not count:
+        return "<h2>Moulds</h2><p>Not asked for: every panel has a radius of its own.</p>"
+    blanks: dict[int, Mapping[str, Any]] = {blank["mould"]: blank for blank in moulds["blanks"]}
+    total = sum(moulds["panels_per_mould"]) or 1
+    rows: list[tuple[str, ...]] = []
+    for label, (radius, panels) in enumerate(
+        zip(moulds["radii"], moulds["panels_per_mould"], strict=True)
+    ):
+        red, green, blue = mould_color(label, count)
+        blank = blanks.get(label + 1)
+        rows.append(
+            (
+                f'<i style="background:rgb({red},{green},{blue})"></i>{label + 1}',
+                "plane" if radius is None else f"{radius * millimeters:,.0f}",
+                f"{panels:,}",
+                f"{100 * panels / total:.0f} %",
+                f"{blank['diameter'] * millimeters:,.0f}" if blank else "–",
+                f"{blank['sagitta'] * millimeters:,.1f}" if blank else "–",
+                f"{blank['shapes']:,}" if blank else "–",
+            )
+        )
+    heads = ("mould", "radius mm", "panels", "share", "blank mm", "rise mm", "shapes")
+    return (
+        f"<h2>Moulds: {count} for {total:,} panels</h2>{_table(heads, rows)}"
+        "<p>A blank is the round sheet that the largest panel of a mould is cut from; "
+        "each panel in its blank is drawn in <code>moulds.dxf</code> and "
+        "<code>moulds.svg</code>.</p>"
+    )
+
+
+def _gaps(panels: Panels, report: Mapping[str, Any], millimeters: float) -> str:
+    gap = report["edge_gap"]
+    joints = panel_joints(panels)
+    steps = joints.steps[np.isfinite(joints.steps)] * millimeters
+    chart = histogram(
+        [("steps at edges", GAPS, steps)], " mm", label="Steps between neighbouring panels"
+    )
+    largest = gap["max"] * millimeters
+    share = 100 * gap["relative_to_edge"]
+    return (
+        "<h2>Gaps and steps</h2>"
+        f"<p>Arcs of neighbours, before the joint, are up to <b>{largest:.3g} mm</b> apart "
+        f"({share:.2g} % of an edge), {gap['mean'] * millimeters:.2g} mm in the mean.</p>"
+        f"{chart}"
+    )
+
+
+def _faults(report: Mapping[str, Any]) -> str:
+    """Rejected parts and findings, by kind: the largest kinds first."""
+    kinds: dict[tuple[str, str], list[tuple[str, str]]] = {}
+    for part in (*report["panels"]["rejected"], *report["beams"]["rejected"]):
+        kinds.setdefault((part["code"], "rejected"), []).append((part["id"], part["reason"]))
+    nothing: dict[str, list[Any]] = {"errors": [], "notes": []}
+    audit: Mapping[str, list[Mapping[str, Any]]] = report["audit"] or nothing
+    for severity in ("errors", "notes"):
+        for found in audit[severity]:
+            known = kinds.setdefault((found["code"], severity[:-1]), [])
+            known.append((found["id"], found["message"]))
+    warnings = "".join(f"<li>{escape(text)}</li>" for text in report.get("warnings", ()))
+    tail = f"<h2>Warnings</h2><ul>{warnings}</ul>" if warnings else ""
+    if not kinds:
+        return f"<h2>Rejected, and why</h2><p>Nothing.</p>{tail}"
+    rows: list[tuple[str, ...]] = []
+    order = {"rejected": 0, "error": 1, "note": 2}
+    ranked = sorted(kinds.items(), key=lambda item: (order[item[0][1]], -len(item[1])))
+    for (code, severity), parts in ranked:
+        names = ", ".join(name for name, _ in parts[:MOST_PARTS])
+        more = f" and {len(parts) - MOST_PARTS} more" if len(parts) > MOST_PARTS else ""
+        cause = f"{escape(parts[0][0])}: {escape(parts[0][1])}"
+        rows.append((code, severity, f"{len(parts):,}", cause, escape(names + more)))
+    heads = ("code", "kind", "parts", "for example", "which")
+    return f"<h2>Rejected, and why</h2>{_table(heads, rows, 'words')}{tail}"
+
+
+def _cost(report: Mapping[str, Any]) -> str:
+    cost = report["cost"]
+    if not cost:
+        return ""
+    rows = [(escape(name), f"{part:,.0f}") for name, part in cost["parts"].items() if part]
+    rows.append(("<b>total</b>", f"<b>{cost['total']:,.0f}</b>"))
+    return f"<h2>Cost</h2>{_table(('', str(cost['currency'])), rows)}"
+
+
+def _reproduction(facts: ReportFacts) -> str:
+    if not facts.graph:
+        return (
+            "<h2>How to reproduce</h2>"
+            f"<p>Made with spheremesh {escape(facts.version)}, outside of a graph.</p>"
+        )
+    graph: Mapping[str, Any] = json.loads(facts.graph)
+    params: Mapping[str, Mapping[str, Any]] = graph.get("params", {})
+    values = [(escape(name), escape(str(each["value"]))) for name, each in params.items()]
+    sliders = _table(("value", ""), values) if values else ""
+    return (
+        "<h2>How to reproduce</h2>"
+        f"<p>Made with spheremesh {escape(facts.version)} by <code>graph.json</code>, which "
+        "stands beside this page:</p><pre>spheremesh run graph.json -o again</pre>"
+        f"{sliders}{graph_picture(graph)}"
+    )
