@@ -152,10 +152,7 @@ def _add_light(
 ) -> dict[str, Any]:
     """Light of the sky at the points of panels and on the ground; where that lies."""
     seen = faces[0].points if faces else points[0]
-    if faces:
-        sky = sky_maps(seen, cover(faces[0]))
-    else:
-        sky = point_sky(seen, point_spacing(seen))
+    sky = sky_maps(seen, cover(faces[0])) if faces else point_sky(seen, point_spacing(seen))
     for name, side in zip(("outer", "inner"), faces, strict=False):
         # Both sides count from the outer face, on which the light falls.
         normals = side.normals if name == "outer" else -side.normals
