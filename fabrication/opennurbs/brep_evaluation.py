@@ -226,7 +226,7 @@ def _to_conic(span: FloatArray, points: FloatArray) -> FloatArray:
 
 # Volumes
 
-_NODES, _LENGTHS = np.polynomial.legendre.leggauss(8)
+_NODES, _LENGTHS = np.polynomial.legendre.leggauss(10)
 _SHARES, _WEIGHTS = (_NODES + 1) / 2, _LENGTHS / 2
 
 

@@ -212,7 +212,6 @@ def object_attributes(
     Returns
     -------
     ObjectAttributes
-    ----------
         Those that go with its geometry.
     """
     # Many viewers know materials of objects only, and show other surfaces in white.

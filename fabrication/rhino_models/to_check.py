@@ -34,7 +34,6 @@ def mark(attributes: ObjectAttributes, warning: str) -> ObjectAttributes:
     Returns
     -------
     ObjectAttributes
-    ----------
         With the text ``findings`` and a colour of its own.
     """
     if not warning:

@@ -51,7 +51,7 @@ _NOTE = (
 class RhinoOptions:
     """What a Rhino file holds, and how.
 
-    ObjectAttributes
+    Attributes
     ----------
     shape : {"panels", "blocks", "shell"}
         One Brep per panel; the same with a block definition and instances wherever panels are

@@ -139,12 +139,7 @@ def panel_graph(
     if moves:
         _add_moves(graph, mesh, spheres)
     add_papers(graph, options, made, has_moulds=clusters is not None)
-    shown = {**checked, "reference": spheres}
-    graph.add("write_view", "view", **made, **shown, path="view.html", title=title)
-    graph.add(
-        "write_report", "summary", report=report, panels=panels.panels, sphere_mesh=spheres,
-        path="report.html", title=title,
-    )  # fmt: skip
+    _add_pages(graph, made, checked, spheres, report)
     return graph
 
 
@@ -153,6 +148,23 @@ def _cost(graph: Graph, options: PanelOptions, made: Mapping[str, Wire]) -> dict
     if options.prices is None:
         return {}
     return {"cost": graph.add("cost", "cost", **made, prices=str(options.prices.resolve()))}
+
+
+def _add_pages(
+    graph: Graph,
+    made: Mapping[str, Wire],
+    checked: Mapping[str, Wire],
+    spheres: Wire,
+    report: Step | Wire,
+) -> None:
+    """Pages for browsers: the model to turn, and what there is to say of it."""
+    title = graph.title
+    shown = {**checked, "reference": spheres}
+    graph.add("write_view", "view", **made, **shown, path="view.html", title=title)
+    graph.add(
+        "write_report", "summary", report=report, panels=made["panels"], sphere_mesh=spheres,
+        path="report.html", title=title,
+    )  # fmt: skip
 
 
 def _few_radii(
