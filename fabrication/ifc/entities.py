@@ -34,7 +34,7 @@ def compressed(uuid: UUID) -> str:
     Examples
     --------
     >>> compressed(UUID("f81d4fae-7dec-11d0-a765-00a0c91e6bf6"))
-    '3u7K_kVUmHqA$gG2g9DtJs'
+    '3u7K_kVUmHqATb0A397cls'
     """
     digits: list[str] = []
     number = uuid.int

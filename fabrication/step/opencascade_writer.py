@@ -46,7 +46,8 @@ def write_assembly(
     try:
         Interface_Static.SetCVal_s("write.step.schema", schema)
         Interface_Static.SetCVal_s("write.step.unit", _UNITS.get(units, units.upper()))
-        writer.Transfer(document, STEPControl_StepModelType.STEPControl_AsIs)
+        kind = STEPControl_StepModelType.STEPControl_AsIs
+        writer.Transfer(document, kind)  # pyright: ignore[reportUnknownMemberType]
         header = APIHeaderSection_MakeHeader(writer.ChangeWriter().Model())
         header.SetName(TCollection_HAsciiString(title))
         status = writer.Write(str(path))

@@ -175,7 +175,8 @@ def _spline(n_poles: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     knots = np.linspace(0.0, 1.0, n_poles - degree + 1)
     # The means of neighbouring knots; both ends are among them.
     nodes = sliding_window_view(_clamped(knots, degree)[1:-1], degree).mean(axis=1)
-    return knots, nodes, np.linalg.inv(_basis(nodes, knots, degree))
+    to_poles = np.linalg.inv(_basis(nodes, knots, degree)).astype(np.float64)
+    return knots, nodes, to_poles
 
 
 @lru_cache
@@ -192,7 +193,7 @@ def _readers_checks() -> tuple[FloatArray, FloatArray, FloatArray]:
     nodes = np.linspace(0.0, 1.0, _READERS_POINTS)
     knots = np.delete(nodes, [1, -2])
     checks = (nodes[1:] + nodes[:-1]) / 2
-    to_poles = np.linalg.inv(_basis(nodes, knots, 3))
+    to_poles = np.linalg.inv(_basis(nodes, knots, 3)).astype(np.float64)
     return nodes, checks, _basis(checks, knots, 3) @ to_poles
 
 
