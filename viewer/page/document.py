@@ -24,7 +24,7 @@ from ...kernel.meshes.mesh import Mesh
 from ...kernel.panels.panels import Panels
 from ...kernel.parts.findings import Finding
 from ...kernel.parts.records import part_ids
-from ..light import sky_maps
+from ..light import DepthMap, sky_maps
 from .beams import beam_arrays, beam_points, node_arrays
 from .container import pack_arrays
 from .faces import Faces, face_arrays, panel_faces
@@ -152,10 +152,7 @@ def _add_light(
 ) -> dict[str, Any]:
     """Light of the sky at the points of panels and on the ground; where that lies."""
     seen = faces[0].points if faces else points[0]
-    if faces:
-        sky = sky_maps(seen, _cover(faces[0]))
-    else:
-        sky = point_sky(seen, point_spacing(seen))
+    sky = _sky(faces, seen)
     for name, side in zip(("outer", "inner"), faces, strict=False):
         # Both sides count from the outer face, on which the light falls.
         normals = side.normals if name == "outer" else -side.normals
@@ -165,6 +162,13 @@ def _add_light(
     middle = (np.array([*(low + high)[:2] / 2, low[2]]) - grid.center) / grid.size
     size = REACH * float((high - low).max()) / grid.size
     return {"points": GROUND, "size": size, "middle": middle.tolist()}
+
+
+def _sky(faces: list[Faces], points: FloatArray) -> list[DepthMap]:
+    """That of panels, as pictures have it; of beams alone a quick one."""
+    if not faces:
+        return point_sky(points, point_spacing(points))
+    return sky_maps(points, _cover(faces[0]))
 
 
 def _cover(side: Faces) -> IntArray:
