@@ -16,7 +16,7 @@ from typing import Any, Final, TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
-from ...kernel.arrays import FloatArray, IntArray
+from ...kernel.arrays import FloatArray
 from ...kernel.beams.beams import Beams
 from ...kernel.beams.node_cylinders import NodeCylinders, node_cylinders
 from ...kernel.errors import InputError
@@ -24,10 +24,10 @@ from ...kernel.meshes.mesh import Mesh
 from ...kernel.panels.panels import Panels
 from ...kernel.parts.findings import Finding
 from ...kernel.parts.records import part_ids
-from ..light import DepthMap, sky_maps
+from ..light import sky_maps
 from .beams import beam_arrays, beam_points, node_arrays
 from .container import pack_arrays
-from .faces import Faces, face_arrays, panel_faces
+from .faces import Faces, cover, face_arrays, panel_faces
 from .grid import Grid, grid_about
 from .sky import GROUND, REACH, ground_openness, panel_openness, point_sky, point_spacing
 
@@ -152,7 +152,7 @@ def _add_light(
 ) -> dict[str, Any]:
     """Light of the sky at the points of panels and on the ground; where that lies."""
     seen = faces[0].points if faces else points[0]
-    sky = _sky(faces, seen)
+    sky = sky_maps(seen, cover(faces[0])) if faces else point_sky(seen, point_spacing(seen))
     for name, side in zip(("outer", "inner"), faces, strict=False):
         # Both sides count from the outer face, on which the light falls.
         normals = side.normals if name == "outer" else -side.normals
@@ -162,24 +162,6 @@ def _add_light(
     middle = (np.array([*(low + high)[:2] / 2, low[2]]) - grid.center) / grid.size
     size = REACH * float((high - low).max()) / grid.size
     return {"points": GROUND, "size": size, "middle": middle.tolist()}
-
-
-def _sky(faces: list[Faces], points: FloatArray) -> list[DepthMap]:
-    """That of panels, as pictures have it; of beams alone a quick one."""
-    if not faces:
-        return point_sky(points, point_spacing(points))
-    return sky_maps(points, _cover(faces[0]))
-
-
-def _cover(side: Faces) -> IntArray:
-    """Triangles (T, 3) of all points of faces."""
-    sizes = [len(pattern) for pattern in side.patterns]
-    triangles = np.concatenate(side.patterns)
-    first = np.cumsum([0, *sizes])[:-1]
-    counts = np.array(sizes)[side.kinds]
-    steps = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
-    chosen: IntArray = np.repeat(first[side.kinds], counts) + steps
-    return triangles[chosen] + np.repeat(side.starts, counts)[:, None]
 
 
 def _missing(
