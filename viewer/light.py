@@ -14,6 +14,8 @@ from .camera import view_axes
 from .raster import rasterize
 
 SKY_DIRECTIONS = 32
+"""Parts of the sky that are told apart."""
+
 SCATTERED = 24_000
 """Points that stand for the surfaces of a model in the sky's pictures of it."""
 
