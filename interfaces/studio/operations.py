@@ -142,6 +142,9 @@ def _remove(draft: Draft, operation: Operation) -> None:
     for name in operation.get("steps", ()):
         draft.editor.remove(str(name), cut=True)
         draft.canvas["steps"].pop(name, None)
+    if "pins" in draft.canvas:
+        known = draft.now.steps
+        draft.canvas["pins"] = [p for p in draft.canvas["pins"] if p.partition(".")[0] in known]
     empty = [name for name, members in draft.now.groups.items() if not members]
     for name in empty:
         draft.editor.group(name)

@@ -19,23 +19,15 @@ from ...kernel.panels.facts import panel_radii
 from ...kernel.panels.panels import Panels, panel_areas
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ...kernel.spheres.incidence import normals
+from ...viewer.light import sky_maps
 from ...viewer.page.beams import beam_arrays, beam_points, node_arrays
 from ...viewer.page.container import pack_arrays
-from ...viewer.page.faces import COARSE, FINE, Faces, face_arrays, panel_faces
+from ...viewer.page.faces import COARSE, FINE, Faces, cloud, cover, face_arrays, panel_faces
 from ...viewer.page.grid import Grid, grid_about
-from ...viewer.page.sky import (
-    GROUND,
-    REACH,
-    ground_openness,
-    panel_openness,
-    point_sky,
-    point_spacing,
-)
+from ...viewer.page.sky import GROUND, REACH, ground_openness, panel_openness
 
 MANY: Final = 300
 """Panels from which on a picture is made quickly rather than for close looks."""
-MOST_SKY: Final = 9000
-"""Points that are asked how much of the sky they hide."""
 
 
 @dataclass(frozen=True)
@@ -213,9 +205,12 @@ def _add_light(
 ) -> dict[str, Any]:  # fmt: skip
     """Light of the sky on what is drawn and on the ground; where that lies."""
     seen = points[0]
-    # Depth pictures are coarse: a few thousand points are enough for them.
-    thin = seen[:: max(1, len(seen) // MOST_SKY)]
-    sky = point_sky(thin, point_spacing(thin))
+    if faces:
+        sky = sky_maps(seen, cover(faces[0]))
+    elif scene.polygons is not None:
+        sky = sky_maps(seen, _fans(scene.polygons))
+    else:
+        sky = sky_maps(seen, cloud(seen))
     for name, side in zip(("outer", "inner"), faces, strict=False):
         outwards = side.normals if name == "outer" else -side.normals
         arrays[f"{name}_light"] = panel_openness(side.points, outwards, sky).astype(np.uint8)
@@ -224,11 +219,20 @@ def _add_light(
         light = panel_openness(polygons.middles, polygons.normals, sky)
         sizes = np.diff(polygons.offsets) + 1
         arrays["outer_light"] = np.repeat(light, sizes, axis=0).astype(np.uint8)
-    arrays["ground"] = ground_openness(thin, sky).astype(np.uint8)
+    arrays["ground"] = ground_openness(seen, sky).astype(np.uint8)
     low, high = seen.min(axis=0), seen.max(axis=0)
     middle = (np.array([*(low + high)[:2] / 2, low[2]]) - grid.center) / grid.size
     size = REACH * float((high - low).max()) / grid.size
     return {"points": GROUND, "size": size, "middle": middle.tolist()}
+
+
+def _fans(polygons: Polygons) -> IntArray:
+    """Triangles (T, 3) of polygons: their corners, then their middles."""
+    owners = np.repeat(np.arange(len(polygons.middles)), np.diff(polygons.offsets))
+    corners: IntArray = np.arange(len(polygons.points))
+    following = corners + 1
+    following[polygons.offsets[1:] - 1] = polygons.offsets[:-1]
+    return np.stack([len(corners) + owners, corners, following], axis=1)
 
 
 def _node_points(nodes: NodeCylinders) -> FloatArray:

@@ -16,7 +16,7 @@ from typing import Any, Final, TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
-from ...kernel.arrays import FloatArray, IntArray
+from ...kernel.arrays import FloatArray
 from ...kernel.beams.beams import Beams
 from ...kernel.beams.node_cylinders import NodeCylinders, node_cylinders
 from ...kernel.errors import InputError
@@ -27,9 +27,9 @@ from ...kernel.parts.records import part_ids
 from ..light import sky_maps
 from .beams import beam_arrays, beam_points, node_arrays
 from .container import pack_arrays
-from .faces import Faces, face_arrays, panel_faces
+from .faces import Faces, cover, face_arrays, panel_faces
 from .grid import Grid, grid_about
-from .sky import GROUND, REACH, ground_openness, panel_openness
+from .sky import GROUND, REACH, ground_openness, panel_openness, point_sky, point_spacing
 
 _BUNDLE: Final = "bundle"
 """Folder of what `source/build.mjs` makes."""
@@ -152,7 +152,10 @@ def _add_light(
 ) -> dict[str, Any]:
     """Light of the sky at the points of panels and on the ground; where that lies."""
     seen = faces[0].points if faces else points[0]
-    sky = sky_maps(seen, _cover(faces[0]) if faces else _cloud(seen))
+    if faces:
+        sky = sky_maps(seen, cover(faces[0]))
+    else:
+        sky = point_sky(seen, point_spacing(seen))
     for name, side in zip(("outer", "inner"), faces, strict=False):
         # Both sides count from the outer face, on which the light falls.
         normals = side.normals if name == "outer" else -side.normals
@@ -162,23 +165,6 @@ def _add_light(
     middle = (np.array([*(low + high)[:2] / 2, low[2]]) - grid.center) / grid.size
     size = REACH * float((high - low).max()) / grid.size
     return {"points": GROUND, "size": size, "middle": middle.tolist()}
-
-
-def _cover(side: Faces) -> IntArray:
-    """Triangles (T, 3) of all points of faces."""
-    sizes = [len(pattern) for pattern in side.patterns]
-    triangles = np.concatenate(side.patterns)
-    first = np.cumsum([0, *sizes])[:-1]
-    counts = np.array(sizes)[side.kinds]
-    steps = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
-    chosen: IntArray = np.repeat(first[side.kinds], counts) + steps
-    return triangles[chosen] + np.repeat(side.starts, counts)[:, None]
-
-
-def _cloud(points: FloatArray) -> IntArray:
-    """Thin triangles between points that follow each other: of beams alone."""
-    ids: IntArray = np.arange(max(len(points) - 2, 0))
-    return np.stack([ids, ids + 1, ids + 2], axis=1)
 
 
 def _missing(

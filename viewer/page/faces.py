@@ -117,3 +117,20 @@ def face_arrays(panels: Panels, faces: list[Faces], grid: Grid) -> dict[str, NDA
             f"{name}_triangles": np.concatenate(side.patterns),
         }
     return arrays
+
+
+def cover(side: Faces) -> IntArray:
+    """Triangles (T, 3) of all points of faces."""
+    sizes = [len(pattern) for pattern in side.patterns]
+    triangles = np.concatenate(side.patterns)
+    first = np.cumsum([0, *sizes])[:-1]
+    counts = np.array(sizes)[side.kinds]
+    steps = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
+    chosen: IntArray = np.repeat(first[side.kinds], counts) + steps
+    return triangles[chosen] + np.repeat(side.starts, counts)[:, None]
+
+
+def cloud(points: FloatArray) -> IntArray:
+    """Thin triangles between points that follow each other: of beams alone."""
+    ids: IntArray = np.arange(max(len(points) - 2, 0))
+    return np.stack([ids, ids + 1, ids + 2], axis=1)
