@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 
 from ..kernel.arrays import FloatArray
+from ..kernel.errors import InputError
 from ..kernel.panels.facts import (
     corner_angles,
     corner_misses,
@@ -56,6 +57,8 @@ def panel_colors(
 
     No legend where they mean nothing: there is one colour, or no panel has a mould.
     """
+    if not panels.n_panels:
+        raise InputError("there are no panels to draw")
     if color_by == "none":
         return np.tile(np.array(WHITE, float), (panels.n_panels, 1)), None
     if color_by == "mould":

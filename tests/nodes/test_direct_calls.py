@@ -5,6 +5,7 @@ import timeit
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, wraps
+from time import process_time
 from types import SimpleNamespace as Space
 from typing import Any
 
@@ -199,7 +200,7 @@ def test_the_function_is_the_one_of_the_library_with_checks_around_it() -> None:
 
 
 def test_the_checks_take_microseconds() -> None:
-    """Fifty times the call itself at most: that of an empty function takes 0.1 microseconds."""
+    """Some five of the processor's on a quiet machine."""
     record = find_node("panels")
 
     @wraps(record.function)
@@ -209,7 +210,9 @@ def test_the_checks_take_microseconds() -> None:
     spheres = things().spheres
 
     def seconds(function: Callable[..., object]) -> float:
-        run = timeit.Timer(lambda: function(spheres, edges="bisector", thickness=0.02))
-        return min(run.repeat(7, 1000)) / 1000
+        run = timeit.Timer(
+            lambda: function(spheres, edges="bisector", thickness=0.02), timer=process_time
+        )
+        return min(run.repeat(9, 500)) / 500
 
-    assert seconds(call) < max(20e-6, 100 * seconds(nothing))
+    assert seconds(call) < 60e-6 + 200 * seconds(nothing)

@@ -14,6 +14,7 @@ from spheremesh.kernel.sphere_meshes.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres.rows import from_center_radius, normalize
 from spheremesh.kernel.surfaces.circular_nets import ellipsoid_net, roof_net, torus_net
 from spheremesh.viewer.camera import Camera, frame_scene, pixel_rays, project_points
+from spheremesh.viewer.colors import ColorBy
 from spheremesh.viewer.raster import rasterize
 from spheremesh.viewer.render import compare_image, render_image
 from spheremesh.viewer.scene import Scene, Sight, gather, look
@@ -234,6 +235,7 @@ def test_unusable_options_are_named(options: dict[str, object], message: str) ->
         render_image(dome(1.0), **options)
 
 
-def test_no_panels_no_picture() -> None:
+@pytest.mark.parametrize("color_by", ["mould", "radius", "convexity", "none"])
+def test_no_panels_no_picture(color_by: ColorBy) -> None:
     with pytest.raises(InputError, match="no panels"):
-        render_image(select_parts(dome(1.0), np.zeros(1, bool)))
+        render_image(select_parts(dome(1.0), np.zeros(1, bool)), color_by=color_by)
