@@ -14,6 +14,7 @@ rhino_objects  Single objects of Rhino in JSON, as Grasshopper sends and takes t
 opennurbs   The byte stream of .3dm files: exact Breps and render meshes.
 breps       Solids of panels, beams and nodes as boundary representations: what all files of
             solids write.
+ifc         IFC4 files as text: building models of panels and beams.
 step        STEP files as text, and a check of that text.
 drawings    Flat drawings: beams for cutting, moulds with their blanks.
 schedules   Lists of parts with all that a workshop asks for.

@@ -25,7 +25,8 @@ from ..kernel.sphere_meshes.fit import face_planes
 from ..kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ..kernel.spheres.arcs import arc_points, sphere_arcs
 from ..kernel.support.annuli import Annuli
-from .solids.cadquery_assembly import beams_to_cadquery, to_cadquery
+from .model import Model
+from .solids.cadquery_assembly import to_cadquery
 from .triangles import fan_triangles
 
 if TYPE_CHECKING:
@@ -91,8 +92,8 @@ def cadquery_object(
     if isinstance(shape, Annuli):
         raise InputError("annuli have no thickness: give them one with the node beams")
     if isinstance(shape, Beams):
-        return beams_to_cadquery(shape, units)
-    return to_cadquery(_panels_of(shape), units)
+        return to_cadquery(Model(beams=shape, units=units)).children[0]
+    return to_cadquery(Model(_panels_of(shape), units=units))
 
 
 def _panels_of(shape: Mesh | SphereMesh | Panels) -> Panels:

@@ -46,6 +46,7 @@ class _PanelCommand(click.Command):
     default=0.0,
     help="Panels that bulge by less are flat and need no mould, in millimetres.",
 )
+@click.option("--ifc", is_flag=True, help="Write model.ifc as well, a curtain wall in IFC4.")
 @click.option(
     "--prices",
     type=click.Path(path_type=Path),

@@ -259,6 +259,11 @@ ON_EDGE: Final = 1e-12
 SINGLE_IS_ENOUGH: Final = 0.01
 """Share of the error of a triangulation that rounding its points to float32 may add."""
 
+SAME_GEOMETRY: Final = 1e-12
+"""Points, curves and axes of a part that lie closer, relative to its size, are written once."""
+ROUNDED_PART: Final = 1e-12
+"""Last digit of points in a file, relative to the size of their part (1e-9 mm per m)."""
+
 # Warnings of nodes
 
 VERTEX_MISS: Final = 0.01

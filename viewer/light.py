@@ -106,10 +106,10 @@ def _pixels(values: FloatArray, size: int) -> IntArray:
     return np.clip(values, 0, size - 1).astype(np.int64)
 
 
-def sky_directions() -> FloatArray:
-    """Middles of `SKY_DIRECTIONS` parts of the sky of equal size, (n, 3)."""
-    index = np.arange(SKY_DIRECTIONS) + 0.5
-    height = index / SKY_DIRECTIONS
+def sky_directions(count: int) -> FloatArray:
+    """Middles of so many parts of the sky of equal size, (count, 3)."""
+    index = np.arange(count) + 0.5
+    height = index / count
     turn = np.pi * (1 + 5**0.5) * index
     across = np.sqrt(1 - height**2)
     return np.stack([across * np.cos(turn), across * np.sin(turn), height], axis=1)
@@ -137,7 +137,12 @@ def scatter(points: FloatArray, triangles: IntArray) -> tuple[FloatArray, float]
 def sky_maps(points: FloatArray, triangles: IntArray) -> list[DepthMap]:
     """Depth maps of points (N, 3) and triangles (T, 3) from all over the sky."""
     found, spacing = scatter(points, triangles)
-    return [_point_map(found, spacing, direction) for direction in sky_directions()]
+    return point_maps(found, spacing, SKY_DIRECTIONS)
+
+
+def point_maps(points: FloatArray, spacing: float, count: int) -> list[DepthMap]:
+    """Depth maps from so many directions of points (N, 3) that stand a spacing apart."""
+    return [_point_map(points, spacing, direction) for direction in sky_directions(count)]
 
 
 def _point_map(points: FloatArray, spacing: float, direction: FloatArray) -> DepthMap:

@@ -94,9 +94,10 @@ def drawing_pages(model: Model, options: DrawingOptions = _USUAL) -> list[Page]:
         pages += panel_pages(panels, units, records, options.paper)
     if beams is not None:
         pages += beam_pages(beams, units, records, options.paper)
-    finish_pages(pages, TitleBlock(options.project, options.revision, _date(options.date)))
+    finish_pages(pages, TitleBlock(options.project, options.revision, options.date or _today()))
     return pages
 
 
-def _date(date: str) -> str:
-    return date or (source_date() or datetime.now(UTC)).strftime("%Y-%m-%d")
+def _today() -> str:
+    """The date of SOURCE_DATE_EPOCH, or today."""
+    return f"{source_date() or datetime.now(UTC):%Y-%m-%d}"

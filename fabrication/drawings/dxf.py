@@ -5,8 +5,8 @@ entities stand. It has no dates and random identifiers: a drawing has the same b
 """
 
 from functools import cache
-from importlib.resources import files
 from itertools import count
+from pathlib import Path
 from typing import Final
 
 from .drawing import PENS, Align, Circle, Drawing, Line, Text
@@ -87,7 +87,7 @@ def format_dxf(drawing: Drawing, layers: tuple[str, ...], decimals: int = 4) -> 
 
 @cache
 def _template() -> str:
-    return files(__package__).joinpath("template.dxf").read_text("utf-8")
+    return Path(__file__).with_name("template.dxf").read_text("utf-8")
 
 
 def _line_width(width: float) -> int:

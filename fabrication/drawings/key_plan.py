@@ -121,7 +121,8 @@ def _beam_view(beams: Beams, nodes: Record, number: int) -> _View:
         along = line[1] - line[0]
         turn = float(np.degrees(np.arctan2(along[1], along[0])))
         upright = turn if -85 < turn <= 95 else turn + 180
-        view.names.append(_Name("BEAM", beams.ids[row], *line.mean(axis=0).tolist(), upright))
+        x, y = line.mean(axis=0).tolist()
+        view.names.append(_Name("BEAM", beams.ids[row], x, y, upright))
     points = np.column_stack([nodes[f"{axis}_mm"] for axis in "xyz"]) @ view.axes.T
     ended = set(beams.annuli.edge_vertices[shown].ravel().tolist())
     for row in (i for i, vertex in enumerate(nodes["vertex"]) if vertex in ended):

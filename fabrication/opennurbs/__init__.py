@@ -5,15 +5,17 @@ per layout and fills them for many objects. Render meshes are float32 as Rhino's
 the site is so far from the origin that it would show. `stream_reader` knows nothing of who
 wrote what it reads, and the audits judge what it found.
 
-brep_audit         Judges one-faced Breps from their bytes alone, before they reach a file.
-brep_evaluation    Points of the trims, edges and surfaces of Breps, evaluated from bytes.
-brep_layout        Where the numbers of a one-faced Brep stand in its stream.
-brep_reader        Reads one-faced Breps from their bytes, and finds the Breps of a file.
+brep_audit         Judges Breps from their bytes alone, before they reach a file.
+brep_evaluation    Points and volumes of Breps, evaluated from bytes.
+brep_layout        Where the numbers of a Brep stand in its stream.
+brep_reader        Reads Breps from their bytes, and finds the Breps of a file.
 brep_writer        Writes the outer faces of panels as Breps: exact trimmed spheres.
 mesh_ngons         Meshes with ngons, read and given to meshes without.
 render_mesh_audit  Judges the render meshes inside Breps from their bytes alone.
-render_meshes      Writes render meshes of panels and beams for viewers that mesh no solids.
+render_meshes      Writes render meshes of panels for viewers that mesh no Breps.
 shell_writer       Writes all panels joined into one Brep.
+solid_charts       Faces of solids as exact surfaces, their edges as exact trims.
+solid_writer       Writes solids as Breps: panels of a thickness, beams, node cylinders.
 sphere_patches     Spherical panels as exact rational patches and trims.
 stream_codes       Types of chunks, ids of classes, checksums.
 stream_reader      Reads a stream of chunks.

@@ -21,6 +21,7 @@ from ...kernel.spheres.minkowski import minkowski
 from ...kernel.tolerances import BREP_VOLUME, EPSILON, EXACT_BREP
 from .brep_evaluation import (
     brep_volumes,
+    checksum_defects,
     distances_to_edge,
     edge_points,
     stream_numbers,
@@ -31,8 +32,14 @@ from .brep_evaluation import (
 from .brep_layout import BrepLayout, Face, Side, Surface
 from .brep_reader import parse_brep
 from .render_mesh_audit import audit_render_meshes
-from .stream_codes import CRC, PLANE_SURFACE, Checksum
+from .stream_codes import ARC_CURVE, PLANE_SURFACE
 from .stream_reader import UnreadableError
+
+_AT_A_TIME = 512
+"""Streams that are judged together: more do not fit the cache, and need memory."""
+
+_LARGEST_RADIUS = 1e3
+"""Of the edges of a solid, in its sizes, beyond which errors may not grow with it."""
 
 _ROUNDING = 16
 """Spacings of float64, at the largest coordinate, that the parts of a Brep may differ by."""
@@ -125,10 +132,13 @@ def verify_breps(
             matrix = matrix.reshape(len(pending), -1)
             is_alike = (matrix[:, layout.fixed] == matrix[0, layout.fixed]).all(1)
             same, pending = pending[is_alike], pending[~is_alike]
-            rows = None if spheres is None else spheres[same]
-            errors = _measure(matrix[is_alike], layout, rows, origins[same])
-            for i, record in zip(same, errors, strict=True):
-                result[i] = record
+            alike = matrix[is_alike]
+            for begin in range(0, len(same), _AT_A_TIME):
+                some = slice(begin, begin + _AT_A_TIME)
+                rows = None if spheres is None else spheres[same[some]]
+                errors = _measure(alike[some], layout, rows, origins[same[some]])
+                for i, record in zip(same[some].tolist(), errors, strict=True):
+                    result[i] = record
     return result
 
 
@@ -145,7 +155,7 @@ def _measure(
             rows = _fit_spheres(faces[0], origins)
         first = faces[0]
         distances = np.max([_distances(samples) for samples in faces], axis=0)
-        columns = [_scales(faces, rows), _rounding(faces), *distances.T]
+        columns = [_scales(streams, layout, faces, rows), _rounding(faces), *distances.T]
         columns.append(_to_sphere(first, rows, origins))
         columns.append(_mesh_errors(streams, layout, rows, origins, defects))
         turns = np.min([samples.turns.min(axis=1) for samples in faces], axis=0)
@@ -201,21 +211,10 @@ def _defects(streams: NDArray[np.uint8], layout: BrepLayout) -> list[str]:
     ]
     for face in layout.faces:
         found += _surface_defects(streams, face.surface)
-    result = _checksum_defects(streams, layout.checksums)
+    result = checksum_defects(streams, layout)
     for defect, is_bad in found:
         for i in np.flatnonzero(is_bad.any(1)):
             result[i] = result[i] or defect
-    return result
-
-
-def _checksum_defects(streams: NDArray[np.uint8], checksums: tuple[Checksum, ...]) -> list[str]:
-    result = [""] * len(streams)
-    for i, row in enumerate(streams):
-        data = memoryview(row.tobytes())
-        for checksum in checksums:
-            if CRC.unpack_from(data, checksum.place)[0] != checksum.compute(data):
-                result[i] = f"the checksum at byte {checksum.place} is wrong"
-                break
     return result
 
 
@@ -287,7 +286,8 @@ def _face_samples(streams: NDArray[np.uint8], face: Face) -> _Samples:
     sides = face.sides
     ends = [[stream_numbers(streams, at, 3) for at in (side.start, side.end)] for side in sides]
     uv = [trim_points(streams, side.trim) for side in sides]
-    trims = [surface_points(streams, face.surface, points) for points in uv]
+    lifted = surface_points(streams, face.surface, np.concatenate(uv, 1))
+    trims = np.split(lifted, np.cumsum([points.shape[1] for points in uv])[:-1], axis=1)
     edges = [edge_points(streams, side.edge) for side in sides]
     edges = [
         points[:, ::-1] if side.is_reversed else points
@@ -310,7 +310,7 @@ def _face_samples(streams: NDArray[np.uint8], face: Face) -> _Samples:
         np.stack([np.stack(pair, 1) for pair in ends], 1),
         np.concatenate(edges, 1),
         np.stack([points[:, [0, -1]] for points in edges], 1),
-        np.concatenate(trims, 1),
+        lifted,
         np.stack([points[:, [0, -1]] for points in trims], 1),
         np.stack(off_edges, 1),
         surface_points(streams, face.surface, halfway),
@@ -327,15 +327,29 @@ def _distances(samples: _Samples) -> FloatArray:
     ])  # fmt: skip
 
 
-def _scales(faces: list[_Samples], rows: FloatArray | None) -> FloatArray:
-    """What errors are relative to (n,): the radius of the first face, or the largest face."""
-    starts = [samples.edges for samples in faces]
-    sizes = [2 * norm(x - x.mean(1, keepdims=True)).max(1) for x in starts]
+def _scales(
+    streams: NDArray[np.uint8],
+    layout: BrepLayout,
+    faces: list[_Samples],
+    rows: FloatArray | None,
+) -> FloatArray:
+    """What errors are relative to (n,): the radius of the first face, if it is known.
+
+    Else the largest radius of an edge, as points of a circle are rounded as its radius is; or
+    the size of the largest face.
+    """
+    points = [samples.edges for samples in faces]
+    sizes = [2 * norm(x - x.mean(1, keepdims=True)).max(1) for x in points]
     size = np.max(sizes, axis=0)
-    if rows is None:
-        return size
-    curvatures = 2 * np.abs(rows[:, 0])
-    return np.where(curvatures * size > EPSILON, 1 / curvatures, size)
+    if rows is not None:
+        curvatures = 2 * np.abs(rows[:, 0])
+        return np.where(curvatures * size > EPSILON, 1 / curvatures, size)
+    arcs = [side.edge for face in layout.faces for side in face.sides]
+    radii = [
+        stream_numbers(streams, arc.points, 17)[:, -1] for arc in arcs if arc.uuid == ARC_CURVE
+    ]
+    largest = np.max([size, *radii], axis=0)
+    return np.minimum(largest, _LARGEST_RADIUS * size)
 
 
 def _rounding(faces: list[_Samples]) -> FloatArray:

@@ -7,10 +7,12 @@ from numpy.typing import NDArray
 
 from ...kernel.arrays import FloatArray, dot, norm
 from .brep_layout import BrepLayout, Curve, Face, Surface
-from .stream_codes import LINE_CURVE, NURBS_CURVE, PLANE_SURFACE
+from .stream_codes import CRC, LINE_CURVE, NURBS_CURVE, PLANE_SURFACE, Checksum
 
 _SAMPLES = 9
 """Points per Bézier span of a trim and per edge, the ends included."""
+
+_WRONG = "the checksum at byte {} is wrong"
 
 _STEPS = 3
 """From the nearest of the samples, towards the nearest point of a conic."""
@@ -20,6 +22,31 @@ def stream_numbers(streams: NDArray[np.uint8], place: int, count: int) -> FloatA
     """Float64 numbers (n, count) that begin at a place of streams (n, bytes) of one layout."""
     raw = np.ascontiguousarray(streams[:, place : place + 8 * count])
     return raw.view("<f8").astype(np.float64)
+
+
+def checksum_defects(streams: NDArray[np.uint8], layout: BrepLayout) -> list[str]:
+    """Which checksum of each of n streams of one layout is wrong; empty for none.
+
+    Checksums of bytes that are the same in all streams are computed for the first alone.
+    """
+    result = [""] * len(streams)
+    varying: list[Checksum] = []
+    first = memoryview(streams[0].tobytes())
+    for checksum in layout.checksums:
+        if not all(layout.fixed[start:stop].all() for start, stop in checksum.ranges):
+            varying.append(checksum)
+            continue
+        stored = streams[:, checksum.place : checksum.place + CRC.size]
+        computed = np.frombuffer(CRC.pack(checksum.compute(first)), np.uint8)
+        for i in np.flatnonzero((stored != computed).any(axis=1)).tolist():
+            result[i] = result[i] or _WRONG.format(checksum.place)
+    for i, row in enumerate(streams):
+        data = memoryview(row.tobytes())
+        for checksum in varying:
+            if CRC.unpack_from(data, checksum.place)[0] != checksum.compute(data):
+                result[i] = result[i] or _WRONG.format(checksum.place)
+                break
+    return result
 
 
 def trim_points(streams: NDArray[np.uint8], curve: Curve) -> FloatArray:
@@ -199,7 +226,7 @@ def _to_conic(span: FloatArray, points: FloatArray) -> FloatArray:
 
 # Volumes
 
-_NODES, _LENGTHS = np.polynomial.legendre.leggauss(10)
+_NODES, _LENGTHS = np.polynomial.legendre.leggauss(8)
 _SHARES, _WEIGHTS = (_NODES + 1) / 2, _LENGTHS / 2
 
 
@@ -242,7 +269,9 @@ def _along_u(
     )
     basis, slopes = spline_basis(knots[1], uv[..., 1], surface.orders[1] - 1)
     # Curves in u through the points, and how they change with v: (n, q, k, 4).
-    curves, turns = (np.einsum("nqj,nkjd->nqkd", part, net) for part in (basis, slopes))
+    flat = net.transpose(0, 2, 1, 3).reshape(len(net), net.shape[2], -1)
+    shape = (*uv.shape[:2], net.shape[1], 4)
+    curves, turns = (np.matmul(part, flat).reshape(shape) for part in (basis, slopes))
     breaks = knots[0][:, :: surface.orders[0] - 1]
     total = np.zeros(uv.shape[:2])
     for low, high in zip(breaks.T[:-1], breaks.T[1:], strict=True):

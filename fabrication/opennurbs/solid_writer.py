@@ -46,14 +46,14 @@ def solid_streams(batches: Sequence[BrepBatch], places: FloatArray) -> list[byte
     """
     result: dict[int, bytes] = {}
     for batch in batches:
-        spans = span_counts(batch)
+        spans = _span_counts(batch)
         for each in np.unique(spans).tolist():
             chosen = select_rows(batch, np.flatnonzero(spans == each))
             result.update(_streams(chosen, places[chosen.rows], each))
     return [result[row] for row in sorted(result)]
 
 
-def span_counts(batch: BrepBatch) -> IntArray:
+def _span_counts(batch: BrepBatch) -> IntArray:
     """Bézier spans (m,) of curves and patches, 1 or 2, so that weights stay well positive."""
     conics = edge_conics(batch, 1)
     least = np.ones(len(batch.rows))

@@ -83,7 +83,9 @@ def _assemble_chunk(chunk: Chunk) -> _Template:
         checksums += [_shifted(checksum, here) for checksum in inner.checksums]
         data += inner.data
         if not isinstance(piece, Chunk | Encoded):
-            own.append((here, len(data)))
+            # One range for pieces that follow one another: a call for each would take long.
+            start = own.pop()[0] if own and own[-1][1] == here else here
+            own.append((start, len(data)))
     if chunk.typecode & codes.CRC_FLAG:
         checksum = codes.Checksum(len(data), tuple(own))
         if any(isinstance(piece, Slot | PlainBuffer) for piece in chunk.body):
@@ -114,11 +116,12 @@ def fill(piece: Piece, numbers: Mapping[str, NDArray[Any]]) -> Iterator[bytes]:
         values = values.reshape(rows, math.prod(values.shape[1:]))[:, : slot.size]
         raw = np.ascontiguousarray(values, slot.dtype).view(np.uint8)
         streams[:, place : place + raw.shape[1]] = raw
+    pack_into = codes.CRC.pack_into
     for row in streams:
         stream = bytearray(row.tobytes())
         with memoryview(stream) as view:
             for checksum in template.checksums:
-                codes.CRC.pack_into(stream, checksum.place, checksum.compute(view))
+                pack_into(stream, checksum.place, checksum.compute(view))
         yield bytes(stream)
 
 

@@ -18,6 +18,7 @@ import struct
 import zlib
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
+from functools import cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 from uuid import UUID
@@ -283,6 +284,12 @@ def _text(value: str) -> bytes:
     return ints(len(coded) // 2) + coded
 
 
+@cache
+def _key(text: str) -> bytes:
+    """How an entry with that key begins; keys are few."""
+    return ints(1, 0) + _text(text)
+
+
 def _attributes(each: ObjectAttributes) -> bytes:
     items = [b"\x2d", each.id.bytes_le, ints(each.layer)]
     if each.name:
@@ -304,9 +311,10 @@ def _attributes(each: ObjectAttributes) -> bytes:
 
 def _user_text(text: Mapping[str, str], header: bytes) -> bytes:
     pairs = b"".join(
-        _chunk(ANONYMOUS, ints(1, 0) + _text(key) + _text(value)) for key, value in text.items()
+        _chunk(ANONYMOUS, _key(key) + _text(value)) for key, value in text.items() if value
     )
-    listed = _chunk(ANONYMOUS, ints(1, 0) + ints(len(text)), pairs)
+    count = sum(1 for value in text.values() if value)
+    listed = _chunk(ANONYMOUS, ints(1, 0, count), pairs)
     whole = _chunk(ANONYMOUS, b"", listed)
     data = _chunk(_CLASS_USER_DATA, header + whole)
     return _chunk(_USER_DATA, b"", data + _CLASS_END)

@@ -6,6 +6,6 @@ and the stream in base64. What can be is written and read as bytes, without rhin
 curves    Arcs, lines and circles, written and read.
 fields    The four entries of an object, and its stream.
 meshes    Meshes with ngons, written and read.
-solids    Writes panels as exact Breps, beams as extrusions.
+solids    Writes panels, beams and node cylinders as exact Breps.
 surfaces  Reads surfaces and polysurfaces with their normals and curvatures.
 """

@@ -46,7 +46,9 @@ def _beams(subject: BeamSubject, material: Material) -> Record:
     inner = section_arcs(made)[1]
     volumes, centroids = facts.volumes / CUBIC_METER, beam_centroids(made)
     counts, diameter = _hole_counts(made), made.marks.diameter if made.marks else np.nan
-    start, end = ([node_name(vertex) for vertex in each] for each in annuli.edge_vertices.T)
+    start, end = (
+        [node_name(vertex) for vertex in each] for each in annuli.edge_vertices.T.tolist()
+    )
     return make_record(
         {
             "id": annuli.ids,
@@ -111,7 +113,7 @@ def _ends(subject: BeamSubject) -> Record:
         {
             "beam": [name for name in annuli.ids for _ in range(2)],
             "end": [1, 2] * made.n_beams,
-            "node": [node_name(vertex) for vertex in annuli.edge_vertices.ravel()],
+            "node": [node_name(vertex) for vertex in annuli.edge_vertices.ravel().tolist()],
             **split_points(("outer_u_mm", "outer_v_mm"), outer),
             **split_points(("inner_u_mm", "inner_v_mm"), inner),
             "depth_mm": facts.depths.ravel(),

@@ -5,9 +5,13 @@ bodies of one topology once and fills them with numbers, both from `fabrication.
 `assembly` is the tree of groups and parts around them, where a part may stand in several
 places. OpenCASCADE repairs what it reads, so `check` judges the text of files without it.
 
-assembly  Bodies with names, layers and colours: assemblies of parts.
-bodies    Solids, surfaces and lines as entities.
-check     A check of the structure of a file.
-values    Numbers, strings and references.
-writer    Writes a file of panels and beams.
+assembly            Bodies with names, layers and colours: assemblies of parts.
+bodies              Solids, surfaces and lines as entities.
+check               A check of the structure of a file.
+digits              How many digits of numbers are written.
+opencascade_writer  Assemblies of CadQuery as files, by OpenCASCADE.
+parameter_curves    Arcs in the parameters of their spheres, where readers need them.
+sharing             What the curves and surfaces of a part have in common.
+values              Numbers, strings and references.
+writer              Writes a file of panels and beams.
 """

@@ -237,14 +237,34 @@ class _Assembler:
         items = [self._origin]
         for member in group.members:
             if isinstance(member, Group):
-                part, instances = self._add_group(member), (Instance(member.name, (0.0,) * 3),)
+                here = Instance(member.name, (0.0,) * 3)
+                items.append(self._place(definition, self._add_group(member), here))
             else:
-                part, instances = self._add_part(member), member.instances
-            items += [self._place(definition, part, instance) for instance in instances]
+                items += self._place_part(definition, member)
         self._write(
             definition.shape, f"SHAPE_REPRESENTATION('',({references(items)}),#{self._context})"
         )
         return definition
+
+    def _place_part(self, whole: _Definition, part: Part) -> list[int]:
+        """Numbers of the placements of the instances of a part.
+
+        Many programs show the names of products alone, not those of their occurrences: where a
+        shape stands in several places, each of them is an assembly, by its own name, of it.
+        """
+        definition = self._add_part(part)
+        if len(part.instances) == 1:
+            return [self._place(whole, definition, part.instances[0])]
+        return [self._place_copy(whole, definition, each) for each in part.instances]
+
+    def _place_copy(self, whole: _Definition, shape: _Definition, instance: Instance) -> int:
+        copy = self._define(instance.name)
+        item = self._place(copy, shape, Instance(instance.name, (0.0,) * 3))
+        self._write(
+            copy.shape,
+            f"SHAPE_REPRESENTATION('',(#{self._origin},#{item}),#{self._context})",
+        )
+        return self._place(whole, copy, instance)
 
     def _add_part(self, part: Part) -> _Definition:
         definition = self._define(part.name)

@@ -35,11 +35,14 @@ from ..breps.panel_geometry import (
 from ..breps.panels import panel_batches
 from ..files import check_suffix, check_target, replacing
 from ..model import Model, Written, check_model
+from ..solids.cadquery_assembly import to_cadquery
 from ..units import millimeters_per
 from .assembly import Group, Instance, Part, StepHeader, StepSchema, assembly_lines
 from .bodies import line_body, step_bodies
+from .parameter_curves import ParameterCurves
 
 StepCopies = Literal["shapes", "instances"]
+StepEngine = Literal["text", "cadquery"]
 
 
 @dataclass(frozen=True)
@@ -49,12 +52,17 @@ class StepOptions:
     It declares the units ``mm``, ``cm``, ``m``, ``in`` or ``ft``; the title is in its header.
     Copies are ``shapes``, a shape of its own for every panel, or ``instances``: identical
     panels (see `congruent_panels`) are instances of one shape, named after the first of them.
+    Arcs get curves in the parameters of their spheres where readers need them, all of them or
+    none. The engine is our own text, or OpenCASCADE by an assembly of CadQuery, ten times as
+    slow: shapes alone, with all curves.
     """
 
     units: str = "mm"
     schema: StepSchema = "AP214IS"
     title: str = "Spherical panels"
     copies: StepCopies = "shapes"
+    parameter_curves: ParameterCurves = "needed"
+    engine: StepEngine = "text"
 
 
 _SHAPES_IN_MM: Final = StepOptions()
@@ -73,34 +81,27 @@ def write_step(
 
     The only geometry is spheres, planes, circles and lines, and for beams cylinders and
     ellipses. Names of curves get lost in STEP, so the axes are one part of many lines; a Rhino
-    file has them by name. Every number is read back as it was. Instances stand within 1e-6 mean
-    edges of the panels that they stand for (`SAME_PANEL`): 0.001 mm where edges are 1 m long.
+    file has them by name. Numbers are read back within 1e-12 of the size of their part and
+    1e-9 mm. Instances stand within 1e-6 mean edges of the panels that they stand for
+    (`SAME_PANEL`): 0.001 mm where edges are 1 m long.
 
     Raises InputError if there is nothing to write, two panels have one name or one is not
-    finite, a unit, schema or way of copies is not known, or the folder does not exist.
+    finite, an option is not known, or the folder does not exist; MissingLibraryError if the
+    engine cadquery is asked for and missing.
     """
     target = Path(path)
     check_suffix(target, ".step", ".stp")
     check_model(model, target)
     check_target(target)
-    panels, beams = model.panels, model.beams
-    if options.schema not in get_args(StepSchema):
-        raise InputError(f"unknown STEP schema {options.schema!r}: use AP214IS or AP242DIS")
-    if options.copies not in get_args(StepCopies):
-        raise InputError(f"copies must be shapes or instances, not {options.copies!r}")
-    millimeters = millimeters_per(options.units)
-    scale, confusion = millimeters_per(model.units) / millimeters, CONFUSION / millimeters
-    build = _panel_parts if options.copies == "shapes" else _shared_parts
-    parts = build(panels, scale, confusion) if panels is not None and panels.n_panels else []
-    root = Group("Panels", parts)
-    if beams is not None and beams.n_beams:
-        support = _support_parts(beams, scale, confusion)
-        root = Group("Model", [root, *support] if parts else support)
-    system = f"spheremesh {version('spheremesh')}"
-    header = StepHeader(
-        options.schema, options.units, millimeters, confusion, options.title, system
-    )
-    lines = assembly_lines(root, header)
+    _check_options(options)
+    if options.engine == "cadquery":
+        assembly = to_cadquery(model)
+        from .opencascade_writer import write_assembly
+
+        with replacing(target) as temporary:
+            write_assembly(assembly, temporary, options.schema, options.units, options.title)
+        return Written(target)
+    lines = assembly_lines(_root(model, options), _header(options))
     with (
         replacing(target) as temporary,
         temporary.open("w", encoding="ascii", newline="\n") as file,
@@ -109,23 +110,68 @@ def write_step(
     return Written(target)
 
 
-def _panel_parts(panels: Panels, scale: float, confusion: float) -> list[Part]:
+def _check_options(options: StepOptions) -> None:
+    for name, value, kind in (
+        ("schema", options.schema, StepSchema), ("copies", options.copies, StepCopies),
+        ("parameter_curves", options.parameter_curves, ParameterCurves),
+        ("engine", options.engine, StepEngine),
+    ):  # fmt: skip
+        allowed = get_args(kind)
+        if value not in allowed:
+            known = f"{', '.join(allowed[:-1])} or {allowed[-1]}"
+            raise InputError(f"{name} of a STEP file must be {known}, not {value!r}")
+    if options.engine == "cadquery" and options.copies != "shapes":
+        raise InputError(
+            "the engine cadquery writes shapes alone: instances need the engine text"
+        )
+
+
+def _header(options: StepOptions) -> StepHeader:
+    millimeters = millimeters_per(options.units)
+    system = f"spheremesh {version('spheremesh')}"
+    confusion = CONFUSION / millimeters
+    return StepHeader(
+        options.schema, options.units, millimeters, confusion, options.title, system
+    )
+
+
+def _root(model: Model, options: StepOptions) -> Group:
+    """Panels, and with beams the assembly of both."""
+    millimeters = millimeters_per(options.units)
+    scale, confusion = millimeters_per(model.units) / millimeters, CONFUSION / millimeters
+    panels, beams = model.panels, model.beams
+    build = _panel_parts if options.copies == "shapes" else _shared_parts
+    parts: list[Part] = []
+    if panels is not None and panels.n_panels:
+        parts = build(panels, scale, confusion, options.parameter_curves)
+    root = Group("Panels", parts)
+    if beams is None or not beams.n_beams:
+        return root
+    support = _support_parts(beams, scale, confusion)
+    return Group("Model", [root, *support] if parts else support)
+
+
+def _panel_parts(
+    panels: Panels, scale: float, confusion: float, curves: ParameterCurves
+) -> list[Part]:
     """A part per panel, where it stands."""
     panels = panels_in_place(panels, scale)
     tolerances = _file_tolerances(panel_tolerances(panels, confusion), confusion)
     return [
         Part(body, name, *mould, tolerance, (Instance(name, tuple(place)),))
         for body, name, mould, tolerance, place in zip(
-            step_bodies(panel_batches(panels)), panels.ids, _moulds(panels), tolerances,
-            panels.origins.tolist(), strict=True,
+            step_bodies(panel_batches(panels), confusion, curves), panels.ids, _moulds(panels),
+            tolerances, panels.origins.tolist(), strict=True,
         )
     ]  # fmt: skip
 
 
-def _shared_parts(panels: Panels, scale: float, confusion: float) -> list[Part]:
+def _shared_parts(
+    panels: Panels, scale: float, confusion: float, curves: ParameterCurves
+) -> list[Part]:
     """A part per shape, wherever it stands."""
     same = congruent_panels(panels)
-    parts = _panel_parts(panels, scale, confusion)
+    parts = _panel_parts(panels, scale, confusion, curves)
     places = copy_places(panels, same, scale).tolist()
     copies = [
         Instance(name, tuple(place)) for name, place in zip(panels.ids, places, strict=True)
@@ -134,7 +180,7 @@ def _shared_parts(panels: Panels, scale: float, confusion: float) -> list[Part]:
     ends: list[int] = np.cumsum(np.bincount(same.labels)).tolist()
     models: list[int] = same.representatives.tolist()
     return [
-        replace(parts[model], instances=tuple(copies[i] for i in order[start:end]))
+        _shared(parts[model], [copies[i] for i in order[start:end]])
         for model, start, end in zip(models, [0, *ends], ends, strict=False)
     ]
 
@@ -146,7 +192,7 @@ def _beam_parts(beams: Beams, scale: float, confusion: float) -> list[Part]:
     return [
         Part(body, name, "Beams", BEAM_COLOR, tolerance, (Instance(name, tuple(place)),))
         for body, name, tolerance, place in zip(
-            step_bodies(beam_batches(numbers)), beams.annuli.ids, tolerances,
+            step_bodies(beam_batches(numbers), confusion), beams.annuli.ids, tolerances,
             numbers.places.tolist(), strict=True,
         )
     ]  # fmt: skip
@@ -165,7 +211,7 @@ def _support_parts(beams: Beams, scale: float, confusion: float) -> list[Group |
         nodes = [
             Part(body, name, "Nodes", NODE_COLOR, confusion, (Instance(name, tuple(place)),))
             for body, name, place in zip(
-                step_bodies([made]), found.ids, places.tolist(), strict=True
+                step_bodies([made], confusion), found.ids, places.tolist(), strict=True
             )
         ]
         groups.append(Group("Nodes", nodes))
@@ -189,3 +235,9 @@ def _moulds(panels: Panels) -> list[tuple[str, Color]]:
         (mould_name(label, count), mould_color(label, count))
         for label in panels.labels.tolist()
     ]
+
+
+def _shared(part: Part, copies: list[Instance]) -> Part:
+    """A part in several places: its name is free for the first of them."""
+    name = part.name if len(copies) == 1 else f"Shape of {part.name}"
+    return replace(part, name=name, instances=tuple(copies))

@@ -74,7 +74,8 @@ def panel_graph(
         Its steps are named mesh, description, start, angles (before an optimum of more than
         angles), optimum, panels, audit, report, step, rhino, table, list, picture and view;
         with a number of moulds also moulds, blanks, mould_drawing and mould_picture, with a
-        bound on angles before these fewest, with `flat_below` flat, with prices cost, with a
+        bound on angles before these fewest, with `flat_below` flat, with prices cost, with
+        `ifc` ifc, with a
         support also feasibility, annuli, beams, drawing and beam_table, with either plain, the
         panels without them; tables and drawing sets if asked for. Of a pattern mesh is the
         surface; gain, pattern and net follow it. Its writers write relative to the folder of
@@ -125,27 +126,33 @@ def panel_graph(
         max_twist=options.allow_torsion, **(support.audit if support else {}),
     )  # fmt: skip
     made = {"panels": panels.panels} | ({"beams": support.beams} if support else {})
-    cost: dict[str, Any] = {}
-    if options.prices is not None:
-        cost["cost"] = graph.add("cost", "cost", **made, prices=str(options.prices.resolve()))
+    cost = _cost(graph, options, made)
     report = graph.add(
         "panel_report", "report", sphere_mesh=spheres, optimum=optimum.report,
         cut=panels.report, moulds=clusters, blanks=blanks, audit=audit.report, **plain, **cost,
         **(support.report if support else {}),
     )  # fmt: skip
-    _add_writers(graph, pattern.surface if pattern else mesh, made)
+    checked = {"findings": audit.findings, "cut": panels.report}
+    _add_writers(graph, pattern.surface if pattern else mesh, made, checked)
+    if options.ifc:
+        graph.add("write_ifc", "ifc", **made, path="model.ifc", title=title)
     if moves:
-        graph.add(
-            "write_move_drawing", "moves", mesh=mesh, sphere_mesh=spheres, path="moves.svg"
-        )
+        _add_moves(graph, mesh, spheres)
     add_papers(graph, options, made, has_moulds=clusters is not None)
-    shown = {"findings": audit.findings, "cut": panels.report, "reference": spheres}
+    shown = {**checked, "reference": spheres}
     graph.add("write_view", "view", **made, **shown, path="view.html", title=title)
     graph.add(
         "write_report", "summary", report=report, panels=panels.panels, sphere_mesh=spheres,
         path="report.html", title=title,
     )  # fmt: skip
     return graph
+
+
+def _cost(graph: Graph, options: PanelOptions, made: Mapping[str, Wire]) -> dict[str, Step]:
+    """What it costs, by the prices of a workshop."""
+    if options.prices is None:
+        return {}
+    return {"cost": graph.add("cost", "cost", **made, prices=str(options.prices.resolve()))}
 
 
 def _few_radii(
@@ -192,14 +199,24 @@ def _add_blanks(graph: Graph, panels: Wire) -> Step:
     return graph.add("mould_blanks", "blanks", panels=panels)
 
 
-def _add_writers(graph: Graph, mesh: Step | Wire, made: Mapping[str, Wire]) -> None:
+def _add_writers(
+    graph: Graph,
+    mesh: Step | Wire,
+    made: Mapping[str, Wire],
+    checked: Mapping[str, Wire],
+) -> None:
     """Files of the parts; those of moulds and beams stand beside what they show."""
     panels = made["panels"]
     graph.add("write_step", "step", **made, path="panels.step")
-    graph.add("write_3dm", "rhino", **made, path="model.3dm", reference=mesh)
+    graph.add("write_3dm", "rhino", **made, **checked, path="model.3dm", reference=mesh)
     graph.add("write_schedule", "table", panels=panels, path="schedule.csv")
     graph.add("write_schedule", "list", **made, path="schedule.json")
     graph.add("render", "picture", **made, path="preview.png")
+
+
+def _add_moves(graph: Graph, mesh: Step | Wire, spheres: Wire) -> None:
+    """The design, with how far its vertices moved."""
+    graph.add("write_move_drawing", "moves", mesh=mesh, sphere_mesh=spheres, path="moves.svg")
 
 
 def _source(graph: Graph) -> str:

@@ -43,6 +43,8 @@ class PanelOptions:
         Panels that rise by less over their edges are flat, in millimetres.
     prices : Path or None
         Price file.
+    ifc : bool
+        Whether to write a building model.
     thickness, joint_gap : float
         In model units.
     side : {"inward", "outward", "centred"}
@@ -94,6 +96,7 @@ class PanelOptions:
     max_angle_largest: float | None = None
     flat_below: float = 0.0
     prices: Path | None = None
+    ifc: bool = False
     thickness: float = 0.0
     joint_gap: float = 0.0
     side: Literal["inward", "outward", "centred"] = "inward"

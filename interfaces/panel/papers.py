@@ -34,10 +34,9 @@ def add_papers(
                     "write_tables", f"table_{table}", **{parts: made[parts]},
                     path=f"tables_{table}.{options.tables}",
                 )  # fmt: skip
-    title = options.mesh.stem if options.mesh else "roof"
     if options.drawings:
         for suffix in ("pdf", "dxf"):
             graph.add(
                 "write_drawings", f"drawing_set_{suffix}", **made, paper=options.drawings,
-                project=title, path=f"drawings.{suffix}",
+                project=graph.title, path=f"drawings.{suffix}",
             )  # fmt: skip

@@ -32,7 +32,8 @@ def assembly_order(heights: FloatArray, pairs: IntArray) -> IntArray:
     """
     count = len(heights)
     beside: list[list[int]] = [[] for _ in range(count)]
-    for first, second in pairs.tolist():
+    touching: list[tuple[int, int]] = pairs.tolist()
+    for first, second in touching:
         beside[first].append(second)
         beside[second].append(first)
     levels: list[float] = heights.tolist()

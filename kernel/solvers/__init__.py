@@ -6,6 +6,7 @@ where SuperLU takes 12, cholespy 11 and qdldl 26; and a front that is not positi
 so, which a Newton method must know and CHOLMOD's LDLᵀ does not tell.
 
 newton               Newton's method that knows a minimum from a saddle.
+minimization         What it is given: energies, a model near a state, and moves.
 levenberg_marquardt  Least squares with steps that are taken only if the energy falls.
 blocks               Unknowns in groups of elements; sparse Jacobians made of small blocks.
 block_patterns       Where the blocks of a Hessian go.

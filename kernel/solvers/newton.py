@@ -10,7 +10,6 @@ The method knows nothing of matrices: a problem hands it the energy of a state, 
 state, and the way to move along a step.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Generic, NamedTuple
 
@@ -28,8 +27,7 @@ from ..tolerances import (
 )
 from .factorization import Solver
 from .levenberg_marquardt import State, Status
-
-Factorize = Callable[[float], Solver | None]
+from .minimization import Factorize, Model, Problem
 
 LARGEST_SHIFT = 1e3
 GROWTH = 1e3
@@ -43,50 +41,6 @@ CHORD = 0.1
 """Share of the last decrement that is left where the last factors serve once more."""
 MOST_ESCAPES = 10
 """Saddles that a descent leaves at most."""
-
-
-class Model(NamedTuple):
-    """The energy near a state, to second order; the second derivatives only if asked for.
-
-    Attributes
-    ----------
-    gradient : (n,) float array
-        Half of the gradient of the energy.
-    factorize : callable
-        Shift to a function that solves with ``H + shift I``, H half of the second derivatives,
-        or to None if that is not positive definite.
-    factorize_convex : callable
-        The same for the part of H that is never indefinite: ``JᵀJ`` of least squares.
-    """
-
-    gradient: FloatArray
-    factorize: Factorize
-    factorize_convex: Factorize
-
-
-@dataclass(frozen=True)
-class Problem(Generic[State]):
-    """What is minimised.
-
-    Attributes
-    ----------
-    energies : callable
-        State to the energies (terms,) of its terms; infinite where a state is out of bounds.
-    model : callable
-        State to its model.
-    move : callable
-        State and step to the moved state.
-    reach : callable
-        State and step to the largest part of the step, up to 1, that stays within bounds.
-    preference : callable
-        A number of a state that decides between the two sides of a saddle where they are equal.
-    """
-
-    energies: Callable[[State], FloatArray]
-    model: Callable[[State], Model]
-    move: Callable[[State, FloatArray], State]
-    reach: Callable[[State, FloatArray], float]
-    preference: Callable[[State, State], float]
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,6 @@
 """Panels, and the files that fabricators open."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Literal, NamedTuple
 
@@ -14,7 +15,7 @@ from ...kernel.errors import name_ids
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.panels import cutting
 from ...kernel.panels.panels import Panels, mark_creases
-from ...kernel.parts.findings import rejected_report
+from ...kernel.parts.findings import Finding, rejected_report
 from ...kernel.reports import Report
 from ...kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ..graphs.node import node, running_graph, warn
@@ -124,8 +125,8 @@ def panels(  # noqa: PLR0913, PLR0917 - a node has an input per choice
     return PanelSet(made, report)
 
 
-@node
-def write_step(
+@node(version="2")
+def write_step(  # noqa: PLR0913, PLR0917 - a node has an input per choice
     panels: Panels | None = None,
     path: WritePath = "model.step",
     units: Units = "m",
@@ -133,6 +134,8 @@ def write_step(
     schema: Literal["AP214IS", "AP242DIS"] = "AP214IS",
     copies: Literal["shapes", "instances"] = "shapes",
     beams: Beams | None = None,
+    parameter_curves: Literal["needed", "all", "none"] = "needed",
+    engine: Literal["text", "cadquery"] = "text",
 ) -> str:
     """Write panels and beams to a STEP file: exact solids, or faces without thickness.
 
@@ -152,6 +155,11 @@ def write_step(
         where panels repeat.
     beams : Beams, optional
         The beams, with their node cylinders if they have any, and the node axes.
+    parameter_curves : {"needed", "all", "none"}
+        Whether arcs have curves in the parameters of their spheres: where readers miss them
+        without, so that Boolean operations work on sharply curved panels; everywhere; nowhere.
+    engine : {"text", "cadquery"}
+        Our own text, or OpenCASCADE by way of CadQuery: slower, and the same model.
 
     Returns
     -------
@@ -167,12 +175,14 @@ def write_step(
     ...     write_step(made.panels, f"{folder}/vase.step").endswith("vase.step")
     True
     """
-    options = step.StepOptions(step_units, schema, copies=copies)
+    options = step.StepOptions(
+        step_units, schema, copies=copies, parameter_curves=parameter_curves, engine=engine
+    )
     return told_path(step.write_step(Model(panels, beams, units), path, options))
 
 
-@node
-def write_3dm(
+@node(version="2")
+def write_3dm(  # noqa: PLR0913 - a node has an input per choice
     panels: Panels | None = None,
     path: WritePath = "model.3dm",
     units: Units = "m",
@@ -181,8 +191,11 @@ def write_3dm(
     reference: Mesh | SphereMesh | None = None,
     shape: Literal["panels", "blocks", "shell"] = "panels",
     layers: tuple[Literal["Edges", "Centres", "Moulds"], ...] = ("Edges",),
+    *,
+    findings: Sequence[Finding] = (),
+    cut: CutReport | None = None,
 ) -> str:
-    """Write panels and beams to a Rhino file: exact trimmed spheres, layers, user text.
+    """Write panels and beams to a Rhino file: the solids of STEP files, layers, user text.
 
     Parameters
     ----------
@@ -195,16 +208,21 @@ def write_3dm(
     version : int
         Rhino version of the file.
     beams : Beams, optional
-        The beams, as extrusions of their flat contours, with their drilling marks, node
-        cylinders and node axes.
+        The beams, as solids, with their drilling marks, node cylinders and node axes.
     reference : Mesh or SphereMesh, optional
         The design mesh, for a layer of its own.
     shape : {"panels", "blocks", "shell"}
-        A surface per panel; instances of a block wherever panels are identical; or all panels
-        joined into one polysurface, which needs panels cut along intersections without joint.
+        A solid per panel, or a face without thickness; instances of a block wherever panels
+        are identical; or all outer faces joined into one polysurface, which needs panels cut
+        along intersections without joint.
     layers : tuple of {"Edges", "Centres", "Moulds"}
         Further layers: the edges of the panels, the centres of their spheres, and the blanks
         of the moulds as blocks under their panels.
+    findings : sequence of Finding, optional
+        What the node `audit` found: user text and a colour of the parts, named on the layer
+        ``To check``.
+    cut : CutReport, optional
+        What `panels` reports: where panels are missing, the reference shows on ``Rejected``.
 
     Returns
     -------
@@ -222,7 +240,10 @@ def write_3dm(
     """
     mesh = reference.mesh if isinstance(reference, SphereMesh) else reference
     graph = running_graph()
-    options = rhino.RhinoOptions(shape, layers, mesh, version=version, graph_json=graph)
+    rejected = () if cut is None else tuple(cut["rejected"])
+    options = rhino.RhinoOptions(
+        shape, layers, mesh, tuple(findings), rejected, version=version, graph_json=graph
+    )
     return told_path(rhino.write_3dm(Model(panels, beams, units), path, options))
 
 

@@ -27,9 +27,9 @@ from ...kernel.parts.records import part_ids
 from ..light import sky_maps
 from .beams import beam_arrays, beam_points, node_arrays
 from .container import pack_arrays
-from .faces import Faces, cloud, cover, face_arrays, panel_faces
+from .faces import Faces, cover, face_arrays, panel_faces
 from .grid import Grid, grid_about
-from .sky import GROUND, REACH, ground_openness, panel_openness
+from .sky import GROUND, REACH, ground_openness, panel_openness, point_sky, point_spacing
 
 _BUNDLE: Final = "bundle"
 """Folder of what `source/build.mjs` makes."""
@@ -152,7 +152,7 @@ def _add_light(
 ) -> dict[str, Any]:
     """Light of the sky at the points of panels and on the ground; where that lies."""
     seen = faces[0].points if faces else points[0]
-    sky = sky_maps(seen, cover(faces[0]) if faces else cloud(seen))
+    sky = sky_maps(seen, cover(faces[0])) if faces else point_sky(seen, point_spacing(seen))
     for name, side in zip(("outer", "inner"), faces, strict=False):
         # Both sides count from the outer face, on which the light falls.
         normals = side.normals if name == "outer" else -side.normals

@@ -4,8 +4,11 @@ from typing import Final
 
 import numpy as np
 
-from ...kernel.arrays import FloatArray, IntArray
-from ..light import DepthMap, blurred, sky_openness
+from ...kernel.arrays import FloatArray, IntArray, norm
+from ..light import DepthMap, blurred, point_maps, sky_openness
+
+DIRECTIONS: Final = 14
+"""Of the sky, for pictures that are made quickly."""
 
 GROUND: Final = 48
 """Points of the ground along each side."""
@@ -32,3 +35,14 @@ def ground_openness(points: FloatArray, sky: list[DepthMap]) -> IntArray:
     open_shares = sky_openness(sky, ground, up)[:, 0].reshape(GROUND, GROUND)
     soft = blurred(open_shares, 1.2)
     return np.rint(255 * soft).astype(np.int64)
+
+
+def point_sky(points: FloatArray, spacing: float) -> list[DepthMap]:
+    """Depth pictures of points (N, 3) that stand at most a spacing apart on their surfaces."""
+    return point_maps(points, spacing, DIRECTIONS)
+
+
+def point_spacing(points: FloatArray) -> float:
+    """How far neighbouring points are apart on their surfaces, where they stand in order."""
+    apart = norm(np.diff(points, axis=0)) if len(points) > 1 else np.zeros(1)
+    return float(np.quantile(apart, 0.9))

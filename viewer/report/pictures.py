@@ -18,11 +18,11 @@ WIDTH, HEIGHT = 540, 330
 def flat_shape(panels: Panels) -> Shape:
     """Panels as planes between the same corners, each about its middle."""
     owners, count = panels.corner_panels, panels.n_panels
-    origin = panels.origins.mean(axis=0)
-    corners = panels.corners + (panels.origins - origin)[owners]
+    origin: FloatArray = panels.origins.mean(axis=0)
+    corners: FloatArray = panels.corners + (panels.origins - origin)[owners]
     middles = sum_by(owners, corners, count) / panels.degrees[:, None]
     following = panels.next_corners
-    arms = corners - middles[owners]
+    arms: FloatArray = corners - middles[owners]
     turns: FloatArray = np.cross(arms, arms[following])
     normals = unit(sum_by(owners, turns, count))
     rows = np.zeros((count, 5))

@@ -9,7 +9,8 @@
 - What has a limit (displacements, misses of spheres with corners of their own) costs little
   inside, and beyond all bounds towards it. As this price falls from round to round, of all
   optima the one of least displacement remains: many shapes of a smooth mesh are as good as
-  equal, and without a price rounding would choose one. Node axes have a price for leaning.
+  equal, and without a price rounding would choose one. Node axes have a price for leaning,
+  and follow the spheres: a move that changed both at once would miss by their product.
 - Second derivatives matter: on smooth meshes residuals times curvatures are not small, and
   without them it takes ten times as many steps. Far from an
   optimum, where the Hessian is indefinite, its convex part leads on.

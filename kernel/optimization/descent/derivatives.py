@@ -9,7 +9,7 @@ from ...arrays import FloatArray, dot
 from ...solvers.block_patterns import PairKind, add_up
 from ...solvers.block_systems import Blocks, factorize_system
 from ...solvers.factorization import Solver
-from ...solvers.newton import Model
+from ...solvers.minimization import Model
 from ...spheres.minkowski import minkowski_gradient
 from ..energies.second_derivatives import SecondDerivatives
 from ..energies.setting import Group, Unknowns

@@ -9,7 +9,8 @@ import numpy as np
 from ...arrays import FloatArray, dot
 from ...solvers.factorization import Solver
 from ...solvers.levenberg_marquardt import Status
-from ...solvers.newton import NewtonDescent, Problem, newton
+from ...solvers.minimization import Problem
+from ...solvers.newton import NewtonDescent, newton
 from ...tolerances import (
     AT_REST,
     COMMON_VERTEX,

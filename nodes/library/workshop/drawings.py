@@ -125,8 +125,8 @@ def write_move_drawing(
     >>> from tempfile import TemporaryDirectory
     >>> from spheremesh.nodes import fit_spheres, optimize_spheres, vase_mesh
     >>> from spheremesh.nodes import write_move_drawing
-    >>> mesh = vase_mesh(8, 4)
-    >>> optimum = optimize_spheres(fit_spheres(mesh), tolerance=0.01)
+    >>> mesh = vase_mesh(12, 6)
+    >>> optimum = optimize_spheres(fit_spheres(mesh), tolerance=0.02)
     >>> with TemporaryDirectory() as folder:
     ...     write_move_drawing(mesh, optimum.sphere_mesh, f"{folder}/moves.svg")[-9:]
     'moves.svg'

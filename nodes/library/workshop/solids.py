@@ -1,6 +1,7 @@
 """Panels and beams as solids for CadQuery."""
 
-from ....fabrication.solids.cadquery_assembly import beams_to_cadquery, to_cadquery
+from ....fabrication.model import Model
+from ....fabrication.solids.cadquery_assembly import to_cadquery
 from ....kernel.beams.beams import Beams
 from ....kernel.errors import InputError
 from ....kernel.panels.panels import Panels
@@ -8,25 +9,27 @@ from ...graphs.node import node
 from ...graphs.ports import Units
 
 
-@node
+@node(version="2")
 def cadquery_solids(
     panels: Panels | None = None, beams: Beams | None = None, units: Units = "m"
 ) -> object:
-    """Panels and beams as a CadQuery assembly, for further modelling.
+    """Panels, beams and nodes as a CadQuery assembly, for further modelling.
 
     Parameters
     ----------
     panels : Panels, optional
         The panels; these or beams are needed.
     beams : Beams, optional
-        The beams; of beams and panels the former are an assembly within the latter.
+        The beams, with their node cylinders if they have any, and the node axes.
     units : str
         Model units; the assembly is in millimetres.
 
     Returns
     -------
     cadquery.Assembly
-        A solid (without thickness a face) for every part, named by its id.
+        ``Panels``; with beams ``Model`` of ``Panels``, ``Beams``, ``Nodes`` and ``Axes``. A
+        solid (without thickness a face) for every part, named by its id and coloured; its
+        layer is in ``metadata["layer"]``.
 
     Examples
     --------
@@ -35,9 +38,6 @@ def cadquery_solids(
     >>> len(cadquery_solids(torus).children)
     48
     """
-    if panels is None:
-        if beams is None:
-            raise InputError("cadquery_solids needs panels or beams")
-        return beams_to_cadquery(beams, units)
-    assembly = to_cadquery(panels, units)
-    return assembly if beams is None else assembly.add(beams_to_cadquery(beams, units))
+    if panels is None and beams is None:
+        raise InputError("cadquery_solids needs panels or beams")
+    return to_cadquery(Model(panels, beams, units))

@@ -26,7 +26,7 @@ from spheremesh.fabrication.model import Model
 from spheremesh.fabrication.opennurbs.brep_audit import verify_breps
 from spheremesh.fabrication.opennurbs.brep_reader import read_brep_streams
 from spheremesh.fabrication.rhino_models.writer import RhinoOptions, write_3dm
-from spheremesh.fabrication.solids.cadquery_assembly import beams_to_cadquery
+from spheremesh.fabrication.solids.cadquery_assembly import to_cadquery
 from spheremesh.fabrication.solids.opencascade_beams import beam_shapes
 from spheremesh.fabrication.step.check import check_part21
 from spheremesh.fabrication.step.writer import write_step
@@ -266,7 +266,7 @@ def test_far_from_the_origin_no_digit_is_lost(tmp_path: Path, ends: dict[str, fl
 
 def test_objects_of_cadquery() -> None:
     beams = select_parts(CASES["mitred"], np.arange(CASES["mitred"].n_beams) < 4)
-    assembly = beams_to_cadquery(beams)
+    assembly = to_cadquery(Model(beams=beams)).children[0]
     assert [child.name for child in assembly.children] == list(beams.annuli.ids)
     for child, volume in zip(assembly.children, beam_volumes(beams), strict=True):
         assert abs(child.obj.Volume() / (1e9 * volume) - 1) < 1e-6  # pyright: ignore

@@ -33,7 +33,7 @@ from spheremesh.kernel.optimization.energies.setting import (
     first_unknowns,
 )
 from spheremesh.kernel.optimization.energies.table import TERMS, EnergyWeights, Term
-from spheremesh.kernel.solvers.newton import Model
+from spheremesh.kernel.solvers.minimization import Model
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.spheres.minkowski import minkowski
 from spheremesh.nodes import ellipsoid_mesh, torus_mesh, vase_mesh

@@ -92,7 +92,7 @@ def test_faces_that_are_no_quadrilaterals_belong_to_no_strip() -> None:
     [
         (np.zeros(3), "zero or not finite"),
         (np.array([1.0, np.nan, 0]), "zero or not finite"),
-        (np.ones(2), "must have shape"),
+        (np.ones(2), "must be int or vector"),
         (2, "directions 0 and 1, not 2"),
     ],
 )

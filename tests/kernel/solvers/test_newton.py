@@ -5,7 +5,8 @@ import pytest
 
 from spheremesh.kernel.arrays import FloatArray
 from spheremesh.kernel.solvers.factorization import Solver
-from spheremesh.kernel.solvers.newton import Factorize, Model, NewtonDescent, Problem, newton
+from spheremesh.kernel.solvers.minimization import Factorize, Model, Problem
+from spheremesh.kernel.solvers.newton import NewtonDescent, newton
 
 
 def dense(hessian: FloatArray) -> Factorize:
