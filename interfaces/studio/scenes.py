@@ -22,9 +22,16 @@ from ...kernel.spheres.incidence import normals
 from ...viewer.light import sky_maps
 from ...viewer.page.beams import beam_arrays, beam_points, node_arrays
 from ...viewer.page.container import pack_arrays
-from ...viewer.page.faces import COARSE, FINE, Faces, cloud, cover, face_arrays, panel_faces
+from ...viewer.page.faces import COARSE, FINE, Faces, cover, face_arrays, panel_faces
 from ...viewer.page.grid import Grid, grid_about
-from ...viewer.page.sky import GROUND, REACH, ground_openness, panel_openness
+from ...viewer.page.sky import (
+    GROUND,
+    REACH,
+    ground_openness,
+    panel_openness,
+    point_sky,
+    point_spacing,
+)
 
 MANY: Final = 300
 """Panels from which on a picture is made quickly rather than for close looks."""
@@ -210,7 +217,7 @@ def _add_light(
     elif scene.polygons is not None:
         sky = sky_maps(seen, _fans(scene.polygons))
     else:
-        sky = sky_maps(seen, cloud(seen))
+        sky = point_sky(seen, point_spacing(seen))
     for name, side in zip(("outer", "inner"), faces, strict=False):
         outwards = side.normals if name == "outer" else -side.normals
         arrays[f"{name}_light"] = panel_openness(side.points, outwards, sky).astype(np.uint8)

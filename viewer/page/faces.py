@@ -128,9 +128,3 @@ def cover(side: Faces) -> IntArray:
     steps = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
     chosen: IntArray = np.repeat(first[side.kinds], counts) + steps
     return triangles[chosen] + np.repeat(side.starts, counts)[:, None]
-
-
-def cloud(points: FloatArray) -> IntArray:
-    """Thin triangles between points that follow each other: of beams alone."""
-    ids: IntArray = np.arange(max(len(points) - 2, 0))
-    return np.stack([ids, ids + 1, ids + 2], axis=1)

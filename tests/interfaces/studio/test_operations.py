@@ -176,11 +176,13 @@ def test_undo_gives_the_same_bytes_and_redo_as_well(operations: list[Value]) -> 
     document = Document(graph.specification)
     texts = [encode_graph(document.specification)]
     for operation in operations:
+        before = document.rev
         try:
-            rev = document.edit(document.rev, [operation])
+            document.edit(before, [operation])
         except GraphError:
             continue
-        assert rev == document.rev
+        if document.rev == before:
+            continue  # what changes nothing is nothing to undo
         texts.append(encode_graph(document.specification))
     for text in reversed(texts[:-1]):
         document.undo()
