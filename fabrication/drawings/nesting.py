@@ -14,6 +14,9 @@ _Untyped: TypeAlias = Any
 
 Grain = Literal["along", "any"]
 
+_LARGEST: Final = 1e6
+"""Millimetres: no sheet is a kilometre long."""
+
 _STEPS_PER_MM: Final = 1000
 """Lengths are whole micrometres, rounded up: rectpack is exact on whole numbers."""
 
@@ -121,10 +124,11 @@ def _check_room(stock: Stock) -> FloatArray:
     """Width and height of a sheet within its margins."""
     numbers = np.array([*stock.size, stock.kerf, stock.margin])
     room = np.array(stock.size) - 2 * stock.margin
-    if not (np.isfinite(numbers).all() and numbers.min() >= 0 and room.min() > 0):
+    is_sheet = np.isfinite(numbers).all() and numbers.min() >= 0 and room.min() > 0
+    if not (is_sheet and numbers.max() <= _LARGEST and stock.kerf < room.min()):
         raise InputError(
             f"sheet {stock.size}, kerf {stock.kerf:g} and margin {stock.margin:g} must be "
-            "lengths in millimetres, and leave room on the sheet"
+            f"lengths of up to {_LARGEST:.0f} mm, and leave room on the sheet"
         )
     return room
 

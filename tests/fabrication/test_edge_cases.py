@@ -255,7 +255,9 @@ def test_law_millimetres_are_the_same_in_every_unit(
             "ascii"
         )
         found = re.findall(r"CARTESIAN_POINT\('',\(([^)]*)\)\)", text.replace("\n", ""))
-        numbers.append(np.array([[float(x) for x in point.split(",")] for point in found]))
+        # Points of parameter curves have two coordinates, which are angles.
+        points = [[float(x) for x in point.split(",")] for point in found]
+        numbers.append(np.array([point for point in points if len(point) == 3]))
     for other in (1, 2):
         for a, b in zip(rows[0], rows[other], strict=True):
             assert a["id"] == b["id"]
@@ -263,7 +265,8 @@ def test_law_millimetres_are_the_same_in_every_unit(
             for name in ("radius_mm", "edge_lengths_mm", "corners_mm", "size_mm"):
                 np.testing.assert_allclose(a[name], b[name], rtol=0, atol=1e-9)
             assert a["area_m2"] == pytest.approx(b["area_m2"], rel=1e-9)
-        assert norm(numbers[0] - numbers[other]).max() < 1e-9  # mm
+        # The last digit written is a picometre, and may be rounded either way.
+        assert norm(numbers[0] - numbers[other]).max() < 2e-9  # mm
 
 
 def test_planes_of_a_whole_roof(tmp_path: Path) -> None:

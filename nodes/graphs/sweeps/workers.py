@@ -5,8 +5,8 @@ takes nothing with it but the point it was at, and that one only if it dies agai
 """
 
 import multiprocessing
+import os
 import signal
-import sys
 import time
 from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import (
@@ -100,10 +100,26 @@ def in_processes(workers: int, study: Study, tasks: Sequence[Task]) -> Outcomes:
                 suspects.append(task)
 
 
+class _EndedError(SystemExit):
+    """The parent ends a worker: what it is at tidies up on the way out."""
+
+
 def _end_on_sigterm() -> None:
     """In a worker: its parent alone says when to end, and files are left whole then."""
+
+    def _end(number: int, _frame: object) -> None:
+        raise _EndedError(128 + number)
+
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, lambda number, _frame: sys.exit(128 + number))
+    signal.signal(signal.SIGTERM, _end)
+
+
+def _run_or_end(study: Study, number: int, point: Mapping[str, Any], folder: str) -> Outcome:
+    """Run a point in a worker; the pool would take an exception that ends it for a result."""
+    try:
+        return run_task(study, number, point, folder)
+    except _EndedError as ended:
+        os._exit(ended.code if isinstance(ended.code, int) else 1)
 
 
 def _until_death(
@@ -121,7 +137,7 @@ def _until_death(
         while queue and len(running) < width:
             task = queue.pop()
             try:
-                running[pool.submit(run_task, study, *task)] = task
+                running[pool.submit(_run_or_end, study, *task)] = task
             except BrokenExecutor:
                 return [task, *running.values()]
         done, _ = wait(running, return_when=FIRST_COMPLETED)

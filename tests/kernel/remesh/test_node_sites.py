@@ -11,7 +11,12 @@ from spheremesh.kernel.remesh.field.congruence_mesh import congruence_mesh
 from spheremesh.kernel.remesh.field.jets import fit_jets
 from spheremesh.kernel.remesh.field.smooth_surface import SmoothSurface, surface_heights
 from spheremesh.kernel.remesh.pipeline import Remeshing, remesh
-from spheremesh.kernel.remesh.planar.conditions import anywhere, node_distances, on_surface
+from spheremesh.kernel.remesh.planar.conditions import (
+    NetState,
+    anywhere,
+    node_distances,
+    on_surface,
+)
 from spheremesh.kernel.remesh.planar.node_planarity import measure_nodes
 from spheremesh.kernel.remesh.planar.planarize import planarize, planarize_held
 from spheremesh.kernel.sphere_meshes.sphere_mesh import vertex_error
@@ -95,12 +100,16 @@ def test_misses_have_the_slopes_they_say() -> None:
     site = on_surface(done.surface, mesh, is_held.astype(float))
     rng = np.random.default_rng(1)
     shifts, step = 0.02 * rng.normal(size=(2, mesh.n_vertices, 3))
-    found, ahead = site(shifts), site(shifts + 0.1 * step)
-    expected = found.lengths + 0.1 * np.einsum("vki,vi->vk", found.slopes, step)
+    no_spheres, no_normals = np.zeros((0, 5)), np.zeros((mesh.n_vertices, 4))
+    found, ahead, free = (
+        each(NetState(no_spheres, moved, no_normals))
+        for each, moved in ((site, shifts), (site, shifts + 0.1 * step), (anywhere, shifts))
+    )
+    expected = found.lengths + 0.1 * np.einsum("vki,vi->vk", found.slopes[..., :3], step)
     np.testing.assert_allclose(ahead.lengths, expected, atol=2e-4)
     assert (found.lengths[~is_held, 0] == 0).all()
     assert (norm(found.slopes[is_held, 1:]) == 0).all()
-    assert anywhere(shifts).lengths.shape == (mesh.n_vertices, 0)
+    assert free.lengths.shape == (mesh.n_vertices, 0)
 
 
 @pytest.mark.parametrize(("scale", "shift"), [(1e-3, 0.0), (1e3, 0.0), (1.0, 1e5)])

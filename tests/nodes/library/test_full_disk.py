@@ -30,8 +30,11 @@ def writers() -> dict[str, Callable[[Path], object]]:
     """A call for each kind of file that each writer writes, by name of the node and suffix."""
     mesh = nodes.ellipsoid_mesh(6, 3)
     spheres = nodes.fit_spheres(mesh)
-    panels = nodes.panels(spheres, thickness=0.02).panels
+    cut = nodes.panels(spheres, thickness=0.02)
+    panels = cut.panels
     beams = nodes.beams(nodes.annulus_support(spheres, depth=0.25).annuli, 0.025).beams
+    smooth = nodes.minimize_angles(spheres)
+    report = nodes.panel_report(smooth.sphere_mesh, smooth.report, cut.report)
     small = {"width": 160, "height": 100}
     return {
         "write_step.step": lambda path: nodes.write_step(panels, path, beams=beams),
@@ -45,6 +48,12 @@ def writers() -> dict[str, Callable[[Path], object]]:
         "render.png": lambda path: nodes.render(panels, path, **small),
         "render_assembly.png": lambda path: nodes.render_assembly(panels, beams, path, **small),
         "write_view.html": lambda path: nodes.write_view(panels, path, beams=beams),
+        "write_ifc.ifc": lambda path: nodes.write_ifc(panels, beams, path),
+        "write_report.html": lambda path: nodes.write_report(report, panels, spheres, path),
+        "write_move_drawing.svg": lambda path: nodes.write_move_drawing(mesh, spheres, path),
+        "write_tables.xlsx": lambda path: nodes.write_tables(panels, path, beams=beams),
+        "write_drawings.pdf": lambda path: nodes.write_drawings(panels, path, beams=beams),
+        "write_drawings.dxf": lambda path: nodes.write_drawings(panels, path, beams=beams),
         **{
             f"write_mesh.{kind}": lambda path: nodes.write_mesh(mesh, path)
             for kind in ("obj", "off", "ply", "stl", "3dm")

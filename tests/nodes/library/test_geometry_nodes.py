@@ -145,10 +145,10 @@ def test_solids_for_cadquery_and_the_check_of_step(tmp_path: Path) -> None:
         annuli = nodes.annulus_support(sphere_mesh, depth=0.1).annuli
     made = nodes.beams(annuli, thickness=0.02).beams
     both = nodes.cadquery_solids(cut, made)
-    assert len(both.children) == cut.n_panels + 1
-    assert [child.name for child in nodes.cadquery_solids(beams=made).children] == list(
-        made.annuli.ids
-    )
+    groups = {child.name: child.children for child in both.children}
+    assert list(groups) == ["Panels", "Beams", "Axes"]
+    assert len(groups["Panels"]) == cut.n_panels
+    assert [child.name for child in groups["Beams"]] == list(made.annuli.ids)
     with pytest.raises(InputError, match="needs panels or beams"):
         nodes.cadquery_solids()
     path = Path(nodes.write_step(cut, tmp_path / "torus.step"))

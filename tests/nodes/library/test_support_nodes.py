@@ -383,7 +383,7 @@ def test_assemblies_are_drawn_whole_and_near_a_node(tmp_path: Path) -> None:
     for near in (None, 12):
         path = render_assembly(cut, made, tmp_path / "roof.png", near=near, width=90, height=60)
         pixels = np.asarray(Image.open(path)).reshape(-1, 3)
-        paper.append(float((pixels == 255).all(axis=1).mean()))
+        paper.append(float((pixels > 225).all(axis=1).mean()))
         assert len(np.unique(pixels, axis=0)) > 20
     assert paper[1] < paper[0] < 1
     with pytest.raises(InputError, match="no beam ends at vertex 99"):
