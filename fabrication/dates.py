@@ -6,6 +6,11 @@ from datetime import UTC, datetime
 from ..kernel.errors import InputError
 
 
+def file_date() -> datetime:
+    """The date of a file: `source_date`, or the first second of 1970, in UTC."""
+    return source_date() or datetime(1970, 1, 1, tzinfo=UTC)
+
+
 def source_date() -> datetime | None:
     """What the environment variable SOURCE_DATE_EPOCH says, in seconds since 1970.
 

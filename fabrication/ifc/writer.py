@@ -3,7 +3,6 @@
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from datetime import datetime
 from importlib.metadata import version
 from itertools import repeat
 from pathlib import Path
@@ -19,6 +18,7 @@ from ..breps.beams import beam_batches
 from ..breps.nodes import cylinder_batch
 from ..breps.panel_geometry import CONFUSION, panels_in_place, rounded_origins
 from ..breps.panels import panel_batches
+from ..dates import file_date
 from ..files import check_suffix, check_target, replacing
 from ..model import Model, Written, check_model
 from ..step.bodies import Body, step_bodies
@@ -94,7 +94,7 @@ def write_ifc(
 
 def _header(options: IfcOptions) -> Iterator[str]:
     title, system = string(options.title), string(f"spheremesh {version('spheremesh')}")
-    now = datetime.now().astimezone().strftime("%Y-%m-%dT%H:%M:%S")
+    now = file_date().strftime("%Y-%m-%dT%H:%M:%S")
     yield "ISO-10303-21;\nHEADER;\n"
     yield "FILE_DESCRIPTION(('ViewDefinition [ReferenceView]'),'2;1');\n"
     yield f"FILE_NAME({title},'{now}',(''),(''),{system},{system},'');\n"

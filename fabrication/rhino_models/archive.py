@@ -17,7 +17,7 @@ import base64
 import struct
 import zlib
 from collections.abc import Mapping, Sequence
-from datetime import UTC, datetime
+from datetime import datetime
 from functools import cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -25,7 +25,7 @@ from uuid import UUID
 
 from ...kernel.errors import InputError
 from ...kernel.parts.colors import Color
-from ..dates import source_date
+from ..dates import file_date
 from ..opennurbs.stream_codes import (
     ANONYMOUS,
     CHUNK_HEADER,
@@ -143,7 +143,7 @@ def write_archive(
     if data[end : start + length] != _TABLE_END:
         raise InputError(f"cannot write {path}: rhino3dm did not encode a table of objects")
     place, _ = _find(data, start + length, _END_OF_FILE)
-    data = _dated(data, source_date() or datetime(1970, 1, 1, tzinfo=UTC))
+    data = _dated(data, file_date())
     with path.open("wb") as file:
         file.write(data[:end])
         added = sum(file.write(_record(each, header)) for each in objects)

@@ -6,11 +6,10 @@ shared by all parts. A part may stand in several places.
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from typing import Final, Literal
 
 from ...kernel.parts.colors import Color
-from ..dates import source_date
+from ..dates import file_date
 from .bodies import Body
 from .values import numbers, real, references, string
 
@@ -114,7 +113,7 @@ _END: Final = "ENDSEC;\nEND-ISO-10303-21;\n"
 
 def _frame(header: StepHeader) -> Iterable[str]:
     title, system = string(header.title), string(header.system)
-    date = source_date() or datetime(1970, 1, 1, tzinfo=UTC)
+    date = file_date()
     stamp = date.strftime("%Y-%m-%dT%H:%M:%S")
     yield "ISO-10303-21;\nHEADER;\n"
     yield f"FILE_DESCRIPTION(({title}),'2;1');\n"

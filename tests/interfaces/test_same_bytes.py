@@ -31,13 +31,17 @@ def test_the_same_job_gives_the_same_bytes(tmp_path: Path) -> None:
         command = [
             sys.executable, "-W", "ignore", "-m", "spheremesh", "panel", str(mesh), "-o",
             str(tmp_path / str(run)), "--moulds", "3", "--thickness", "0.02", "--support",
-            "--depth", "0.2", "--no-cache",
+            "--depth", "0.2", "--ifc", "--no-cache",
         ]  # fmt: skip
         settings = {"PYTHONHASHSEED": str(run), "OPENBLAS_NUM_THREADS": str(run)}
         environment = {**os.environ, **settings}
         subprocess.run(command, env=environment, check=True, capture_output=True)
         made.append(files(tmp_path / str(run)))
-    assert made[0].keys() == made[1].keys() >= {"model.3dm", "panels.step", "view.html"}
+    assert (
+        made[0].keys()
+        == made[1].keys()
+        >= {"model.3dm", "model.ifc", "panels.step", "view.html"}
+    )
     assert [name for name, data in made[0].items() if data != made[1][name]] == []
     model = rhino3dm.File3dm.Read(str(tmp_path / "1" / "model.3dm"))
     assert model.Created.year == model.LastEdited.year == 1970

@@ -255,4 +255,8 @@ def _executed(text: str) -> Graph:
 def test_templates_run(name: str) -> None:
     graph = Graph()
     graph._specification = template_graph(name)
-    graph.run(*graph.specification.extra["canvas"]["pins"])
+    pins = graph.specification.extra["canvas"]["pins"]
+    states: dict[str, str] = {}
+    graph.run(*pins, on_step=states.__setitem__)
+    assert {pin.partition(".")[0] for pin in pins} <= states.keys()
+    assert set(states.values()) <= {"done", "cached"}
