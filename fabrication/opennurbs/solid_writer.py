@@ -50,9 +50,7 @@ def solid_streams(batches: Sequence[BrepBatch], places: FloatArray) -> list[byte
         is_bent = _is_bent(shapes)
         if is_bent.any():
             chosen = (select_rows(batch, np.flatnonzero(rows)) for rows in (~is_bent, is_bent))
-            both = [
-                _shapes(rows, spans) for rows, spans in zip(chosen, (1, 2), strict=True)
-            ]
+            both = [_shapes(rows, spans) for rows, spans in zip(chosen, (1, 2), strict=True)]
         else:
             both = [shapes]
         for each in both:
