@@ -175,6 +175,7 @@ def is_sound(
     Returns
     -------
     bool
+        Whether all of them are there, in their order.
     """
     model = library.File3dm.Read(str(path))
     if model is None or len(model.Objects) != len(ids):
