@@ -133,7 +133,7 @@ class _Entities:
         return body_layout("".join(self.lines), len(self.lines), representation)
 
     def point(self, kind: str = "CARTESIAN_POINT") -> int:
-        return self.add(f"{kind}('',(%r,%r,%r))")
+        return self.add(f"{kind}('',(%s,%s,%s))")
 
     def vector(self, direction: int) -> int:
         return self.add(f"VECTOR('',#{direction},1.)")
@@ -170,12 +170,12 @@ class _Geometry:
             if kind == "LINE":
                 text = f"LINE('',#{self.points[start]},#{vectors[i]})"
             else:
-                radii = "%r,%r" if kind == "ELLIPSE" else "%r"
+                radii = "%s,%s" if kind == "ELLIPSE" else "%s"
                 text = f"{kind}('',#{placements[i]},{radii})"
             self.curves.append(add(text))
         self.surfaces: list[int] = []
         for kind, i, _ in plan.surfaces:
-            radius = "" if kind == "PLANE" else ",%r"
+            radius = "" if kind == "PLANE" else ",%s"
             self.surfaces.append(add(f"{kind}('',#{placements[i]}{radius})"))
 
     def add_parameter_curves(self, entities: _Entities, pairs: _Pairs, n_poles: int) -> None:
@@ -187,10 +187,10 @@ class _Geometry:
         n_knots = n_poles - degree + 1
         counts = ",".join([f"{degree + 1}", *["1"] * (n_knots - 2), f"{degree + 1}"])
         for edge, face in pairs:
-            poles = [entities.add("CARTESIAN_POINT('',(%r,%r))") for _ in range(n_poles)]
+            poles = [entities.add("CARTESIAN_POINT('',(%s,%s))") for _ in range(n_poles)]
             spline = entities.add(
                 f"B_SPLINE_CURVE_WITH_KNOTS('',{degree},({references(poles)}),.UNSPECIFIED.,"
-                f".F.,.F.,({counts}),({','.join(['%r'] * n_knots)}),.UNSPECIFIED.)"
+                f".F.,.F.,({counts}),({','.join(['%s'] * n_knots)}),.UNSPECIFIED.)"
             )
             flat = entities.add(f"DEFINITIONAL_REPRESENTATION('',(#{spline}),#{space})")
             curve = entities.add(f"PCURVE('',#{self.surfaces[face]},#{flat})")
@@ -239,7 +239,7 @@ def _line_layout(count: int) -> BodyLayout:
         line = entities.add(
             f"LINE('',#{start},#{entities.vector(entities.point('DIRECTION'))})"
         )
-        ends = f"(#{start},PARAMETER_VALUE(0.)),(#{end},PARAMETER_VALUE(%r))"
+        ends = f"(#{start},PARAMETER_VALUE(0.)),(#{end},PARAMETER_VALUE(%s))"
         lines.append(entities.add(f"TRIMMED_CURVE('',#{line},{ends},.T.,.PARAMETER.)"))
     entities.lines[0] = f"#0=GEOMETRIC_CURVE_SET('',({references(lines)}));\n"
     return entities.layout("GEOMETRICALLY_BOUNDED_WIREFRAME_SHAPE_REPRESENTATION")
