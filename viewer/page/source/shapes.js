@@ -37,53 +37,45 @@ export function buildShapes(head, arrays) {
 }
 
 /** The kinds of triangulated faces: points, triangles, and how many steps each edge has. */
-function patterns(sizes, triangles) {
-  const found = [];
-  for (let k = 0, t = 0; 2 * k < sizes.length; k++) {
-    const count = 3 * sizes[2 * k + 1];
-    found.push({ points: sizes[2 * k], triangles: triangles.subarray(t, t + count), steps: {} });
+function patterns(sizes, triangles, rims, kinds, degrees) {
+  const found = [], known = [];
+  kinds.forEach((kind, f) => { known[kind] ??= degrees[f]; });
+  for (let k = 0, t = 0, r = 0; 2 * k < sizes.length; k++) {
+    const count = 3 * sizes[2 * k + 1], steps = rims.subarray(r, r + known[k]);
+    const rim = steps.reduce((a, b) => a + b, 0);
+    found.push({ points: sizes[2 * k], triangles: triangles.subarray(t, t + count), steps, rim });
     t += count;
+    r += known[k];
   }
   return found;
-}
-
-/** The last points of a face lie on its rim, as many as its edges have steps. */
-function stepsOf(pattern, degree) {
-  if (degree in pattern.steps) return pattern.steps[degree];
-  const { points, triangles } = pattern;
-  // A fan of s steps a side has 1 + degree s (s + 1) / 2 points; ears have the rim alone.
-  let steps = points / degree;
-  for (let s = 1; 1 + (degree * s * (s + 1)) / 2 <= points; s++) {
-    if (1 + (degree * s * (s + 1)) / 2 === points && triangles.length === 3 * degree * s * s) steps = s;
-  }
-  return (pattern.steps[degree] = steps);
 }
 
 function addPanels(shapes, head, arrays, at) {
   const { panels: soup, parts: count } = shapes;
   if (!count) return;
-  const outer = patterns(arrays.outer_sizes, arrays.outer_triangles);
-  const inner = arrays.inner_sizes ? patterns(arrays.inner_sizes, arrays.inner_triangles) : null;
+  const kinds = (side) => ["sizes", "triangles", "rims", "kinds"].map((name) => arrays[`${side}_${name}`]);
+  const outer = patterns(...kinds("outer"), arrays.degrees);
+  const inner = head.solid ? patterns(...kinds("inner"), arrays.degrees) : null;
   let o = 0, i = 0;
   for (let f = 0; f < count; f++) {
     const own = outer[arrays.outer_kinds[f]], degree = arrays.degrees[f];
     const n = [arrays.normals[3 * f], arrays.normals[3 * f + 1], arrays.normals[3 * f + 2]];
     const face = shapes.surfaces.add(n, arrays.curvatures[f], at(arrays.outer_points, o), f);
-    const rim = addFace(soup, own, arrays.outer_points, arrays.outer_light, o, face, OUTER, degree);
+    const rim = addFace(soup, own, arrays.outer_points, arrays.outer_light, o, face, OUTER);
     addOutline(shapes, rim, f, degree);
     shapes.lifts.push(n);
     if (inner) {
       const other = inner[arrays.inner_kinds[f]];
-      const under = addFace(soup, other, arrays.inner_points, arrays.inner_light, i, face, INNER, degree);
-      addWalls(shapes, rim, under, f, degree, (e) => head.tight === true && head.panels.neighbors[f][e] !== null);
+      const under = addFace(soup, other, arrays.inner_points, arrays.inner_light, i, face, INNER);
+      addWalls(shapes, rim, under, f, (e) => head.tight === true && head.panels.neighbors[f][e] !== null);
       i += other.points;
     }
     o += own.points;
   }
 }
 
-/** Its first vertex on the rim, and the steps of each edge. */
-function addFace(soup, pattern, points, light, start, face, side, degree) {
+/** Its vertices on the rim: the first of each edge and, as the last one, the first again. */
+function addFace(soup, pattern, points, light, start, face, side) {
   const first = soup.size;
   for (let k = start; k < start + pattern.points; k++) {
     soup.vertex(
@@ -92,28 +84,37 @@ function addFace(soup, pattern, points, light, start, face, side, degree) {
     );
   }
   soup.pattern(first, pattern.triangles);
-  const steps = stepsOf(pattern, degree);
-  return { first: first + pattern.points - degree * steps, steps };
+  return { first: first + pattern.points - pattern.rim, count: pattern.rim, steps: pattern.steps };
+}
+
+/** Vertices along an edge of a rim, from its corner to the next one. */
+function* along({ first, count, steps }) {
+  let k = 0;
+  for (const n of steps) {
+    yield Array.from({ length: n + 1 }, (_, j) => first + ((k + j) % count));
+    k += n;
+  }
 }
 
 function addOutline(shapes, rim, part, degree) {
-  const { panels: soup, edges, flat, flatEdges } = shapes, { first, steps } = rim;
-  const count = degree * steps, corners = [];
+  const { panels: soup, edges, flat, flatEdges } = shapes;
+  const { first, count, steps } = rim, places = [];
   for (let k = 0; k < count; k++) edges.between(soup, first + k, first + ((k + 1) % count), part);
-  for (let k = 0; k < degree; k++) corners.push(soup.point(first + k * steps));
+  for (let k = 0, place = first; k < degree; place += steps[k++]) places.push(place);
+  const corners = places.map((place) => soup.point(place));
   const middle = scale(corners.reduce((a, b) => add(a, b), [0, 0, 0]), 1 / degree);
   shapes.corners.push(corners);
   shapes.centers.push(middle);
   let n = [0, 0, 0], up = 0, down = 0;
   corners.forEach((p, k) => {
     n = add(n, cross(sub(p, middle), sub(corners[(k + 1) % degree], middle)));
-    up += soup.shares[2 * (first + k * steps)] / degree;
-    down += soup.shares[2 * (first + k * steps) + 1] / degree;
+    up += soup.shares[2 * places[k]] / degree;
+    down += soup.shares[2 * places[k] + 1] / degree;
   });
   const plane = shapes.surfaces.add(unit(n), 0, middle, part);
   const start = flat.vertex(...middle, plane, OUTER, up, down);
   corners.forEach((p, k) => {
-    const i = first + k * steps;
+    const i = places[k];
     flat.vertex(p[0], p[1], p[2], plane, OUTER, soup.shares[2 * i], soup.shares[2 * i + 1]);
     flat.triangle(start, start + 1 + k, start + 1 + ((k + 1) % degree));
     flatEdges.add(p, corners[(k + 1) % degree], part);
@@ -121,18 +122,18 @@ function addOutline(shapes, rim, part, degree) {
 }
 
 /** Walls, those that touch a neighbour's apart: they are seen in sections only. */
-function addWalls(shapes, rim, under, part, degree, touches) {
-  if (under.steps !== rim.steps) return;
-  const { panels: soup, edges } = shapes, { steps } = rim, count = degree * steps;
-  for (let e = 0; e < degree; e++) {
-    const place = (row, k) => row.first + ((e * steps + k) % count);
-    const top = soup.point(place(rim, 0)), end = soup.point(place(rim, steps)), low = soup.point(place(under, 0));
-    const wall = shapes.surfaces.add(unit(cross(sub(low, top), sub(end, top))), 0, top, part);
-    const target = touches(e) ? shapes.walls : soup;
-    const rows = [under, rim].map((row) => {
+function addWalls(shapes, rim, under, part, touches) {
+  const { panels: soup, edges } = shapes, lows = along(under);
+  let e = 0;
+  for (const high of along(rim)) {
+    const low = lows.next().value, steps = high.length - 1;
+    const top = soup.point(high[0]), end = soup.point(high[steps]), below = soup.point(low[0]);
+    const wall = shapes.surfaces.add(unit(cross(sub(below, top), sub(end, top))), 0, top, part);
+    const target = touches(e++) ? shapes.walls : soup;
+    const rows = [low, high].map((row) => {
       const first = target.size;
-      for (let k = 0; k <= steps; k++) {
-        const [x, y, z] = soup.point(place(row, k));
+      for (const k of row) {
+        const [x, y, z] = soup.point(k);
         target.vertex(x, y, z, wall, WALL, 200, 200);
       }
       return first;
