@@ -11,14 +11,18 @@ import { add, cross, scale, sub, unit } from "./vectors.js";
 const STEPS = 1 << 20;
 export const OUTER = 0, INNER = 1, WALL = 2, BEAM = 3, NODE = 4;
 
-const MANY = 2000;
 /** Panels from which on lines along the lower edges are left out: they would be a veil. */
+const MANY = 2000;
 
 export function buildShapes(head, arrays) {
+  const count = head.panels.id.length, beams = head.beams.id.length, nodes = head.nodes.id.length;
+  const corners = arrays.degrees?.reduce((a, b) => a + b, 0) ?? 0;
+  const points = ((arrays.outer_points?.length ?? 0) + (arrays.inner_points?.length ?? 0)) / 3;
   const shapes = {
-    surfaces: new Surfaces(), parts: head.panels.id.length, panels: new Soup(), walls: new Soup(), beams: new Soup(),
-    nodes: new Soup(), flat: new Soup(), edges: new Lines(), flatEdges: new Lines(), axes: new Lines(),
-    centers: [], lifts: [], corners: [], outlines: [],
+    surfaces: new Surfaces(2 * count + corners + 4 * beams + 3 * nodes), parts: count, panels: new Soup(points),
+    walls: new Soup(), beams: new Soup(18 * beams), nodes: new Soup(32 * nodes), flat: new Soup(count + corners),
+    edges: new Lines(points), flatEdges: new Lines(2 * corners), axes: new Lines(2 * nodes),
+    centers: [], lifts: [], corners: [], outlines: [], touching: [],
   };
   const at = (array, i) => [array[3 * i] / STEPS, array[3 * i + 1] / STEPS, array[3 * i + 2] / STEPS];
   addPanels(shapes, head, arrays, at);
@@ -58,23 +62,32 @@ function addPanels(shapes, head, arrays, at) {
   const inner = head.solid ? patterns(...kinds("inner"), arrays.degrees) : null;
   let o = 0, i = 0;
   for (let f = 0; f < count; f++) {
-    const own = outer[arrays.outer_kinds[f]], degree = arrays.degrees[f];
+    const own = outer[arrays.outer_kinds[f]];
     const n = [arrays.normals[3 * f], arrays.normals[3 * f + 1], arrays.normals[3 * f + 2]];
     const face = shapes.surfaces.add(n, arrays.curvatures[f], at(arrays.outer_points, o), f);
     const rim = addFace(soup, own, arrays.outer_points, arrays.outer_light, o, face, OUTER);
-    addOutline(shapes, rim, f, degree);
+    addOutline(shapes, rim, f);
     shapes.lifts.push(n);
     if (inner) {
       const other = inner[arrays.inner_kinds[f]];
       const under = addFace(soup, other, arrays.inner_points, arrays.inner_light, i, face, INNER);
-      addWalls(shapes, rim, under, f, (e) => head.tight === true && head.panels.neighbors[f][e] !== null);
+      const touches = head.panels.neighbors[f].map((j) => head.tight === true && j !== null);
+      addWalls(shapes, soup, rim, under, f, touches.map((yes) => !yes));
+      shapes.touching.push([rim, under, f, touches]);
       i += other.points;
     }
     o += own.points;
   }
+  if (count <= MANY) addTouchingWalls(shapes);
 }
 
-/** Its vertices on the rim: the first of each edge and, as the last one, the first again. */
+/** Walls that touch a neighbour's are seen in sections only: of many panels they come later. */
+export function addTouchingWalls(shapes) {
+  for (const wall of shapes.touching) addWalls(shapes, shapes.walls, ...wall);
+  shapes.touching = [];
+}
+
+/** Its vertices on the rim, with the steps of each edge. */
 function addFace(soup, pattern, points, light, start, face, side) {
   const first = soup.size;
   for (let k = start; k < start + pattern.points; k++) {
@@ -87,60 +100,52 @@ function addFace(soup, pattern, points, light, start, face, side) {
   return { first: first + pattern.points - pattern.rim, count: pattern.rim, steps: pattern.steps };
 }
 
-/** Vertices along an edge of a rim, from its corner to the next one. */
-function* along({ first, count, steps }) {
-  let k = 0;
-  for (const n of steps) {
-    yield Array.from({ length: n + 1 }, (_, j) => first + ((k + j) % count));
-    k += n;
-  }
-}
-
-function addOutline(shapes, rim, part, degree) {
-  const { panels: soup, edges, flat, flatEdges } = shapes;
-  const { first, count, steps } = rim, places = [];
+function addOutline(shapes, { first, count, steps }, part) {
+  const { panels: soup, edges, flat, flatEdges } = shapes, degree = steps.length, places = [];
   for (let k = 0; k < count; k++) edges.between(soup, first + k, first + ((k + 1) % count), part);
   for (let k = 0, place = first; k < degree; place += steps[k++]) places.push(place);
   const corners = places.map((place) => soup.point(place));
-  const middle = scale(corners.reduce((a, b) => add(a, b), [0, 0, 0]), 1 / degree);
+  let middle = [0, 0, 0], n = [0, 0, 0], up = 0, down = 0;
+  for (const corner of corners) middle = add(middle, corner, 1 / degree);
   shapes.corners.push(corners);
   shapes.centers.push(middle);
-  let n = [0, 0, 0], up = 0, down = 0;
-  corners.forEach((p, k) => {
-    n = add(n, cross(sub(p, middle), sub(corners[(k + 1) % degree], middle)));
+  for (let k = 0; k < degree; k++) {
+    n = add(n, cross(sub(corners[k], middle), sub(corners[(k + 1) % degree], middle)));
     up += soup.shares[2 * places[k]] / degree;
     down += soup.shares[2 * places[k] + 1] / degree;
-  });
+  }
   const plane = shapes.surfaces.add(unit(n), 0, middle, part);
-  const start = flat.vertex(...middle, plane, OUTER, up, down);
-  corners.forEach((p, k) => {
-    const i = places[k];
+  const start = flat.vertex(middle[0], middle[1], middle[2], plane, OUTER, up, down);
+  for (let k = 0; k < degree; k++) {
+    const p = corners[k], i = places[k];
     flat.vertex(p[0], p[1], p[2], plane, OUTER, soup.shares[2 * i], soup.shares[2 * i + 1]);
     flat.triangle(start, start + 1 + k, start + 1 + ((k + 1) % degree));
     flatEdges.add(p, corners[(k + 1) % degree], part);
-  });
+  }
 }
 
-/** Walls, those that touch a neighbour's apart: they are seen in sections only. */
-function addWalls(shapes, rim, under, part, touches) {
-  const { panels: soup, edges } = shapes, lows = along(under);
-  let e = 0;
-  for (const high of along(rim)) {
-    const low = lows.next().value, steps = high.length - 1;
-    const top = soup.point(high[0]), end = soup.point(high[steps]), below = soup.point(low[0]);
-    const wall = shapes.surfaces.add(unit(cross(sub(below, top), sub(end, top))), 0, top, part);
-    const target = touches(e++) ? shapes.walls : soup;
-    const rows = [low, high].map((row) => {
-      const first = target.size;
-      for (const k of row) {
-        const [x, y, z] = soup.point(k);
-        target.vertex(x, y, z, wall, WALL, 200, 200);
-      }
-      return first;
-    });
-    target.strip(rows[0], rows[1], steps + 1);
+/** The walls of a panel along those edges that are chosen. */
+function addWalls(shapes, target, rim, under, part, chosen) {
+  const { panels: soup, edges } = shapes, { count } = rim;
+  for (let e = 0, start = 0; e < chosen.length; start += rim.steps[e++]) {
+    if (!chosen[e]) continue;
+    const steps = rim.steps[e];
+    const top = soup.point(rim.first + start), low = soup.point(under.first + start);
+    const end = soup.point(rim.first + ((start + steps) % count));
+    const wall = shapes.surfaces.add(unit(cross(sub(low, top), sub(end, top))), 0, top, part);
+    const lower = addRow(target, soup, under, start, steps, wall), upper = addRow(target, soup, rim, start, steps, wall);
+    target.strip(lower, upper, steps + 1);
     if (shapes.parts > MANY) continue;
-    for (let k = 0; k < steps; k++) edges.between(target, rows[0] + k, rows[0] + k + 1, part);
-    edges.between(target, rows[1], rows[0], part);
+    for (let k = 0; k < steps; k++) edges.between(target, lower + k, lower + k + 1, part);
+    edges.between(target, upper, lower, part);
   }
+}
+
+function addRow(target, soup, { first, count }, start, steps, wall) {
+  const row = target.size;
+  for (let k = start; k <= start + steps; k++) {
+    const i = 3 * (first + (k % count)), { points } = soup;
+    target.vertex(points[i], points[i + 1], points[i + 2], wall, WALL, 200, 200);
+  }
+  return row;
 }
