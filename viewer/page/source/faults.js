@@ -19,7 +19,7 @@ export function faultsMarkup(model) {
     const [first, ...others] = model.findings[i], more = others.length ? ` <em>+${others.length}</em>` : "";
     return `<li class="${first.severity}"><button data-part="${i}"><b>${escapeText(model.ids[i])}</b> ${escapeText(first.message)}${more}</button></li>`;
   });
-  const counts = [errors && plural(errors, "error"), notes && plural(notes, "note")].filter(Boolean).join(", ");
+  const counts = [errors && `${plural(errors, "part")} with errors`, notes && `${plural(notes, "part")} with notes`].filter(Boolean).join(", ");
   const rest = parts.length > MOST ? `<button class="quiet" data-more>${number(parts.length - MOST)} more in the table</button>` : "";
   return `<h3>What is wrong: ${counts}</h3><ul>${lines.join("")}</ul>${rest}`;
 }

@@ -59,7 +59,7 @@ function addPanels(shapes, head, arrays, at) {
   if (!count) return;
   const kinds = (side) => ["sizes", "triangles", "rims", "kinds"].map((name) => arrays[`${side}_${name}`]);
   const outer = patterns(...kinds("outer"), arrays.degrees);
-  const inner = head.solid ? patterns(...kinds("inner"), arrays.degrees) : null;
+  const inner = arrays.inner_sizes ? patterns(...kinds("inner"), arrays.degrees) : null;
   let o = 0, i = 0;
   for (let f = 0; f < count; f++) {
     const own = outer[arrays.outer_kinds[f]];
