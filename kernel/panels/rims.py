@@ -109,7 +109,7 @@ def _divided(
             arcs.starts[edges], arcs.ends[edges], arcs.rises[edges], arcs.sagittas[edges]
         )
         inner = arc_points(chosen, np.linspace(-1, 1, count + 1)[1:-1])
-        places = np.arange(1, count)
+        places: IntArray = np.arange(1, int(count))
         points[starts[edges][:, None] + places] = inner
         paired = twins[edges] >= 0
         points[starts[twins[edges][paired]][:, None] + places] = inner[paired, ::-1]
