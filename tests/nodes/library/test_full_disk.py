@@ -1,4 +1,4 @@
-"""No room or no right: every writer says so in one error and leaves the older file as it was."""
+"""No room or no right: every writer says so in one error and keeps the older file."""
 
 import os
 import sys
@@ -98,4 +98,4 @@ def test_every_writer_on_a_full_disk_and_in_a_folder_that_is_read_only() -> None
             with read_only(path.parent), pytest.raises(InputError, match=f"cannot .*{name}"):
                 write(path)
             assert path.read_bytes() == b"old"
-        assert set(os.listdir(folder)) == set(calls)
+        assert {path.name for path in Path(folder).iterdir()} == set(calls)
