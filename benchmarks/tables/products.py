@@ -1,4 +1,4 @@
-"""Files beside those of CadQuery, patterns from large meshes, and whole jobs."""
+"""What comes out: smoothness, files beside those of CadQuery, large patterns, whole jobs."""
 
 import importlib
 import tempfile
@@ -12,6 +12,29 @@ from measure import Table, measured
 from spheremesh import nodes
 from spheremesh.interfaces.panel import PanelOptions, panel_graph, run_job
 from spheremesh.kernel.panels.panels import Panels
+
+
+def smoothness(*, is_quick: bool) -> list[Table]:
+    """Mean angles of planes, spheres, and spheres of 8 moulds."""
+    nets = {
+        "Roof": nodes.roof_mesh, "Ellipsoid": nodes.ellipsoid_mesh, "Vase": nodes.vase_mesh,
+        "Torus": nodes.torus_mesh, "Enneper": nodes.enneper_mesh,
+    }  # fmt: skip
+    rows: list[tuple[Any, ...]] = []
+    for name in list(nets)[: 1 if is_quick else None]:
+        optimum = nodes.minimize_angles(nodes.fit_spheres(nets[name]()))
+        clusters = nodes.cluster_radii(optimum.sphere_mesh, k=8)
+        angles = optimum.report["angles_deg"]
+        means = angles["planar"], angles["spherical"], clusters.report["angles_deg"]
+        rows.append((name, optimum.sphere_mesh.mesh.n_faces, *(each["mean"] for each in means)))
+    return [
+        Table(
+            "Smoothness",
+            "Mean angle between neighbouring panels in degrees, on the library's own nets.",
+            ("Net", "Faces", "Planes", "Spheres", "8 moulds"),
+            rows,
+        )
+    ]
 
 
 def roof_panels(rows: int) -> Panels:

@@ -1,6 +1,6 @@
 """The tables of docs/benchmarks.md: ours beside general solvers and libraries, in one run.
 
-    python benchmarks/tables/run.py [angles energy paper files patterns jobs] [--quick]
+    python benchmarks/tables/run.py [smoothness angles energy paper files patterns jobs] [--quick]
 
 Without names all of them, which takes about half an hour. Every row is measured in a process of
 its own, so its memory is its own. Seconds are CPU seconds of one thread and belong to the
@@ -21,7 +21,7 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from measure import Table
-from products import files, jobs, patterns
+from products import files, jobs, patterns, smoothness
 from solvers import angles, energy, paper
 
 from spheremesh import __version__
@@ -30,6 +30,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "benchmarks.md"
 HISTORY = Path(__file__).with_name("history.jsonl")
 
 TABLES: dict[str, Callable[..., list[Table]]] = {
+    "smoothness": smoothness,
     "angles": angles, "energy": energy, "paper": paper, "files": files, "patterns": patterns,
     "jobs": jobs,
 }  # fmt: skip
