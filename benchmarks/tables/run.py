@@ -1,8 +1,8 @@
 """The tables of docs/benchmarks.md: ours beside general solvers and libraries, in one run.
 
-    python benchmarks/tables/run.py [smoothness angles energy paper files patterns jobs] [--quick]
+    python benchmarks/tables/run.py [TABLE ...] [--quick]
 
-Without names all of them, which takes about half an hour. Every row is measured in a process of
+The tables are smoothness, angles, energy, paper, files, patterns and jobs. Without names all, which takes about half an hour. Every row is measured in a process of
 its own, so its memory is its own. Seconds are CPU seconds of one thread and belong to the
 machine that is named below each table; what counts are the ratios within a table and the
 exponents. Each run adds lines to benchmarks/tables/history.jsonl, with which the next ones can
@@ -64,8 +64,8 @@ def machine() -> str:
 
 def main(options: list[str]) -> None:
     """Measure, write the page and add to the history."""
-    names = [name for name in options if name in TABLES] or list(TABLES)
     is_quick = "--quick" in options
+    names = [name for name in options if name != "--quick"] or list(TABLES)
     found: dict[str, list[Table]] = {}
     for name in names:
         found[name] = TABLES[name](is_quick=is_quick)
