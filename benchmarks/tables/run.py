@@ -2,11 +2,12 @@
 
     python benchmarks/tables/run.py [TABLE ...] [--quick]
 
-The tables are smoothness, angles, energy, paper, files, patterns and jobs. Without names all, which takes about half an hour. Every row is measured in a process of
-its own, so its memory is its own. Seconds are CPU seconds of one thread and belong to the
-machine that is named below each table; what counts are the ratios within a table and the
-exponents. Each run adds lines to benchmarks/tables/history.jsonl, with which the next ones can
-be compared. Ceres comes with the dependency group "bench".
+The tables are smoothness, angles, energy, paper, files, patterns and jobs. Without names all of
+them are measured, which takes half an hour. Every row is measured in a process of its own, so
+its memory is its own. Seconds are CPU seconds of one thread and belong to the machine that is
+named below each table; what counts are the ratios within a table and the exponents. Each run
+adds lines to benchmarks/tables/history.jsonl, with which the next ones can be compared. Ceres
+comes with the dependency group "bench".
 """
 
 import json
