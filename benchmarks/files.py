@@ -4,8 +4,9 @@
     python benchmarks/files.py jobs [ROWS ...]
 
 Roofs of ROWS x ROWS panels (by default 38 and 71) in 8 moulds, with a thickness and mitred
-beams under all edges. Every writer of `spheremesh panel` writes each; the table has seconds, their
-share of all, megabytes, and the exponent by which seconds grow from the first roof to the last.
+beams under all edges. Every writer of `spheremesh panel` writes each; the table has seconds,
+their share of all, megabytes, and the exponent by which seconds grow from the first roof to the
+last.
 Peak memory is that of the whole process. With ``jobs`` the whole command runs instead (by
 default 10 and 71 rows, without and with beams), in a process of its own, imports included.
 """
