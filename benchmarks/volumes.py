@@ -4,8 +4,8 @@
 
 For each mesh `spheremesh panel --support --moulds 8 --thickness 0.02 --depth 0.25 --ifc` runs.
 OpenCASCADE measures the solids of the STEP file, our verifier the Breps of the .3dm from their
-bytes (openNURBS says whether they are valid), and IfcOpenShell builds those of the IFC file: all
-are compared with the schedule. Minutes for a thousand panels.
+bytes (openNURBS says whether they are valid), and IfcOpenShell builds those of the IFC file:
+all are compared with the schedule. Minutes for a thousand panels.
 """
 
 import json
