@@ -37,7 +37,8 @@ class BodyWriter:
     """Writes solids and surfaces: spheres by their name, or as patches (see `patches`)."""
 
     def __init__(self, entities: Entities, spheres: IfcSpheres) -> None:
-        self._entities, self._spheres = entities, spheres
+        self._entities = entities
+        self._spheres: IfcSpheres = spheres
         self._layouts: dict[tuple[int, Patch | None], _Layout] = {}
 
     def add(self, body: Body) -> int:

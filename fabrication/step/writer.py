@@ -165,8 +165,8 @@ def _panel_parts(
     tolerances = _file_tolerances(panel_tolerances(panels, confusion), confusion)
     batches = panel_batches(panels)
     return [
-        Part(body, name, *mould, tolerance, (Instance(name, tuple(place)),), measured)
-        for body, name, mould, tolerance, place, measured in zip(
+        Part(body, name, layer, color, tolerance, (Instance(name, tuple(place)),), measured)
+        for body, name, (layer, color), tolerance, place, measured in zip(
             step_bodies(batches, confusion, options.parameter_curves), panels.ids,
             _moulds(panels), tolerances, panels.origins.tolist(),
             _measured(batches, options), strict=True,
