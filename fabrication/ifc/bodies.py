@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from ...kernel.arrays import FloatArray, IntArray, dot, unit
+from ...kernel.arrays import FloatArray, IntArray, dot, norm, unit
 from ..step.bodies import Body, BodyLayout, body_layout
 from ..step.values import real
 from .entities import Entities
@@ -118,9 +118,10 @@ def _axes(numbers: FloatArray, sphere: _Sphere) -> tuple[FloatArray, FloatArray]
 def _half_angle(numbers: FloatArray, sphere: _Sphere, corners: FloatArray) -> float:
     """How far the farthest corner is from the middle of a patch, in radians."""
     center, (_, _, out) = _axes(numbers, sphere)
-    heights = dot(corners - center, out) / numbers[sphere.radius]
+    # By chords: of nearly flat panels cosines would be rounded to 1.
+    chords = norm((corners - center) / numbers[sphere.radius] - out)
     # The inner and the outer face have corners of their own: the sharper is the wider.
-    return float(np.arccos(np.clip(heights, -1, 1)).max())
+    return float(2 * np.arcsin(np.clip(chords / 2, 0, 1)).max())
 
 
 def add_triangles(

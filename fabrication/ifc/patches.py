@@ -59,7 +59,7 @@ def patch_for(kind: PatchKind, half: float) -> Patch:
     reach = _reach(half)
     for degree in range(3, _HIGHEST):
         # The error of interpolating a sine or cosine at Chebyshev's points.
-        if reach ** (degree + 1) < _MISS * 2 * half * 2**degree * factorial(degree + 1):
+        if reach ** (degree + 1) <= _MISS * 2 * half * 2**degree * factorial(degree + 1):
             return Patch(kind, degree)
     return Patch(kind, _HIGHEST)
 
