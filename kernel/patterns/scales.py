@@ -149,7 +149,7 @@ def _owners(mesh: Mesh, seed: int) -> IntArray:
 
 def _is_disk(mesh: Mesh, faces: IntArray, is_closed: bool) -> bool:  # noqa: FBT001
     """Whether the faces around a vertex share no other one but those of their common edges."""
-    corners = np.concatenate([mesh.faces[face] for face in faces.tolist()])
+    corners = mesh.corners[np.isin(mesh.topology.corner_faces, faces)]
     ring = int((mesh.degrees[faces] - 2).sum())
     return len(np.unique(corners)) == ring + (1 if is_closed else 2)
 
