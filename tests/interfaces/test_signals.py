@@ -28,7 +28,12 @@ def graph(tmp_path: Path) -> Path:
 
 def started(*words: str) -> subprocess.Popen[bytes]:
     command = [sys.executable, "-m", "spheremesh", *words, "--no-cache"]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    # Who runs the tests in the background has Ctrl+C ignored, and processes inherit that.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
