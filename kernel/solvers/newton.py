@@ -37,7 +37,7 @@ RENEWED_SHIFT = 1e-7
 """Shift with which a step that lowered nothing is tried again."""
 SHORTEST_PART, LONGEST_PART = 2.0**-7, 2.0**10
 BETTER_THAN_PROMISED = 1.3
-CHORD = 0.1
+CHORD = 0.3
 """Share of the last decrement that is left where the last factors serve once more."""
 MOST_ESCAPES = 10
 """Saddles that a descent leaves at most."""
@@ -100,16 +100,16 @@ class _Step(NamedTuple):
 
     def chord(self, taken: _Taken[State], gradient: FloatArray) -> "_Step | None":
         """A step by the factors of this one, where they serve as well as new ones would."""
-        if not (self.serves_again and taken.part == 1):
+        if taken.part != 1 or self.shift > LEAST_SHIFT:
             return None
-        found = _chord(self.solve, gradient)
+        found = _chord(self.solve, gradient, is_exact=self.is_exact)
         return found if 0 <= found.decrement <= CHORD * self.decrement else None
 
 
-def _chord(solve: Solver, gradient: FloatArray) -> _Step:
+def _chord(solve: Solver, gradient: FloatArray, *, is_exact: bool) -> _Step:
     step = solve(-gradient)
     decrement = -float(dot(gradient, step))
-    return _Step(LEAST_SHIFT, solve, step, decrement, is_exact=True, is_chord=True)
+    return _Step(LEAST_SHIFT, solve, step, decrement, is_exact, is_chord=True)
 
 
 class _Trust(NamedTuple):
@@ -138,11 +138,16 @@ class _Trust(NamedTuple):
             return self._replace(wait=0)
         if self.wait:
             return self._replace(wait=self.wait - 1)
-        wait = min(2**self.refusals, LONGEST_WAIT)
+        wait = min(2**self.refusals - 1, LONGEST_WAIT)
         return _Trust(self.shift, self.refusals + 1, wait, found.decrement)
 
     def adapted(self, found: _Step, part: float, agreement: float) -> "_Trust":
-        """Less shift where a step kept what it promised, more where it did not."""
+        """Less shift where a step kept what it promised, more where it did not.
+
+        What steps by old factors keep says nothing of new ones.
+        """
+        if found.is_chord:
+            return self
         shift = found.shift
         if agreement > 0.75 and part >= 1:
             shift = max(shift / 8, LEAST_SHIFT)
@@ -187,7 +192,7 @@ def newton(
     """
     state, history = start, [problem.energies(start)]
     trust, model = _Trust(), problem.model(start)
-    found = None if last is None else _chord(last, model.gradient)
+    found = None if last is None else _chord(last, model.gradient, is_exact=True)
     escapes, lowest, is_refused = 0, -np.inf, False
     status: Status = "exhausted"
     iteration = 0
@@ -224,7 +229,9 @@ def newton(
         state, model = taken.state, problem.model(taken.state)
         history.append(taken.terms)
         trust = trust.adapted(found, taken.part, taken.agreement)
-        found = found.chord(taken, model.gradient)
+        # Where the convex part only leads until the Hessian is definite, it leads best anew.
+        may_serve = found.serves_again or not is_exact
+        found = found.chord(taken, model.gradient) if may_serve else None
     return NewtonDescent(state, status, np.array(history), iteration, lowest, last)
 
 
