@@ -37,7 +37,7 @@ RENEWED_SHIFT = 1e-7
 """Shift with which a step that lowered nothing is tried again."""
 SHORTEST_PART, LONGEST_PART = 2.0**-7, 2.0**10
 BETTER_THAN_PROMISED = 1.3
-CHORD = 0.3
+CHORD = 0.1
 """Share of the last decrement that is left where the last factors serve once more."""
 MOST_ESCAPES = 10
 """Saddles that a descent leaves at most."""
@@ -134,12 +134,18 @@ class _Trust(NamedTuple):
         """A factorisation that is refused costs as much as a step: wait before the next."""
         if found.is_exact:
             return _Trust(self.shift)
-        if found.decrement < self.refused_at / 4 and self.wait:
-            return self._replace(wait=0)
+        nearer = self.nearer(found)
+        if nearer is not self:
+            return nearer
         if self.wait:
             return self._replace(wait=self.wait - 1)
-        wait = min(2**self.refusals - 1, LONGEST_WAIT)
+        wait = min(2**self.refusals, LONGEST_WAIT)
         return _Trust(self.shift, self.refusals + 1, wait, found.decrement)
+
+    def nearer(self, found: _Step) -> "_Trust":
+        """No more waiting where much less is left than when the Hessian was refused."""
+        is_nearer = self.wait and found.decrement < self.refused_at / 4
+        return self._replace(wait=0) if is_nearer else self
 
     def adapted(self, found: _Step, part: float, agreement: float) -> "_Trust":
         """Less shift where a step kept what it promised, more where it did not.
@@ -229,10 +235,24 @@ def newton(
         state, model = taken.state, problem.model(taken.state)
         history.append(taken.terms)
         trust = trust.adapted(found, taken.part, taken.agreement)
-        # Where the convex part only leads until the Hessian is definite, it leads best anew.
-        may_serve = found.serves_again or not is_exact
-        found = found.chord(taken, model.gradient) if may_serve else None
+        found, trust = _again(found, taken, model.gradient, trust, is_exact=is_exact)
     return NewtonDescent(state, status, np.array(history), iteration, lowest, last)
+
+
+def _again(
+    found: _Step,
+    taken: _Taken[State],
+    gradient: FloatArray,
+    trust: _Trust,
+    *,
+    is_exact: bool,
+) -> tuple[_Step | None, _Trust]:
+    """The next step by the factors of the last, if they serve."""
+    again = found.chord(taken, gradient)
+    if again is None or again.is_exact or not is_exact:
+        return again, trust
+    # The convex part leads best anew; but so near to rest the Hessian may be definite.
+    return None, trust.nearer(again)
 
 
 def _rounding(energy: float) -> float:

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...arrays import FloatArray, dot, norm, unit
+from ...arrays import FloatArray, dot, gather, norm, unit
 from ...solvers.block_patterns import add_up, add_up_products, weighted
 from ...tolerances import AXIS_LEAN, AXIS_STEP
 from ..energies.centers import center_lines
@@ -34,7 +34,7 @@ def with_best_axes(problem: EnergyProblem, unknowns: Unknowns) -> Unknowns:
     number = names.index("support")
     setting, weight = problem.setting, problem.weights[number]
     *_, sums = problem.patterns[0].gradients[number]
-    lines = weight * center_lines(setting, unknowns)[setting.spoke_edges]
+    lines = weight * gather(center_lines(setting, unknowns), setting.spoke_edges)
     tables = add_up_products(sums, lines, lines)
     forces = UPRIGHT**2 * problem.upright
     if "support" in problem.multipliers:
