@@ -176,7 +176,7 @@ def hold(
         problem = replace(problem, bound_weight=weight)
         tolerance = max(AT_REST, FIRST_ROUND * STRICTER**number)
         # Saddles of multipliers that are still rough are none of the problem.
-        looks = np.isneginf(lowest) and (is_settled or (is_last and not problem.hard))
+        looks = lowest == -np.inf and (is_settled or (is_last and not problem.hard))
         descent = descend_energy(
             problem, unknowns, max_iterations, tolerance, leaves_saddles=looks, last=last
         )
@@ -196,7 +196,7 @@ def hold(
         is_settled = is_last and is_held and (is_same or not problem.hard)
         # Where nothing moves but digits, what was seen of the Hessian holds.
         lowest = descent.lowest if looks or descent.iterations > 1 else lowest
-        if is_settled and not np.isneginf(lowest):
+        if is_settled and lowest > -np.inf:
             return Held(unknowns, tuple(stages), lowest, is_held=True)
         is_stuck = not (is_last and is_held) and any(
             each.slow > (0 if is_used_up else SLOW_ROUNDS) for each in left.values()
