@@ -104,7 +104,9 @@ def test_neighbours_are_closed_to_the_bit() -> None:
     seed=st.integers(0, 99),
 )
 @settings(max_examples=4)
-def test_neighbours_are_closed_wherever_a_net_is(turn: float, size: float, away: float, seed: int) -> None:
+def test_neighbours_are_closed_wherever_a_net_is(
+    turn: float, size: float, away: float, seed: int
+) -> None:
     """Turned, scaled, moved, renumbered: between spheres that touch no triangles gape."""
     net = torus_net(24, 10, 3.0, 1.0)
     spin = np.array(
