@@ -116,7 +116,7 @@ if __name__ == "__main__":
         picture(int(words[1]), int(words[2]), words[3])
     else:
         with tempfile.TemporaryDirectory() as name:
-            # First, while this process is small: those that it starts count its memory as theirs.
+            # First, while this process is small: others that it starts count its memory.
             pictures(Path(name))
             triangles()
             report(Path(name))
