@@ -37,7 +37,8 @@ details summary{cursor:pointer;margin:.8rem 0}.verdict ol{margin:.4rem 0 0;paddi
 .graph rect{fill:#f4f5f7;stroke:#c3c8ce}.graph path{fill:none;stroke:#b3bac2}.graph .fine{font-size:9px;fill:#78818b}
 code,pre{font:13px/1.45 ui-monospace,monospace;background:#f4f5f7;border-radius:.3rem}pre{padding:.7rem .9rem;white-space:pre-wrap}code{padding:.1rem .3rem}
 @media (max-width:40rem){.pair{grid-template-columns:1fr}}
-@media print{body{margin:0;max-width:none;font-size:11pt}h2,figure,svg,.verdict{break-inside:avoid;break-after:auto}h2{break-after:avoid}tr{break-inside:avoid}}
+@page{margin:14mm}
+@media print{body{margin:0;max-width:none;padding:0;font-size:11pt}h2,figure,svg,.verdict{break-inside:avoid;break-after:auto}h2{break-after:avoid}tr{break-inside:avoid}}
 """  # noqa: E501 - lines of a style sheet
 
 
