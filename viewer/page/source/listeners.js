@@ -39,7 +39,10 @@ function listenControls(page) {
   });
   $("all").addEventListener("click", () => { page.filter = null; page.refresh(); });
   $("search").addEventListener("submit", (event) => { event.preventDefault(); page.find(); });
-  $("search").addEventListener("input", () => $("search").querySelector("input").classList.remove("unknown"));
+  $("search").addEventListener("input", () => {
+    $("search").querySelector("input").classList.remove("unknown");
+    $("unknown").textContent = "";
+  });
   $("search").addEventListener("change", () => page.find());
   $("listing").addEventListener("click", () => page.showTable($("table").hidden));
 }
@@ -108,15 +111,14 @@ function listenCard(page) {
     else if (mould) page.showKinds("mould", mould.dataset.mould);
   });
   $("faults").addEventListener("click", (event) => {
-    const part = event.target.closest("[data-part]"), more = event.target.closest("[data-more]");
+    const part = event.target.closest("[data-part]"), row = event.target.closest("[data-fault]");
     if (part) page.choose(Number(part.dataset.part));
-    else if (more) {
-      page.showKinds("finding", "error", "note");
-      page.showTable(true);
-    }
+    else if (row) page.showFault(row.dataset.fault);
+    else if (event.target.closest("[data-more]")) page.showTable(true);
   });
   $("title").addEventListener("click", (event) => {
-    if (event.target.closest("button")) page.showKinds("finding", "error");
+    const button = event.target.closest("button");
+    if (button) page.showWorst(button.dataset.worst, button.dataset.of);
   });
 }
 
