@@ -9,8 +9,8 @@ import { bestOutput, edit, now, open, set, show, useStudio } from "./store.js";
 import { GroupNode, SliderNode, StepNode } from "./step.jsx";
 
 const NODE_TYPES = { step: StepNode, slider: SliderNode, group: GroupNode };
-/** Below this zoom nobody reads fields. */
-const FAR = 0.3;
+/** Below these zooms nobody reads fields, or names. */
+const FAR = 0.3, FARTHER = 0.12;
 const PADDING = { top: 44, side: 18, bottom: 18 };
 
 /** Nodes as the graph has them; what the canvas knows of them, such as their sizes, is kept. */
@@ -172,10 +172,11 @@ function Flow() {
     };
   }, [picked]);
 
-  /** Far away only names are read, and only they are drawn; what moves is one picture. */
-  const onMove = useCallback((_, { zoom }) => box.current?.classList.toggle("far", zoom < FAR), []);
-  const onMoveStart = useCallback(() => box.current?.classList.add("moving"), []);
-  const onMoveEnd = useCallback(() => box.current?.classList.remove("moving"), []);
+  /** Far away only names are read, and only they are drawn. */
+  const onMove = useCallback((_, { zoom }) => {
+    box.current?.classList.toggle("far", zoom < FAR);
+    box.current?.classList.toggle("farther", zoom < FARTHER);
+  }, []);
 
   return (
     <div className="canvas" ref={box} onDoubleClick={openPalette} data-nodes={nodes.length}>
@@ -183,7 +184,7 @@ function Flow() {
         isValidConnection={isValid} onConnect={onConnect} onConnectStart={onConnectStart} onConnectEnd={onConnectEnd}
         onClickConnectStart={onConnectStart} onClickConnectEnd={onConnectEnd} onReconnect={onReconnect}
         onNodeDragStart={onDragStart} onNodeDrag={onDrag} onNodeDragStop={onDragStop} onSelectionDragStop={(event, dragged) => onDragStop(event, null, dragged)}
-        onMove={onMove} onMoveStart={onMoveStart} onMoveEnd={onMoveEnd} onNodeClick={onNodeClick} deleteKeyCode={null} zoomOnDoubleClick={false} minZoom={0.08} maxZoom={2} connectionRadius={26}
+        onMove={onMove} onNodeClick={onNodeClick} deleteKeyCode={null} zoomOnDoubleClick={false} minZoom={0.08} maxZoom={2} connectionRadius={26}
         selectionKeyCode="Shift" multiSelectionKeyCode={["Shift", "Meta", "Control"]} nodeDragThreshold={3} elevateNodesOnSelect={false}
         ariaLabelConfig={{ "node.a11yDescription.default": "Enter selects, arrows move, C connects, Delete removes." }}
         proOptions={{ hideAttribution: true }} fitView fitViewOptions={{ padding: 0.08, maxZoom: 1 }}>
