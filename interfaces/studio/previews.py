@@ -45,6 +45,8 @@ MOST_ROWS: Final = 400
 MOST_IN_ROW: Final = 8
 MOST_TEXT: Final = 20_000
 
+_PICTURES: Final = {".png": "image/png", ".svg": "image/svg+xml"}
+
 Carriers = Sequence[Mesh | SphereMesh | Panels]
 
 
@@ -76,11 +78,27 @@ def preview(value: Value, carriers: Carriers = (), name: str = "", unit: str = "
     return _words(value)
 
 
-def preview_node(port: Port, n_carriers: int) -> Node:
-    """The node that makes the preview of an output: its results are kept as all others are."""
+def file_preview(file: Path) -> bytes:
+    """What is shown of a file that was written: a picture, or its text."""
+    if file.suffix.lower() in _PICTURES:
+        head = {"kind": "picture", "type": _PICTURES[file.suffix.lower()], "name": file.name}
+        return pack_arrays(head, {"data": np.frombuffer(file.read_bytes(), np.uint8)})
+    with file.open(encoding="utf-8", errors="replace") as lines:
+        return pack_arrays({"kind": "text", "text": lines.read(MOST_TEXT)}, {})
+
+
+def preview_node(port: Port, n_carriers: int, written: Path | None = None) -> Node:
+    """The node that makes the preview of an output: its results are kept as all others are.
+
+    Of a step that writes a file into a folder the file is shown.
+    """
 
     def _preview(value: Value, **carriers: Value) -> NDArray[Any]:
-        data = preview(value, tuple(carriers.values()), port.name, port.unit)
+        data = (
+            file_preview(written / value)
+            if written is not None
+            else preview(value, tuple(carriers.values()), port.name, port.unit)
+        )
         return np.frombuffer(data, np.uint8)
 
     inputs = {"value": Port("value")} | {f"on_{i}": Port(f"on_{i}") for i in range(n_carriers)}

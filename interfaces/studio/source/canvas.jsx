@@ -5,7 +5,8 @@ import { useCallback, useEffect, useMemo, useRef, useState } from "react";
 import { copied, pasted } from "./clipboard.js";
 import { given, layout, placesOf, sizeOf, whyNot, wiresOf } from "./graph.js";
 import { keyPressed } from "./keys.js";
-import { bestOutput, edit, now, open, set, show, useStudio } from "./store.js";
+import { Empty } from "./start.jsx";
+import { bestOutput, edit, now, set, show, useStudio } from "./store.js";
 import { GroupNode, SliderNode, StepNode } from "./step.jsx";
 
 const NODE_TYPES = { step: StepNode, slider: SliderNode, group: GroupNode };
@@ -198,25 +199,6 @@ function Flow() {
 
 /** What keys of the canvas act on. */
 export const canvasActions = { current: null };
-
-function Empty() {
-  const templates = useStudio((s) => s.templates);
-  return (
-    <div className="empty">
-      <h2>Begin with a roof</h2>
-      <div className="cards"><TemplateCards templates={templates} /></div>
-      <p>or double-click to add a step, or open a file.</p>
-    </div>
-  );
-}
-
-export function TemplateCards({ templates }) {
-  return templates.map((each) => (
-    <button key={each.name} className="card" onClick={() => { open({ template: each.name }); set({ dialog: null }); }}>
-      <b>{each.title}</b><span>{each.summary}</span>
-    </button>
-  ));
-}
 
 function withGroups(nodes) {
   const s = now(), plain = nodes.filter((node) => node.type !== "group");

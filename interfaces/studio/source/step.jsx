@@ -4,7 +4,7 @@ import { Handle, Position } from "@xyflow/react";
 import { memo, useRef, useState } from "react";
 import { newGesture, NumberField, PortField, Range, shortNumber } from "./fields.jsx";
 import { shownInputs, sources } from "./graph.js";
-import { described, edit, familyOf, pinsOf, set, show, useStudio } from "./store.js";
+import { described, edit, familyOf, isShowable, pinsOf, set, show, useStudio } from "./store.js";
 
 /** Seconds as people say them. */
 export function seconds(value) {
@@ -48,15 +48,16 @@ function Input({ step, port, entry, family, isTight }) {
   );
 }
 
-function Output({ step, port, family, isShown, isPinned, writes }) {
+function Output({ step, port, family, isShown, isPinned, isShowable, writes }) {
   const target = `${step}.${port.name}`;
   return (
     <div className={`row out${isShown ? " shown" : ""}`}>
-      {writes ? <span className="quiet">written on export</span> : (
+      {writes ? <span className="quiet">written on export</span> : null}
+      {isShowable ? (
         <button className="eye nodrag" aria-pressed={isShown} aria-label={`show ${target}`} title={port.help || "show it beside"} onClick={() => show(target)}>
           <Eye open={isShown || isPinned} />
         </button>
-      )}
+      ) : null}
       <button className="label nodrag" title={`${port.help || port.name}\nConnect to …`} tabIndex={-1}
         onClick={() => set({ dialog: { kind: "connect", end: { id: `s:${step}`, output: port.name } } })}>{port.name === "result" ? "" : port.name.replaceAll("_", " ")}</button>
       <Handle id={port.name} type="source" position={Position.Right} className={`port f-${family}`} title={port.help} />
@@ -73,7 +74,7 @@ export const StepNode = memo(({ data, selected }) => {
   const view = useStudio((s) => {
     const entry = s.doc?.graph.steps[name];
     if (!entry) return null;
-    return { entry, node: described(s, name), facts: s.doc.facts[name], state: s.steps[name], isOpen: s.expanded[name], comment: s.doc.graph.comments?.[name],
+    return { entry, node: described(s, name), facts: s.doc.facts[name], state: s.steps[name], isOpen: s.expanded[name], isShowable: isShowable(s, name), comment: s.doc.graph.comments?.[name],
       shown: s.shown.startsWith(`${name}.`) ? s.shown : "", pins: pinsOf(s.doc.graph).filter((pin) => pin.startsWith(`${name}.`)).join(" "), catalogue: s.catalogue };
   });
   if (!view) return null;
@@ -104,7 +105,7 @@ export const StepNode = memo(({ data, selected }) => {
           </button>
         ) : null}
         {outputs.map((port) => (
-          <Output key={port.name} step={name} port={port} family={familyOf(s, port)} writes={node?.writes}
+          <Output key={port.name} step={name} port={port} family={familyOf(s, port)} writes={node?.writes} isShowable={view.isShowable}
             isShown={shown === `${name}.${port.name}`} isPinned={pins.split(" ").includes(`${name}.${port.name}`)} />
         ))}
       </div>
