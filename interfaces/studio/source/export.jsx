@@ -2,7 +2,7 @@
 
 import { useState } from "react";
 import { get } from "./api.js";
-import { anchored } from "./graph.js";
+import { anchored, placesOf, sizeOf } from "./graph.js";
 import { described, edit, exportFiles, familyOf, fileOf, guarded, now, toast, useStudio } from "./store.js";
 import { savePicture } from "./view.jsx";
 
@@ -37,11 +37,21 @@ function inputsFor(s, node) {
   return Object.keys(found).length ? found : null;
 }
 
+/** Below the others that write, or right of all. */
+function placeFor(s) {
+  const places = placesOf(s), boxes = Object.keys(places).map((id) => ({ id, x: places[id][0], y: places[id][1], size: sizeOf(s, id) }));
+  const writers = boxes.filter(({ id }) => id.startsWith("s:") && described(s, id.slice(2))?.writes);
+  const x = writers.length ? Math.max(...writers.map((box) => box.x)) : Math.max(...boxes.map((box) => box.x + box.size[0])) + 60;
+  const column = boxes.filter((box) => Math.abs(box.x - x) < box.size[0]);
+  const y = column.length ? Math.max(...column.map((box) => box.y + box.size[1])) + 26 : Math.min(...boxes.map((box) => box.y));
+  return [Math.round(x), Math.round(y)];
+}
+
 function addWriter([kind, step, path]) {
   const s = now(), inputs = inputsFor(s, s.catalogue.nodes[kind]);
   let name = step, number = 2;
   while (name in s.doc.graph.steps) name = `${step}_${number++}`;
-  edit(anchored(s, [{ op: "add", node: kind, name, inputs: { ...inputs, path } }]));
+  edit(anchored(s, [{ op: "add", node: kind, name, inputs: { ...inputs, path }, at: placeFor(s) }]));
 }
 
 export function Export() {

@@ -256,6 +256,13 @@ export function partners(s, end) {
   return found;
 }
 
+/** The steps of most roofs, in their order: what is shown before anything is searched for. */
+const USUAL = ["read_mesh", "roof_mesh", "fit_spheres", "minimize_angles", "cluster_radii", "panels", "bisector_support", "beams", "write_step", "write_3dm", "write_view", "render"];
+const usual = (node) => (USUAL.indexOf(node.name) + 1 || USUAL.length + 1);
+
+/** Words that people search by and no name has. */
+const otherWords = (node) => [node.writes ? "export save file" : "", node.inputs.some((port) => port.reads) ? "import open load file" : "", node.name === "cluster_radii" ? "moulds molds" : ""].join(" ");
+
 /** Nodes for the palette: by name and words, and by what fits the wire that is held. */
 export function searched(s, text, end) {
   const words = text.toLowerCase().split(/\s+/).filter(Boolean);
@@ -270,12 +277,12 @@ export function searched(s, text, end) {
       else if (name.startsWith(word)) score += 8;
       else if (name.includes(word) || node.name.includes(word)) score += 5;
       else if (node.category.includes(word)) score += 3;
-      else if (node.summary.toLowerCase().includes(word)) score += 2;
+      else if (`${node.summary.toLowerCase()} ${otherWords(node)}`.includes(word)) score += 2;
       else { score = -1; break; }
     }
     if (score >= 0) found.push({ node, port, score: score + (port?.required ? 1 : 0) });
   }
-  return found.sort((a, b) => b.score - a.score || a.node.category.localeCompare(b.node.category) || a.node.name.localeCompare(b.node.name));
+  return found.sort((a, b) => b.score - a.score || usual(a.node) - usual(b.node) || a.node.category.localeCompare(b.node.category) || a.node.name.localeCompare(b.node.name));
 }
 
 function fitting(s, node, end) {

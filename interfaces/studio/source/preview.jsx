@@ -4,7 +4,7 @@ import { useEffect, useRef, useState } from "react";
 import { blob } from "./api.js";
 import { portOf } from "./graph.js";
 import { togglePin } from "./keys.js";
-import { described, familyOf, pinsOf, set, show, useStudio } from "./store.js";
+import { described, familyOf, fileOf, pinsOf, set, show, useStudio } from "./store.js";
 import { Numbers, Table } from "./tables.jsx";
 import { LinkButton, ModelView, SwipeLine } from "./view.jsx";
 
@@ -70,7 +70,7 @@ function Body({ target, output }) {
 
 function Tile({ target, alone }) {
   const [step, portName] = target.split(".");
-  const { node, isPinned } = useStudio((s) => ({ node: described(s, step), isPinned: pinsOf(s.doc.graph).includes(target) }));
+  const { node, file, isPinned } = useStudio((s) => ({ node: described(s, step), file: described(s, step)?.writes ? fileOf(s, step) : "", isPinned: pinsOf(s.doc.graph).includes(target) }));
   const output = useOutput(target);
   return (
     <article className={`tile${output.isStale ? " stale" : ""}`} data-target={target} data-digest={output.data?.digest ?? ""}>
@@ -79,7 +79,7 @@ function Tile({ target, alone }) {
         <nav role="tablist" aria-label={`outputs of ${step}`}>
           {node?.outputs.length > 1 ? node.outputs.map((port) => (
             <button key={port.name} role="tab" aria-selected={port.name === portName} onClick={() => show(`${step}.${port.name}`)}>{port.name.replaceAll("_", " ")}</button>
-          )) : <span>{portOf(node?.outputs, portName)?.help?.replace(/\.$/, "") || ""}</span>}
+          )) : <span>{file || portOf(node?.outputs, portName)?.help?.replace(/\.$/, "") || ""}</span>}
         </nav>
         <button className="pin" aria-pressed={isPinned} title={isPinned ? "let it go" : "pin it: it stays while you look at others"} onClick={() => togglePin(target)}>{isPinned ? "Pinned" : "Pin"}</button>
         {!alone && !isPinned ? <button className="close" aria-label={`close ${target}`} onClick={() => set({ shown: "" })}>×</button> : null}
@@ -93,7 +93,7 @@ function Tile({ target, alone }) {
 function Swipe({ targets }) {
   const [at, setAt] = useState(0.5);
   const outputs = [useOutput(targets[0]), useOutput(targets[1])];
-  const names = targets.map((target) => target.replace(".", " · ").replaceAll("_", " "));
+  const names = targets.map((target) => { const [step, port] = target.split("."); return (port === step || port === "result" ? step : `${step} · ${port}`).replaceAll("_", " "); });
   return (
     <article className={`tile swiped${outputs.some((each) => each.isStale) ? " stale" : ""}`} data-target={targets.join(" ")} data-digest={outputs.every((each) => each.data) ? outputs.map((each) => each.data.digest).join(" ") : ""}>
       <header><strong>{names.join(" | ")}</strong><nav /><button className="pin" onClick={() => set({ swipe: null })}>Side by side</button></header>

@@ -14,7 +14,8 @@ function follow(leader) {
   const { linked, swipe } = now();
   for (const [target, view] of views) {
     const isSwiped = swipe?.includes(target) && swipe.includes(leader.shows);
-    if (view === leader || !(linked || isSwiped)) continue;
+    // One that was made to fit its own place leads nobody.
+    if (view === leader || !(isSwiped || (linked && !leader.fitted))) continue;
     view.following = true;
     view.camera.position.copy(leader.camera.position);
     view.controls.target.copy(leader.controls.target);
@@ -24,6 +25,13 @@ function follow(leader) {
     view.draw();
     view.following = false;
   }
+}
+
+/** See all of a model from a direction, and so all that follow it. */
+function fitAll(leader, direction) {
+  const { linked, swipe } = now();
+  if (linked && !swipe) for (const view of views.values()) view.fit(direction ?? view.head.home);
+  else leader?.fit(direction ?? leader.head.home);
 }
 
 /** A point of one picture in the measures of another. */
@@ -147,8 +155,8 @@ export function ModelView({ data, target }) {
           <button key={key} className="layer" aria-pressed={hidden[key] !== false} title={hidden[key] === false ? `show ${name}` : `hide ${name}`} onClick={() => setHidden({ ...hidden, [key]: hidden[key] === false })}>{name}</button>
         )) : null}
         {isCurved ? <button aria-pressed={flat !== null} className="choice" title="left of the line every panel is flat" onClick={() => setFlat(flat === null ? 0.5 : null)}>Flat | spheres</button> : null}
-        <button onClick={() => view.current?.fit(head.home)} aria-label="see all of it">Fit</button>
-        <button onClick={() => view.current?.fit([0, -0.001, 1])}>Top</button>
+        <button onClick={() => fitAll(view.current, null)} aria-label="see all of it">Fit</button>
+        <button onClick={() => fitAll(view.current, [0, -0.001, 1])}>Top</button>
       </div>
       {flat !== null ? <SwipeLine at={flat} setAt={setFlat} names={["flat", "spheres"]} /> : null}
       {head.colors.length ? <Legend colors={head.colors} chosen={mode} setChosen={setChosen} legend={legend} /> : null}

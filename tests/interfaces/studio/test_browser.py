@@ -3,11 +3,12 @@
 import json
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from spheremesh.nodes import Graph
+from spheremesh.nodes import Graph, vase_mesh, write_mesh
 
 SIZE = {"width": 1100, "height": 640}
 
@@ -306,6 +307,68 @@ def test_fingers_on_a_phone_wire_slide_and_add(
     page.locator('[aria-label="moulds, slider"]').fill("5")
     soon(lambda: graph(studio)["params"]["moulds"]["value"] == 5)
     phone.close()
+
+
+def test_a_newcomer_gets_from_a_mesh_to_files(
+    page: Page, studio: Studio, tmp_path: Path
+) -> None:
+    """Nothing is open; a mesh is chosen, a template on it, what is written, and it is there."""
+    studio.ask("POST", "/studio/open", {})
+    write_mesh(vase_mesh(10, 5), tmp_path / "my vase.obj")
+    opened(page, studio)
+    page.set_input_files("input[type=file]", tmp_path / "my vase.obj")
+    until(page, "document.querySelector('[aria-label^=mesh]').value === 'my vase.obj'")
+    page.click(".card >> text=Roof with moulds")
+    page.wait_for_selector(".tile[data-target='panels.panels'] .model canvas")
+    settled(page)
+    assert "50 panels" in page.inner_text(".words")
+    assert "to be saved" in page.inner_text(".title small")
+    page.click("text=Export >> nth=0")
+    for file in ("panels.step", "model.3dm", "view.html"):
+        page.click(f"[aria-label='do not write {file}']")
+    page.click(".chips >> text=+ picture")
+    page.wait_for_selector(".writers >> text=picture.png")
+    page.click("text=Write files")
+    page.wait_for_selector(".outcome.is-done")
+    assert page.locator(".outcome li").all_inner_texts() == ["picture.png", "schedule.csv"]
+    assert (studio.folder / "out" / "picture.png").read_bytes()[1:4] == b"PNG"
+    page.keyboard.press("Escape")
+    page.click(".step[data-step=picture] .eye")
+    until(page, "document.querySelector('img.picture')?.naturalWidth === 1600")
+
+
+def test_two_outputs_are_swiped_and_flat_panels_beside_spheres(
+    page: Page, studio: Studio
+) -> None:
+    studio.edit({"op": "pin", "outputs": ["panels.panels", "few.sphere_mesh"]})
+    page.wait_for_selector(".tile[data-target='few.sphere_mesh'] .model canvas")
+    page.click(".tile[data-target='panels.panels'] >> text=Flat | spheres")
+    line = page.get_by_role("slider", name="between flat and spheres")
+    line.press("ArrowLeft")
+    assert line.get_attribute("aria-valuenow") == "48"
+    until(page, "window.studioViews.get('panels.panels').swipe === 0.48")
+    page.click(".links >> text=Swipe")
+    until(page, "Boolean(document.querySelector('.swiped')?.dataset.digest)")
+    line = page.get_by_role("slider", name="between panels and few")
+    box = page.locator(".swiped .body").bounding_box()
+    drag(page, *_along(line.bounding_box(), box))
+    page.mouse.up()
+    assert line.get_attribute("aria-valuenow") == "25"
+    # Both look from one place of the world.
+    until(
+        page,
+        """(() => { const [a, b] = [...window.studioViews.values()].slice(-2).map((v) =>
+          v.camera.position.toArray().map((x, k) => v.head.center[k] + v.head.size * x));
+        return Math.hypot(...a.map((x, k) => x - b[k])) < 1e-6 * Math.hypot(...a); })()""",
+    )
+    page.click("text=Side by side")
+    page.wait_for_selector(".tile[data-target='few.sphere_mesh']")
+
+
+def _along(line: dict[str, float], body: dict[str, float]) -> Any:  # noqa: ANN401
+    """From the middle of a line to a quarter of what it divides."""
+    y = line["y"] + 60
+    return (line["x"] + line["width"] / 2, y), (body["x"] + body["width"] / 4, y)
 
 
 def test_a_graph_of_200_steps_moves_without_long_frames(page: Page, studio: Studio) -> None:
