@@ -16,8 +16,9 @@ FOR_USERS := nodes/library/*.py nodes/graphs/graph.py nodes/graphs/editor.py nod
   kernel/meshes/mesh.py kernel/sphere_meshes/sphere_mesh.py
 # The root folder is a package; pytest must not import it by the name of the clone.
 PYTEST = $(BIN)/python -m pytest -q -c pyproject.toml --rootdir tests
-# Two processes of tests keep two cores busy: a thread of OpenBLAS in each is enough.
-PARALLEL = OPENBLAS_NUM_THREADS=1 $(PYTEST) -n 2 --dist loadfile
+# Two processes of tests keep two cores busy: a thread of OpenBLAS in each is enough. If one dies
+# the run ends there and says at which test: with another in its place it could wait for ever.
+PARALLEL = OPENBLAS_NUM_THREADS=1 $(PYTEST) -n 2 --dist loadfile --max-worker-restart 0
 # Sets of instructions between which OpenBLAS chooses by the processor; sums differ in the last
 # bits. Haswell is what AMD processors get, Prescott the oldest. Ignored where there is no x86.
 CORETYPES := Haswell Prescott
@@ -27,13 +28,8 @@ CORETYPES := Haswell Prescott
 demo: system
 	$(BIN)/spheremesh panel -o out/demo --moulds 8 --thickness 0.02
 
-# Studies whose processes are killed run in workers of their own: a worker that dies with them
-# would take other tests along.
-KILLING := tests/nodes/graphs/sweeps
-
 test: lint browser
-	$(PARALLEL) tests --ignore $(KILLING)
-	$(PARALLEL) $(KILLING)
+	$(PARALLEL) tests
 	$(PYTEST) -p no:cacheprovider --doctest-modules --pyargs $(addprefix spheremesh.,$(PACKAGES))
 
 test-long: system

@@ -232,6 +232,11 @@ def patterns() -> Image.Image:
     return _made_by("16_patterns", "patterns.png")
 
 
+def pattern_lines() -> Image.Image:
+    """Lines of quads that follow curvature, the boundary, a direction, a curve; density."""
+    return _made_by("17_pattern_lines", "pattern_lines.png").quantize(128)
+
+
 def supports() -> Image.Image:
     """Beams on node axes from below, one of their nodes, and upright beams at a cylinder."""
     mesh = roof_mesh(12, 18)
@@ -399,6 +404,7 @@ PICTURES = {
     "remeshed-roof": remeshed_roof,
     "quad-pattern": quad_pattern,
     "patterns": patterns,
+    "pattern-lines": pattern_lines,
     "supports": supports,
     "cost-curve": cost_against_smoothness,
     "assemblies": assemblies,

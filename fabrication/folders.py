@@ -146,14 +146,16 @@ def _signals_waiting() -> Generator[None]:
     came: list[int] = []
     note: Callable[[int, object], None] = lambda number, _frame: came.append(number)  # noqa: E731
     numbers = [getattr(signal, name) for name in _ENDING if hasattr(signal, name)]
-    before = {number: signal.getsignal(number) for number in numbers}
-    for number in numbers:
+    handlers = {number: signal.getsignal(number) for number in numbers}
+    # A handler that is not Python's cannot be put back: it stays where it is.
+    before = {number: each for number, each in handlers.items() if each is not None}
+    for number in before:
         signal.signal(number, note)
     try:
         yield
     finally:
         for number, handler in before.items():
-            signal.signal(number, signal.SIG_DFL if handler is None else handler)
+            signal.signal(number, handler)
         for number in came:
             signal.raise_signal(number)
 

@@ -26,6 +26,8 @@ RECORD: Final = ".spheremesh.json"
 _MOST_BYTES: Final = 2**26
 """Of a list of digests: nobody writes a longer one, so it need not be read."""
 
+_NONE: Final[Mapping[str, str]] = {}
+
 
 @dataclass(frozen=True, eq=False)
 class OutputFolder:
@@ -49,6 +51,8 @@ class OutputFolder:
         Whether files may be written elsewhere.
     outside : set of Path
         Where they were.
+    digests : mapping of str to str
+        Those of the files below `staging` that the report lists: they are not read twice.
     """
 
     folder: Path
@@ -59,6 +63,7 @@ class OutputFolder:
     overwrite: bool = False
     allow_outside: bool = False
     outside: set[Path] = field(default_factory=set[Path])
+    digests: dict[str, str] = field(default_factory=dict[str, str])
 
     def place(self, path: str | os.PathLike[str]) -> Path:
         """Where to write a file until the job is done.
@@ -140,7 +145,9 @@ class OutputFolder:
             The same with ``files``: the digest of each file of the job. That of the report is
             taken with nothing in its own place.
         """
-        whole = {**report, "files": {**_digests(self.staging), REPORT: ""}}
+        self.digests.update(_digests(self.staging))
+        self.digests.pop(REPORT, None)
+        whole = {**report, "files": {**self.digests, REPORT: ""}}
         digest = hashlib.sha256(_text(whole).encode()).hexdigest()
         whole["files"][REPORT] = digest
         (self.staging / REPORT).write_text(_text(whole), encoding="utf-8", newline="\n")
@@ -230,7 +237,7 @@ def output_folder(
 
 def _finish(output: OutputFolder) -> None:
     """Check what was written, and keep a record of what no report lists."""
-    staged = _digests(output.staging)
+    staged = _digests(output.staging, output.digests)
     for name in staged:
         output.check(name)
     outside = {str(path): _digest(path) for path in output.outside if path.is_file()}
@@ -252,10 +259,11 @@ def _finish(output: OutputFolder) -> None:
         (output.staging / RECORD).write_text(text, encoding="utf-8", newline="\n")
 
 
-def _digests(folder: Path) -> dict[str, str]:
-    """Digests of all files below a folder, by their paths in it."""
+def _digests(folder: Path, known: Mapping[str, str] = _NONE) -> dict[str, str]:
+    """Digests of all files below a folder, by their paths in it; some may be known."""
     files = (path for path in folder.rglob("*") if not path.is_dir())
-    return {path.relative_to(folder).as_posix(): _digest(path) for path in files}
+    names = {path.relative_to(folder).as_posix(): path for path in files}
+    return {name: known.get(name) or _digest(path) for name, path in names.items()}
 
 
 def _listed(path: Path) -> dict[str, str]:

@@ -14,6 +14,37 @@ SUPPORTS: Final = ("axis", "exact", "bisector")
 """Words that --support takes; without one it means the first."""
 
 
+def vector_option(
+    _context: click.Context, _option: click.Parameter, text: str | None
+) -> tuple[float, float, float] | None:
+    """A vector, such as ``1,0.5,0``.
+
+    Parameters
+    ----------
+    text : str or None
+        What the user wrote.
+
+    Returns
+    -------
+    (float, float, float) or None
+        The vector; None without the option.
+
+    Raises
+    ------
+    click.BadParameter
+        If they are not three finite numbers, one of them other than 0.
+    """
+    if text is None:
+        return None
+    try:
+        x, y, z = (float(number) for number in text.split(","))
+    except ValueError:
+        x = y = z = 0.0
+    if not 0 < abs(x) + abs(y) + abs(z) < float("inf"):
+        raise click.BadParameter(f"a vector is three numbers such as 1,0.5,0, not {text!r}")
+    return x, y, z
+
+
 def rows_option(
     _context: click.Context, _option: click.Parameter, text: str | None
 ) -> tuple[int, int] | None:

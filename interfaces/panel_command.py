@@ -9,7 +9,7 @@ import click
 
 from .cache_option import cache_options, chosen_store
 from .console import GATE_FAILED, shown_progress, told_errors
-from .option_values import SUPPORTS, joined_option, rows_option, spell_support
+from .option_values import SUPPORTS, joined_option, rows_option, spell_support, vector_option
 
 UNITS: Final = ("mm", "cm", "m", "in", "ft")
 
@@ -95,6 +95,25 @@ class _PanelCommand(click.Command):
     "--edge-length",
     type=click.FloatRange(min=0, min_open=True),
     help="Length of the edges of a --pattern, or on surfaces of a .3dm, in model units.",
+)
+@click.option(
+    "--direction",
+    metavar="X,Y,Z",
+    callback=vector_option,
+    help="Lines of --pattern quads run along this vector, not along those of curvature.",
+)
+@click.option(
+    "--density",
+    type=click.FloatRange(0, 1),
+    default=0.0,
+    help="Edges of --pattern quads are shorter where the surface bends: 0 not at all, 1 as "
+    "its radius of curvature, at most 1.6 times.",
+)
+@click.option(
+    "--insist",
+    is_flag=True,
+    help="Make nodes of --pattern quads free of torsion even on all but a sphere, or along a "
+    "direction.",
 )
 @click.option(
     "--rows",
@@ -235,6 +254,7 @@ def panel(  # numpydoc ignore=PR01
         raise click.UsageError(
             f"--pattern {options['pattern']} needs the length of its edges: add --edge-length"
         )
+    _check_wishes(options)
     _check_moulds(options)
     _check_exact(options)
     _warn_of_no_beams(options)
@@ -250,6 +270,15 @@ def panel(  # numpydoc ignore=PR01
     print_report(report, out, files, as_json=as_json, is_assumed=is_assumed)
     if strict and has_errors(report):
         sys.exit(GATE_FAILED)
+
+
+def _check_wishes(options: Mapping[str, Any]) -> None:
+    """Only quads have lines that can be told where to run."""
+    given = [f"--{name}" for name in ("direction", "density", "insist") if options[name]]
+    if given and options["pattern"] != "quads":
+        raise click.UsageError(
+            f"{' and '.join(given)} need lines of quads: add --pattern quads, or drop them"
+        )
 
 
 def _check_moulds(options: Mapping[str, Any]) -> None:

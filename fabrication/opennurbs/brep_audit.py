@@ -24,6 +24,7 @@ from .brep_evaluation import (
     checksum_defects,
     distances_to_edge,
     edge_points,
+    finite_streams,
     stream_numbers,
     surface_knots,
     surface_points,
@@ -127,18 +128,23 @@ def verify_breps(
                 result[first] = BrepErrors(str(error))
                 pending = pending[1:]
                 continue
-            waiting: list[int] = pending.tolist()
-            matrix = np.frombuffer(b"".join(streams[i] for i in waiting), np.uint8)
-            matrix = matrix.reshape(len(pending), -1)
-            is_alike = (matrix[:, layout.fixed] == matrix[0, layout.fixed]).all(1)
-            same, pending = pending[is_alike], pending[~is_alike]
-            alike = matrix[is_alike]
-            for begin in range(0, len(same), _AT_A_TIME):
-                some = slice(begin, begin + _AT_A_TIME)
-                rows = None if spheres is None else spheres[same[some]]
-                errors = _measure(alike[some], layout, rows, origins[same[some]])
-                for i, record in zip(same[some].tolist(), errors, strict=True):
+            example = np.frombuffer(streams[first], np.uint8)
+            others: list[int] = []
+            for begin in range(0, len(pending), _AT_A_TIME):
+                some = pending[begin : begin + _AT_A_TIME]
+                rows: list[int] = some.tolist()
+                joined = np.frombuffer(b"".join(streams[i] for i in rows), np.uint8)
+                matrix = joined.reshape(len(some), -1)
+                is_alike = ~((matrix != example) & layout.fixed).any(axis=1)
+                same = some[is_alike]
+                others += some[~is_alike].tolist()
+                if not len(same):
+                    continue
+                known = None if spheres is None else spheres[same]
+                errors = _measure(matrix[is_alike], layout, known, origins[same])
+                for i, record in zip(same.tolist(), errors, strict=True):
                     result[i] = record
+            pending = np.array(others, np.int64)
     return result
 
 
@@ -199,10 +205,7 @@ def _mesh_errors(
 
 def _defects(streams: NDArray[np.uint8], layout: BrepLayout) -> list[str]:
     """Why streams cannot be measured; empty where they can."""
-    found = [
-        ("a number is not finite", ~np.isfinite(stream_numbers(streams, *at)))
-        for at in layout.numbers
-    ]
+    found = [("a number is not finite", ~finite_streams(streams, layout)[:, None])]
     found += [
         (defect, is_bad)
         for face in layout.faces

@@ -1,11 +1,9 @@
 """Evaluates trims, edges, surfaces and volumes of Breps, many of one layout at a time."""
 
-from math import comb
-
 import numpy as np
 from numpy.typing import NDArray
 
-from ...kernel.arrays import FloatArray, dot, norm
+from ...kernel.arrays import BoolArray, FloatArray, dot, norm
 from .brep_layout import BrepLayout, Curve, Face, Surface
 from .stream_codes import CRC, LINE_CURVE, NURBS_CURVE, PLANE_SURFACE, Checksum
 
@@ -14,14 +12,27 @@ _SAMPLES = 9
 
 _WRONG = "the checksum at byte {} is wrong"
 
-_STEPS = 3
-"""From the nearest of the samples, towards the nearest point of a conic."""
+_SIGNLESS, _LOW_EXPONENT = 0x7F, 0xF0
+"""The two highest bytes of a float64 that is not finite: with their other bits cleared."""
+
+_STEPS, _SETTLED = 5, 1e-8
+"""The most towards the nearest point of a conic; what follows a shorter one is rounding."""
 
 
 def stream_numbers(streams: NDArray[np.uint8], place: int, count: int) -> FloatArray:
     """Float64 numbers (n, count) that begin at a place of streams (n, bytes) of one layout."""
     raw = np.ascontiguousarray(streams[:, place : place + 8 * count])
     return raw.view("<f8").astype(np.float64)
+
+
+def finite_streams(streams: NDArray[np.uint8], layout: BrepLayout) -> BoolArray:
+    """Which streams (n,) of one layout hold finite numbers alone: by their exponents."""
+    places = [np.arange(start, start + 8 * count, 8) for start, count in layout.numbers]
+    last = np.concatenate(places) + 7
+    is_suspect = (streams[:, last] & _SIGNLESS == _SIGNLESS) & (
+        streams[:, last - 1] >= _LOW_EXPONENT
+    )
+    return ~is_suspect.any(axis=1)
 
 
 def checksum_defects(streams: NDArray[np.uint8], layout: BrepLayout) -> list[str]:
@@ -100,8 +111,13 @@ def _between(ends: FloatArray) -> FloatArray:
 
 
 def _bernstein(t: FloatArray, degree: int) -> FloatArray:
-    powers = [comb(degree, i) * t**i * (1 - t) ** (degree - i) for i in range(degree + 1)]
-    return np.stack(powers, -1)
+    # By the recursion of de Casteljau: powers would take twice as long.
+    values = [np.ones_like(t)]
+    for _ in range(degree):
+        left, right = ([(1 - t) * x for x in values], [t * x for x in values])
+        inner = [a + b for a, b in zip(left[1:], right[:-1], strict=True)]
+        values = [left[0], *inner, right[-1]]
+    return np.stack(values, -1)
 
 
 def _bernstein_slopes(t: FloatArray, degree: int) -> FloatArray:
@@ -124,7 +140,8 @@ def surface_points(streams: NDArray[np.uint8], surface: Surface, uv: FloatArray)
         spline_basis(surface_knots(streams, surface, axis), uv[..., axis], order - 1)[0]
         for axis, order in enumerate(surface.orders)
     )
-    points = np.einsum("nqi,nqj,nijd->nqd", along_u, along_v, net, optimize=True)
+    rows = np.matmul(along_u, net.reshape(*net.shape[:2], -1)).reshape(*uv.shape[:2], -1, 4)
+    points = np.matmul(along_v[:, :, None], rows)[:, :, 0]
     return points[..., :3] / points[..., 3:]
 
 
@@ -148,11 +165,17 @@ def spline_basis(
     Knots (n, ...) stand as often as the degree.
     """
     breaks = knots[:, ::degree]
+    n_spans = breaks.shape[1] - 1
+    if n_spans == 1:
+        low, size = breaks[:, :1], np.diff(breaks)
+        share = (t - low) / size
+        share = np.where((t >= low) & (t <= breaks[:, 1:]), share, np.nan)
+        return _bernstein(share, degree), _bernstein_slopes(share, degree) / size[..., None]
     shape = (*t.shape, knots.shape[1] - degree + 1)
     values, slopes = np.zeros(shape), np.zeros(shape)
     is_open = (t >= breaks[:, :1]) & (t <= breaks[:, -1:])
     outside = ~is_open
-    for span in range(breaks.shape[1] - 1):
+    for span in range(n_spans):
         low, size = breaks[:, span, None], np.diff(breaks[:, span : span + 2])
         here = is_open & (t <= breaks[:, span + 1, None])
         is_open = is_open & ~here
@@ -208,20 +231,35 @@ def distances_to_edge(
 
 
 def _to_conic(span: FloatArray, points: FloatArray) -> FloatArray:
-    """Distances (n, q) of points from rational quadratics (n, 3, 4), by Gauss and Newton."""
-    starts = np.linspace(0, 1, _SAMPLES)
-    curve = _bernstein(starts, 2) @ span
-    curve = curve[..., :3] / curve[..., 3:]
-    nearest = norm(points[:, :, None] - curve[:, None]).argmin(axis=2)
-    t = starts[nearest]
+    """Distances (n, q) of points from rational quadratics (n, 3, 4), by Gauss and Newton.
+
+    From where the points lie along the chord: wherever the search ends is on the curve, so a
+    distance is never told too small.
+    """
+    origins, ends = (span[:, i, None, :3] / span[:, i, None, 3:] for i in (0, 2))
+    points, chords = points - origins, ends - origins
+    span = np.concatenate([span[..., :3] - span[..., 3:] * origins, span[..., 3:]], axis=2)
+    start = span[:, None, 0]
+    first, second = 2 * (span[:, None, 1] - start), start - 2 * span[:, None, 1]
+    second = second + span[:, None, 2]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = np.nan_to_num(np.clip(dot(points, chords) / dot(chords, chords), 0, 1))
     for _ in range(_STEPS):
-        x = np.einsum("nqi,nid->nqd", _bernstein(t, 2), span)
-        dx = np.einsum("nqi,nid->nqd", _bernstein_slopes(t, 2), span)
-        at = x[..., :3] / x[..., 3:]
-        step = (dx[..., :3] - at * dx[..., 3:]) / x[..., 3:]
-        t = np.clip(t + dot(points - at, step) / dot(step, step), 0, 1)
-    x = np.einsum("nqi,nid->nqd", _bernstein(t, 2), span)
-    return norm(points - x[..., :3] / x[..., 3:])
+        x, dx = _conic_steps(start, first, second, t)
+        before, t = t, np.clip(t + dot(points - x, dx) / dot(dx, dx), 0, 1)
+        if not (np.abs(t - before) > _SETTLED).any():
+            break
+    return norm(points - _conic_steps(start, first, second, t)[0])
+
+
+def _conic_steps(
+    start: FloatArray, first: FloatArray, second: FloatArray, t: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Points and derivatives of rational quadratics at t (n, q), by their coefficients."""
+    t = t[..., None]
+    x, dx = start + t * (first + t * second), first + 2 * t * second
+    at = x[..., :3] / x[..., 3:]
+    return at, (dx[..., :3] - at * dx[..., 3:]) / x[..., 3:]
 
 
 # Volumes
@@ -283,6 +321,12 @@ def _along_u(
         x: FloatArray = np.matmul(along, curves)
         x_u: FloatArray = np.matmul(rises, curves)
         x_v: FloatArray = np.matmul(along, turns)
-        flux = dot(x[..., :3], np.cross(x_u[..., :3], x_v[..., :3])) / x[..., 3] ** 3
+        flux = _triple(x, x_u, x_v) / x[..., 3] ** 3
         total += length * (flux @ _WEIGHTS)
     return total
+
+
+def _triple(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
+    """Triple products of the first three components, several times as fast as by `cross`."""
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = (np.moveaxis(x, -1, 0)[:3] for x in (a, b, c))
+    return ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...kernel.arrays import FloatArray, IntArray, norm, unit
+from ...kernel.arrays import BoolArray, FloatArray, IntArray, norm, unit
 from ..breps.records import BrepBatch, EdgeBatch, select_rows
 from . import stream_codes as codes
 from .brep_writer import EMPTY_BOX, plane_records
@@ -46,27 +46,45 @@ def solid_streams(batches: Sequence[BrepBatch], places: FloatArray) -> list[byte
     """
     result: dict[int, bytes] = {}
     for batch in batches:
-        spans = _span_counts(batch)
-        for each in np.unique(spans).tolist():
-            chosen = select_rows(batch, np.flatnonzero(spans == each))
-            result.update(_streams(chosen, places[chosen.rows], each))
+        shapes = _shapes(batch, 1)
+        is_bent = _is_bent(shapes)
+        if is_bent.any():
+            chosen = (select_rows(batch, np.flatnonzero(rows)) for rows in (~is_bent, is_bent))
+            both = [_shapes(rows, spans) for rows, spans in zip(chosen, (1, 2), strict=True)]
+        else:
+            both = [shapes]
+        for each in both:
+            if len(each.batch.rows):
+                result.update(_streams(each, places[each.batch.rows]))
     return [result[row] for row in sorted(result)]
 
 
-def _span_counts(batch: BrepBatch) -> IntArray:
-    """Bézier spans (m,) of curves and patches, 1 or 2, so that weights stay well positive."""
-    conics = edge_conics(batch, 1)
-    least = np.ones(len(batch.rows))
-    for face in batch.faces:
-        chart = face_chart(batch, face, conics, 1)
-        least = np.minimum(least, chart.net[..., 3].min(axis=(1, 2), initial=1.0))
-    is_bent = (conic_sweeps(batch) > _ONE_SPAN_SWEEP) | (least < _ONE_SPAN_WEIGHT)
-    return np.where(is_bent, 2, 1)
+class _Shapes(NamedTuple):
+    """Parts of one topology, their curved edges and their faces."""
+
+    batch: BrepBatch
+    conics: list[Conic | None]
+    charts: list[FaceChart]
 
 
-def _streams(batch: BrepBatch, places: FloatArray, spans: int) -> dict[int, bytes]:
+def _shapes(batch: BrepBatch, spans: int) -> _Shapes:
+    """Parts whose curves and patches have so many Bézier spans."""
     conics = edge_conics(batch, spans)
-    charts = [face_chart(batch, face, conics, spans) for face in batch.faces]
+    return _Shapes(
+        batch, conics, [face_chart(batch, face, conics, spans) for face in batch.faces]
+    )
+
+
+def _is_bent(shapes: _Shapes) -> BoolArray:
+    """Which parts (m,) need two spans, so that weights stay well positive."""
+    least = np.ones(len(shapes.batch.rows))
+    for chart in shapes.charts:
+        least = np.minimum(least, chart.net[..., 3].min(axis=(1, 2), initial=1.0))
+    return (conic_sweeps(shapes.batch) > _ONE_SPAN_SWEEP) | (least < _ONE_SPAN_WEIGHT)
+
+
+def _streams(shapes: _Shapes, places: FloatArray) -> dict[int, bytes]:
+    batch, conics, charts = shapes
     topology = _topology(batch)
     numbers: dict[str, NDArray[Any]] = {
         "vertices": batch.corners + places[:, None],

@@ -60,6 +60,8 @@ _TYPES: Final = {
 
 _BLOCK_MEMBER: Final = 3
 
+_COUNT: Final = struct.Struct("<i")
+
 
 class ObjectAttributes(NamedTuple):
     """What a file says of an object besides its geometry.
@@ -154,56 +156,70 @@ def write_archive(
         file.write(struct.pack("<q", len(data) + added))
 
 
-def refused_objects(
+def is_sound(
     library: Any,  # noqa: ANN401
     path: Path,
-    objects: Sequence[FileObject],
-) -> list[int]:
-    """Objects of a file that openNURBS does not read back, or finds invalid.
+    ids: Sequence[UUID],
+) -> bool:
+    """Whether openNURBS reads from a file what was written, and finds all of it valid.
 
     Parameters
     ----------
     library : module
         rhino3dm.
     path : Path
-        A file of these objects alone.
+        The file.
+    ids : sequence of UUID
+        Of the objects that it is to hold, in their order.
+
+    Returns
+    -------
+    bool
+        Whether all of them are there, in their order.
+    """
+    model = library.File3dm.Read(str(path))
+    if model is None or len(model.Objects) != len(ids):
+        return False
+    pairs = zip(model.Objects, ids, strict=True)
+    return all(item.Attributes.Id == each and item.Geometry.IsValid for item, each in pairs)
+
+
+def refused_objects(
+    library: Any,  # noqa: ANN401
+    path: Path,
+    objects: Sequence[FileObject],
+) -> list[FileObject]:
+    """Objects that openNURBS does not read, or finds invalid, one by one.
+
+    Parameters
+    ----------
+    library : module
+        rhino3dm.
+    path : Path
+        The file of them that is not sound.
     objects : sequence of FileObject
         As they were written.
 
     Returns
     -------
-    list of int
-        Their places; empty if the file is sound.
+    list of FileObject
+        At least one.
 
     Raises
     ------
     InputError
         If the file is not sound although each object is.
     """
-    model = library.File3dm.Read(str(path))
-    if model is not None and _is_sound(model.Objects, objects):
-        return []
     fields: dict[str, Any] = library.Point(library.Point3d(0, 0, 0)).Encode()
-    refused: list[int] = []
-    for i, each in enumerate(objects):
+    refused: list[FileObject] = []
+    for each in objects:
         fields["data"] = base64.b64encode(each.stream).decode("ascii")
         found = library.CommonObject.Decode(fields)
         if found is None or not found.IsValid:
-            refused.append(i)
+            refused.append(each)
     if not refused:
         raise InputError(f"cannot write {path}: openNURBS reads another model from it")
     return refused
-
-
-def _is_sound(found: Any, objects: Sequence[FileObject]) -> bool:  # noqa: ANN401
-    """Whether a file holds these objects, by their ids, and all of them are valid."""
-    if len(found) != len(objects):
-        return False
-    pairs = zip(found, objects, strict=True)
-    return all(
-        item.Attributes.Id == each.attributes.id and item.Geometry.IsValid
-        for item, each in pairs
-    )
 
 
 def _dated(data: bytes, date: datetime) -> bytes:
@@ -310,11 +326,16 @@ def _attributes(each: ObjectAttributes) -> bytes:
 
 
 def _user_text(text: Mapping[str, str], header: bytes) -> bytes:
-    pairs = b"".join(
-        _chunk(ANONYMOUS, _key(key) + _text(value)) for key, value in text.items() if value
-    )
-    count = sum(1 for value in text.values() if value)
-    listed = _chunk(ANONYMOUS, ints(1, 0, count), pairs)
+    pairs = [_pair(key, value) for key, value in text.items() if value]
+    listed = _chunk(ANONYMOUS, ints(1, 0, len(pairs)), b"".join(pairs))
     whole = _chunk(ANONYMOUS, b"", listed)
     data = _chunk(_CLASS_USER_DATA, header + whole)
     return _chunk(_USER_DATA, b"", data + _CLASS_END)
+
+
+def _pair(key: str, value: str) -> bytes:
+    """An entry of user text: a file has hundreds of thousands."""
+    coded = value.encode("utf-16-le")
+    body = b"%b%b%b\0\0" % (_key(key), _COUNT.pack(len(coded) // 2 + 1), coded)
+    head = CHUNK_HEADER.pack(ANONYMOUS, len(body) + CRC.size)
+    return b"%b%b%b" % (head, body, CRC.pack(zlib.crc32(body)))

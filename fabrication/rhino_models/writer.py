@@ -24,7 +24,7 @@ from ..audit.subjects import warning_texts
 from ..files import check_suffix, replacing
 from ..model import Model, Written, check_model
 from ..rhino.mesh_writer import to_rhino_mesh
-from .archive import FileObject, refused_objects, write_archive
+from .archive import FileObject, is_sound, refused_objects, write_archive
 from .beam_writer import add_beams
 from .model import (
     RhinoModel,
@@ -151,13 +151,21 @@ def write_3dm(
             rejected += found
             data = encode_model(document, options.version)
             write_archive(document.library, data, document.objects, temporary)
-            refused = refused_objects(document.library, temporary, document.objects)
-            if not refused:
+            ids = [each.attributes.id for each in document.objects]
+            counts = Counter(each.kind for each in document.objects)
+            # The streams are as large as the file: what reads it back needs the room.
+            document.objects.clear()
+            if is_sound(document.library, temporary, ids):
                 break
-            model, missing = _without(model, [document.objects[i] for i in refused])
+            model, missing = _without(model, _refused(model, options, temporary))
             rejected += missing
-    counts = Counter(each.kind for each in document.objects)
     return Written(target, rejected, tuple(notes), dict(counts))
+
+
+def _refused(model: Model, options: RhinoOptions, path: Path) -> list[FileObject]:
+    """The objects of a model that openNURBS refuses, which were written to a file."""
+    document, _, _ = _document(model, options)
+    return refused_objects(document.library, path, document.objects)
 
 
 def _document(

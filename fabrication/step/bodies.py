@@ -18,7 +18,7 @@ from ..breps.records import BrepBatch, Ring
 from .digits import rounded_numbers
 from .parameter_curves import ParameterCurves, arcs_on_faces, spline_degree
 from .sharing import Plan, shared_geometry
-from .values import real, references
+from .values import capital_exponents, references
 
 _SENSES: Final = {True: ".T.", False: ".F."}
 
@@ -64,7 +64,10 @@ class Body:
 
         The first of them, with the number given, is the solid, surface or set of lines.
         """
-        filled = self.layout.template % tuple(map(real, self.numbers.tolist()))
+        filled = self.layout.template % tuple(self.numbers.tolist())
+        # Entities are capitals: what is not belongs to a number.
+        if "e" in filled:
+            filled = capital_exponents(filled)
         return filled % tuple((self.layout.references + first).tolist())
 
 

@@ -14,10 +14,21 @@ def real(number: float) -> str:
     ('0.1', '-2.0', '1.E-07', '2.5E+16')
     """
     text = repr(number)
-    if "e" not in text:
-        return text
-    mantissa, exponent = text.split("e")
-    return f"{mantissa}{'' if '.' in mantissa else '.'}E{exponent}"
+    return capital_exponents(text) if "e" in text else text
+
+
+def capital_exponents(text: str) -> str:
+    """A text of capitals and of numbers as Python writes them, with exponents as STEP has them.
+
+    Examples
+    --------
+    >>> capital_exponents("(1e-07,-2.5e+16,3.25)")
+    '(1.E-07,-2.5E+16,3.25)'
+    """
+    return _EXPONENT.sub(lambda found: f"{found[1]}{found[2] or '.'}E", text)
+
+
+_EXPONENT: Final = re.compile(r"(\d)(\.\d+)?e")
 
 
 def references(ids: Iterable[int]) -> str:

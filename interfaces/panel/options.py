@@ -30,6 +30,12 @@ class PanelOptions:
     pattern : {"quads", "hexagons", "triangles", "as-is"}
         Whether the mesh is a surface to be covered by panels of that length, or its faces are
         the panels.
+    direction : (float, float, float) or None
+        Lines of quads run along it; along those of curvature if None.
+    density : float
+        From 0 to 1: how much edges of quads are shorter where the surface bends more.
+    insist : bool
+        Whether quads are made free of torsion even on all but a sphere, or along a direction.
     rows : (int, int) or None
         Rows of faces along u and v of each surface; neither: as `read_mesh` has it.
     units : str or None
@@ -89,6 +95,9 @@ class PanelOptions:
     repair: bool = False
     edge_length: float | None = None
     pattern: PatternKind = "as-is"
+    direction: tuple[float, float, float] | None = None
+    density: float = 0.0
+    insist: bool = False
     rows: tuple[int, int] | None = None
     units: str | None = None
     moulds: int | None = None

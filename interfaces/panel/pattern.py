@@ -68,9 +68,21 @@ def add_pattern(graph: Graph, options: PanelOptions) -> PatternSteps:
     length = graph.param("edge_length", options.edge_length, min=0)
     source, shown = _source(graph, options)
     graph.add("sphere_gain", "gain", mesh=source, edge_length=length)
-    pattern = graph.add(_NODES[options.pattern], "pattern", mesh=source, edge_length=length)
+    pattern = graph.add(
+        _NODES[options.pattern], "pattern", mesh=source, edge_length=length, **_wishes(options)
+    )
     mesh = graph.add("underlying_mesh", "net", sphere_mesh=pattern.sphere_mesh)
     return PatternSteps(shown, pattern.sphere_mesh, mesh)
+
+
+def _wishes(options: PanelOptions) -> dict[str, Any]:
+    """What the lines of quads follow; nothing for other patterns."""
+    asked = {
+        "direction": options.direction and list(options.direction),
+        "density": options.density,
+        "insist": options.insist,
+    }
+    return {name: value for name, value in asked.items() if value}
 
 
 def _source(graph: Graph, options: PanelOptions) -> tuple[Step | Wire, Step | Wire]:

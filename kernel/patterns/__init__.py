@@ -7,6 +7,7 @@ is known before anything is remeshed. Nets are badly conditioned along the lines
 a short list of K is tried, and each net judged as a workshop would.
 
 curved_refinement   Coarse meshes as the smooth surfaces that they stand for.
+density             Edges that are shorter where a surface bends more.
 deviations          How far a net is from its surface, and the surface from the net.
 dual_patterns       Even triangles on a surface, and the convex hexagons dual to them.
 expected_angles     Angles between neighbours that the curvatures of a surface foretell.

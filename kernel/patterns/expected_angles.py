@@ -5,16 +5,19 @@ are means over the edges around a place, in radians; they are exact to the first
 """
 
 from collections.abc import Callable
-from typing import Literal
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, norm
 
 DIRECTIONS = 24
 """Directions, over half a turn, that angles of hexagons and triangles are averaged over."""
 
-SphereRule = Literal["planes", "spheres", "one-radius"]
+LATTICE_TURNS = 12
+"""Turns, over a sixth of a full one, that even triangles are averaged over."""
+
+MOST_FLIPS = 12
+"""Flips of an edge; each halves about what a metric is stretched by."""
 
 
 def quad_angles(
@@ -31,16 +34,57 @@ def quad_angles(
 
 
 def hexagon_angles(
-    first: FloatArray, second: FloatArray, edge: float, curvature: FloatArray | float
+    first: FloatArray,
+    second: FloatArray,
+    edge: float,
+    curvature: FloatArray | float,
+    grown: FloatArray | None = None,
 ) -> FloatArray:
     """Hexagons of touching spheres; their centres are √3 edges apart.
+
+    The spheres that the hexagons are cut by may be `grown` (V,); those of the curvature, as
+    planes, then have the same faces.
 
     Notes
     -----
     Spheres of the same curvature K that touch at a distance d have an angle of
-    ``|(K - S) d|``, S the shape operator: the twist of the surface counts as well.
+    ``|(K - S) d|``, S the shape operator: the twist of the surface counts as well. Faces are
+    convex where triangles are Delaunay in the metric ``|K - S|``. Where it is far from round,
+    edges are flipped, and hexagons are long where neighbours are alike.
     """
-    return mixed_angles(first, second, np.sqrt(3) * edge, curvature)
+    if grown is None:
+        return mixed_angles(first, second, np.sqrt(3) * edge, curvature)
+    factors = np.stack([curvature - first, curvature - second], -1)[:, None]
+    total = np.zeros(len(first))
+    for turn in np.pi / 3 * (np.arange(LATTICE_TURNS) + 0.5) / LATTICE_TURNS:
+        steps = _reduced_edges(grown - first, grown - second, turn)
+        total += norm(steps * factors).mean(axis=1)
+    return np.sqrt(3) * edge * total / LATTICE_TURNS
+
+
+def _reduced_edges(one: FloatArray, other: FloatArray, turn: float) -> FloatArray:
+    """Edges (V, 3, 2) of even triangles, turned, once they are Delaunay in a metric.
+
+    The metric has the given sizes along the two axes; where their signs differ it is none, and
+    edges stay as they are.
+
+    Notes
+    -----
+    Selling's reduction: while two of three vectors, whose sum is 0, meet at less than a right
+    angle, the edge between them is flipped.
+    """
+    angles = turn + 2 * np.pi / 3 * np.arange(3)
+    edges = np.tile(np.stack([np.cos(angles), np.sin(angles)], -1), (len(one), 1, 1))
+    metric = (np.abs(np.stack([one, other], -1)) * (one * other > 0)[:, None])[:, None]
+    for _ in range(MOST_FLIPS):
+        products = (edges * metric * np.roll(edges, -1, axis=1)).sum(axis=-1)
+        worst = products.argmax(axis=1)
+        rows = np.flatnonzero(products.max(axis=1) > 0)
+        if len(rows) == 0:
+            break
+        left, right = edges[rows, worst[rows]], edges[rows, (worst[rows] + 1) % 3]
+        edges[rows] = np.stack([-left, right, left - right], axis=1)
+    return edges
 
 
 def mixed_angles(

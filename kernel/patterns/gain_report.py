@@ -96,7 +96,7 @@ def gain_map(
     if which == "hexagons":
         if convex is None:
             convex = convex_side(first, second, _side(found))
-        return hexagon_angles(first, second, edge, convex)
+        return hexagon_angles(first, second, edge, convex, convex)
     if which == "triangles":
         return triangle_angles(first, second, edge, smoothest(first, second))
     choices = {"spheres": smoothest(first, second), "one-radius": found.best, "planes": 0.0}
@@ -110,8 +110,12 @@ def gain_maps(
     convex: FloatArray | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Expected angles (V,) with planes and with spheres, in radians."""
-    flat = {"hexagons": hexagon_angles, "triangles": triangle_angles}[which]
-    return flat(found.first, found.second, edge, 0.0), gain_map(found, edge, which, convex)
+    first, second = found.first, found.second
+    if which == "triangles":
+        return triangle_angles(first, second, edge, 0.0), gain_map(found, edge, which)
+    grown = convex_side(first, second, _side(found)) if convex is None else convex
+    flat = hexagon_angles(first, second, edge, 0.0, grown)
+    return flat, gain_map(found, edge, which, grown)
 
 
 def _side(found: SurfaceCurvatures) -> int:

@@ -28,6 +28,10 @@ USUAL_BOUND = np.radians(15)
 """Largest angle of the node axes of hexagons, unless another is asked for."""
 
 
+GROWN = 1 / 3
+"""Share of their bound that axes use while spheres grow; polishing and flips use the rest."""
+
+
 class PanelScale(NamedTuple):
     """What a surface is to panels of a size.
 
@@ -109,7 +113,7 @@ def curvatures_on(source: Mesh | Surface, triangles: Mesh) -> SurfaceCurvatures:
 def _convex_spheres(triangles: Mesh, mesh: Mesh, bound: float) -> FloatArray:
     """Signed curvatures at the vertices of a mesh, from triangles as large as hexagons'."""
     surface, _ = tangent_surface(triangles)
-    offsets = grow_offsets(surface, CLOSEST * surface.radii, bound)
+    offsets = grow_offsets(surface, CLOSEST * surface.radii, GROWN * bound)
     values = surface.side / (offsets * mean_edge_length(triangles))
     return spread_to(mesh.vertices, triangles.vertices, values)
 

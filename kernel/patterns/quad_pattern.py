@@ -9,13 +9,19 @@ from ..arrays import FloatArray
 from ..congruences.curvature_spheres import sphere_congruence
 from ..errors import ConvergenceError, InputError
 from ..meshes.mesh import Mesh
+from ..optimization.angle_minimization import minimize_angles
 from ..remesh import pipeline
+from ..remesh.field.guides import NetWishes
+from ..remesh.pipeline import NO_WISHES
+from ..sphere_meshes.fit import fit_spheres
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..surfaces.surface import Surface
+from ..tolerances import CREASE, OPENING
+from .density import even_spacing
 from .expected_angles import quad_angles
 from .gain_report import SHARP_TURN, check_edge, is_round, turn_p95
 from .held_nets import FARTHEST_NODE, HeldNet, held_nets
-from .net_flaws import Flaw, PatternJudgement, judge_net
+from .net_flaws import Flaw, PatternJudgement, judge_faces, judge_net
 from .panel_scale import FINENESS, curvatures_on, even_triangles
 from .rim_repair import without_loose_corners
 from .surface_curvatures import SurfaceCurvatures
@@ -38,12 +44,22 @@ RIBBED = 1
 EFFORT = 130_000
 """Linear systems times faces after which nothing more is tried, about 15 s of one core."""
 
+MOST_TURNED = 0.05
+"""Share of the area with directions turned from the lines of curvature that nodes bear."""
+
 ROUND = (
     "the two principal curvatures are nearly the same over most of the surface, as on a "
     "sphere: spheres all but fit it, and planarising would turn their circles over; build "
     "this net with upright beams (--support bisector), or take hexagons"
 )
-"""Why a net is not planarised."""
+"""Why a net on all but a sphere is not planarised."""
+
+TURNED_AWAY = (
+    "lines that follow what you asked for leave the lines of curvature on {:.0%} of the area, "
+    "where nodes cannot be free of torsion; build this net with upright beams (--support "
+    "bisector)"
+)
+"""Why a net that follows guides is not planarised."""
 
 TryStatus = Literal["usable", "flawed", "not planarised", "failed"]
 
@@ -75,6 +91,8 @@ class NetTry:
         Largest distance of a node inside from the surface, in mean edges.
     message : str
         Why there is no net, or none that is planar.
+    turned_share : float
+        Share of the area whose directions guides turn away from the lines of curvature.
     effort : int
         Linear systems times faces that it took.
     """
@@ -86,6 +104,7 @@ class NetTry:
     judgement: PatternJudgement | None
     distance: float
     message: str
+    turned_share: float = 0.0
     effort: int = 0
 
 
@@ -138,7 +157,14 @@ def expected_planes(found: SurfaceCurvatures, edge: float) -> float:
     return found.mean(quad_angles(found.first, found.second, edge, 0.0))
 
 
-def quad_pattern(source: Mesh | Surface, edge: float, *, insists: bool = False) -> QuadPattern:
+def quad_pattern(
+    source: Mesh | Surface,
+    edge: float,
+    wishes: NetWishes = NO_WISHES,
+    *,
+    density: float = 0.0,
+    insists: bool = False,
+) -> QuadPattern:
     """Cover a surface with quads whose spheres have a support structure.
 
     Parameters
@@ -147,8 +173,13 @@ def quad_pattern(source: Mesh | Surface, edge: float, *, insists: bool = False) 
         A dense mesh of any faces, or a surface with its exact shape.
     edge : float
         Length of the edges, in model units.
+    wishes : NetWishes
+        What lines follow besides the curvature; its spacing is that of the density.
+    density : float
+        From 0 to 1: how much edges are shorter where the surface bends more.
     insists : bool
-        Whether nets are planarised even where a surface is all but a sphere.
+        Whether nets are planarised even where a surface is all but a sphere, or lines leave
+        those of curvature.
 
     Returns
     -------
@@ -168,21 +199,23 @@ def quad_pattern(source: Mesh | Surface, edge: float, *, insists: bool = False) 
     mesh = source.mesh if isinstance(source, Surface) else source
     triangles = even_triangles(mesh, edge / FINENESS)
     found = curvatures_on(source, triangles)
+    wishes = replace(wishes, spacing=even_spacing(source, triangles, density))
     rounded = is_round(found, edge) and not insists
+    job = _Job(triangles, wishes, is_planar=not rounded, insists=insists)
     diagonal = float(np.linalg.norm(np.ptp(triangles.vertices, axis=0)))
     turn = turn_p95(found, edge)
     # On ribs sharper than the panels all nets fail alike.
     choices = curvature_choices(found, edge, diagonal)[: RIBBED if turn > SHARP_TURN else None]
     tries: list[NetTry] = []
     for choice in choices:
-        tries.append(_try(triangles, choice, edge, planar=not rounded))
+        tries.append(_try(job, choice, edge))
         if _is_enough(tries):
             break
     for stretch in () if turn > SHARP_TURN else STRETCHES:
         if _is_enough(tries):
             break
         likely = min(tries, key=_badness).choice
-        tries.append(_try(triangles, likely, stretch * edge, planar=True))
+        tries.append(_try(job, likely, stretch * edge))
     best = min(tries, key=_badness)
     if best.net is None:
         raise InputError(
@@ -197,16 +230,26 @@ def _is_enough(tries: list[NetTry]) -> bool:
     return is_found or sum(each.effort for each in tries) > EFFORT
 
 
-def _try(triangles: Mesh, choice: CurvatureChoice, edge: float, *, planar: bool) -> NetTry:
+class _Job(NamedTuple):
+    """What all nets share: triangles, wishes, and whether nodes are made planar."""
+
+    triangles: Mesh
+    wishes: NetWishes
+    is_planar: bool
+    insists: bool
+
+
+def _try(job: _Job, choice: CurvatureChoice, edge: float) -> NetTry:
     """One net: remeshed, planarised and judged."""
     effort = 0
     nets: list[NetTry] = []
     try:
-        done = pipeline.remesh(triangles, _touching(triangles, choice.curvature), edge)
-        start = done.sphere_mesh
-        if not planar:
-            judgement = judge_net(start)
-            return NetTry(choice, edge, "not planarised", start, judgement, 0.0, ROUND)
+        spheres = _touching(job.triangles, choice.curvature)
+        done = pipeline.remesh(job.triangles, spheres, edge, wishes=job.wishes)
+        start, turned = done.sphere_mesh, done.turned_share
+        if not job.is_planar or (turned > MOST_TURNED and not job.insists):
+            message = TURNED_AWAY.format(turned) if job.is_planar else ROUND
+            return _upright(choice, edge, start.mesh, message, turned)
         for held in held_nets(start, done.surface):
             effort += held.iterations * start.mesh.n_faces
             nets.append(_judged(choice, edge, held, done.n_flipped))
@@ -215,6 +258,15 @@ def _try(triangles: Mesh, choice: CurvatureChoice, edge: float, *, planar: bool)
     except (InputError, ConvergenceError) as error:
         nets.append(NetTry(choice, edge, "failed", None, None, np.inf, str(error)))
     return replace(min(nets, key=_badness), effort=effort)
+
+
+def _upright(
+    choice: CurvatureChoice, edge: float, mesh: Mesh, message: str, turned: float
+) -> NetTry:
+    """A net for upright beams: its nodes stay on the surface, its spheres meet smoothly."""
+    net, _ = minimize_angles(fit_spheres(mesh), crease=CREASE, max_opening=OPENING)
+    judgement = judge_faces(net, "bisector", convex=False)
+    return NetTry(choice, edge, "not planarised", net, judgement, 0.0, message, turned)
 
 
 def _judged(choice: CurvatureChoice, edge: float, held: HeldNet, n_flipped: int) -> NetTry:

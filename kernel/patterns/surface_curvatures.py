@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, norm
+from ..arrays import FloatArray, norm, sum_by
 from ..errors import InputError
 from ..meshes.curvature import principal_curvatures
 from ..meshes.mesh import Mesh, face_vector_areas
@@ -73,7 +73,7 @@ def surface_curvatures(source: Mesh | Surface) -> SurfaceCurvatures:
     else:
         mesh = source
         first, second, is_known = principal_curvatures(mesh)
-    areas = _vertex_areas(mesh, is_known)
+    areas = np.where(is_known, vertex_areas(mesh), 0.0)
     total = areas.sum()
     if not total > 0:
         raise InputError(
@@ -83,8 +83,7 @@ def surface_curvatures(source: Mesh | Surface) -> SurfaceCurvatures:
     return SurfaceCurvatures(first, second, areas / total)
 
 
-def _vertex_areas(mesh: Mesh, is_known: BoolArray) -> FloatArray:
+def vertex_areas(mesh: Mesh) -> FloatArray:
     """Area (V,) around each vertex, an equal part of each of its faces."""
     shares = norm(face_vector_areas(mesh)) / mesh.degrees
-    areas = np.bincount(mesh.corners, np.repeat(shares, mesh.degrees), mesh.n_vertices)
-    return np.where(is_known, areas, 0.0)
+    return sum_by(mesh.corners, np.repeat(shares, mesh.degrees), mesh.n_vertices)

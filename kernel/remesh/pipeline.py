@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import ComplexArray, FloatArray, IntArray
 from ..errors import InputError, name_ids
 from ..meshes.mesh import Mesh, face_centroids, shortest_edge
 from ..meshes.vertex_fans import vertex_fans
@@ -13,13 +13,20 @@ from ..solvers.weighted_graphs import piece_labels
 from ..sphere_meshes.sphere_mesh import SphereMesh
 from ..spheres.minkowski import minkowski
 from ..spheres.rows import recenter, rescale
+from ..tolerances import UMBILIC
 from .field.congruence_mesh import CongruenceMesh, congruence_mesh
 from .field.conjugate_directions import expected_axis_angles, umbilic_share
-from .field.conjugate_form import conjugate_field, form_roots
+from .field.conjugate_form import (
+    UndeterminedError,
+    anisotropy,
+    conjugate_field,
+    form_roots,
+)
 from .field.frames import comb_frames
-from .field.jets import fit_jets
+from .field.guides import NetWishes, guided_forms, turned_share
+from .field.jets import CongruenceJets, fit_jets
 from .field.smooth_surface import SmoothSurface, nearest_triangles
-from .field.smoothing import orient_forms, smooth_forms
+from .field.smoothing import orient_forms
 from .map.parametrization import parametrize
 from .map.seams import find_seams
 from .net.extraction import extract_net
@@ -30,6 +37,8 @@ LEAST_CELLS = 4
 
 FINEST = 0.2
 """An edge length below this, in mean edges of the mesh, asks for a finer mesh."""
+
+NO_WISHES = NetWishes()
 
 
 @dataclass(frozen=True)
@@ -50,6 +59,8 @@ class Remeshing:
         Share of the area on which all pairs of orthogonal directions are all but conjugate.
     moved_share : float
         Share of the area whose directions, once smooth, were moved apart to the least angle.
+    turned_share : float
+        Share of the area whose directions guides turn away from the conjugate ones.
     singular_points : (s, 3) float array
         Where the directions turn, in model coordinates.
     indices : (s,) int array
@@ -81,6 +92,7 @@ class Remeshing:
     complex_share: float
     umbilic_share: float
     moved_share: float
+    turned_share: float
     singular_points: FloatArray
     indices: IntArray
     n_folded: int
@@ -104,6 +116,7 @@ def remesh(
     least_angle: float = np.radians(20),
     degree: int | None = None,
     rings: int = 4,
+    wishes: NetWishes = NO_WISHES,
 ) -> Remeshing:
     """Remesh a sphere congruence along its conjugate directions.
 
@@ -122,6 +135,9 @@ def remesh(
         one with the least expected error.
     rings : int
         Rings of neighbours that they are fitted to.
+    wishes : NetWishes
+        What the net shall follow besides its spheres. Where that is not conjugate, nodes have
+        torsion.
 
     Returns
     -------
@@ -143,14 +159,18 @@ def remesh(
     surface = congruence_mesh(mesh, spheres)
     step = _checked_step(surface, edge_length)
     jets, heights, fitted = fit_jets(surface, degree, rings)
-    trace, deviator = orient_forms(surface, *conjugate_field(jets))
+    trace, deviator = orient_forms(surface, *_forms(jets, wishes))
     is_real = form_roots(trace, deviator)[2]
     fans = vertex_fans(
         surface.topology, surface.triangles.ravel(), np.arange(len(surface.points))
     )
-    smooth = smooth_forms(surface, trace, deviator, smoothing * step)
+    smooth = guided_forms(surface, trace, deviator, (smoothing * step, step), wishes)
     frames = comb_frames(surface, fans, *smooth, least_angle)
-    mapped = parametrize(surface, fans, frames, find_seams(surface, fans, frames), step)
+    aligns = wishes.boundary != "free"
+    mapped = parametrize(
+        surface, fans, frames, find_seams(surface, fans, frames), step, wishes.spacing,
+        aligns=aligns,
+    )  # fmt: skip
     net = extract_net(surface, fans, frames, mapped)
     if net.n_nodes == 0:
         raise _too_large(edge_length)
@@ -168,6 +188,9 @@ def remesh(
         complex_share=float(areas[~is_real].sum() / areas.sum()),
         umbilic_share=umbilic_share(surface, jets),
         moved_share=float(moved),
+        turned_share=turned_share(surface, deviator, smooth[1], anisotropy(jets) > UMBILIC)
+        if wishes.are_guides
+        else 0.0,
         singular_points=mesh.vertices[singular],
         indices=frames.indices[singular],
         n_folded=mapped.n_folded,
@@ -182,6 +205,17 @@ def remesh(
         degree=fitted,
         surface=SmoothSurface(surface, heights),
     )
+
+
+def _forms(jets: CongruenceJets, wishes: NetWishes) -> tuple[FloatArray, ComplexArray]:
+    """Forms of the conjugate directions; none where the spheres leave all to the guides."""
+    try:
+        return conjugate_field(jets)
+    except UndeterminedError:
+        if not wishes.are_guides:
+            raise
+        count = len(jets.rows)
+        return np.zeros(count), np.zeros(count, complex)
 
 
 def _irregular_count(mesh: Mesh) -> int:

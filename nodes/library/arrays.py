@@ -53,6 +53,7 @@ Marks: TypeAlias = Annotated[BoolArray, ArrayFacts("marks", ("N",))]
 Names: TypeAlias = Annotated[NDArray[np.str_], ArrayFacts("names", ("N",))]
 Vectors: TypeAlias = Annotated[FloatArray, ArrayFacts("vectors", ("N", "n"))]
 Quadruples: TypeAlias = Annotated[FloatArray, ArrayFacts("points, four each", ("N", 4, 3))]
+Segments: TypeAlias = Annotated[FloatArray, ArrayFacts("ends of segments", ("N", 2, 3))]
 SpherePoints: TypeAlias = Annotated[FloatArray, ArrayFacts("points of the 3-sphere", ("N", 4))]
 Coordinates: TypeAlias = Annotated[FloatArray, ArrayFacts("coordinates", ("N", 5))]
 

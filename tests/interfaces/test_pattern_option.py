@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 from spheremesh import Mesh
 from spheremesh.interfaces.cli import main
-from spheremesh.interfaces.panel import PanelOptions, feasible_panel_graph
+from spheremesh.interfaces.panel import PanelOptions, feasible_panel_graph, panel_graph
 from spheremesh.nodes import NodeWarning, ellipsoid_mesh, write_mesh
 
 
@@ -80,12 +80,28 @@ def test_wishes_for_more_optimise_the_net(tmp_path: Path) -> None:
     assert graph.steps["optimum"].node.name == "optimize_spheres"
 
 
+def test_wishes_for_lines_reach_the_pattern(tmp_path: Path) -> None:
+    options = PanelOptions(
+        mesh=write_hill(tmp_path / "hill.3dm"), pattern="quads", edge_length=2.0,
+        direction=(1, 1, 0), density=0.5, insist=True,
+    )  # fmt: skip
+    wishes = panel_graph(options).steps["pattern"].inputs
+    assert [wishes[name] for name in ("direction", "density", "insist")] == [
+        [1, 1, 0],
+        0.5,
+        True,
+    ]
+
+
 @pytest.mark.parametrize(
     ("arguments", "reason"),
     [
         (["--pattern", "quads"], "add --edge-length"),
         (["--pattern", "quads", "--rows", "4,4", "--edge-length", "1"], "exclude"),
         (["--pattern", "pentagons"], "pentagons"),
+        (["--direction", "1,0,0"], "--direction need lines of quads"),
+        (["--pattern", "quads", "--edge-length", "1", "--direction", "0,0,0"], "a vector is"),
+        (["--pattern", "quads", "--edge-length", "1", "--density", "2"], "range"),
     ],
 )
 def test_options_that_do_not_fit_are_refused(

@@ -9,6 +9,7 @@ smooth_surface        The smooth surface that the same polynomials give.
 conjugate_form        The quadratic form whose roots are the conjugate directions.
 conjugate_directions  The directions themselves, and what nodes to expect.
 smoothing             The signs of the forms, and their smoothing.
+guides                Curves and directions that the field shall follow besides.
 tree_signs            Signs under which neighbours are alike.
 frames                Two directions in every triangle, combed, and their singularities.
 """

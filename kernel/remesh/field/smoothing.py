@@ -1,5 +1,7 @@
 """A field of quadratic forms over a triangle mesh: its signs, and its smoothing."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ...arrays import ComplexArray, FloatArray, IntArray, dot, norm, sum_by
@@ -12,12 +14,29 @@ from .tree_signs import tree_signs
 COHERENCE = 4
 """Power with which disagreement with the neighbours lowers the confidence."""
 
+GUIDED = 10.0
+"""Confidence of forms that guides ask for; given ones have 1 at most."""
 
 ALIKE_FORMS = 0.9
 """Neighbours with a larger product of their unit forms have the same sign."""
 
 LEAST_PATCH = 0.15
 """Patches of one sign with less of the area are noise; if all are, no form is reversed."""
+
+
+class Guidance(NamedTuple):
+    """Directions wanted at the vertices of a surface.
+
+    Attributes
+    ----------
+    deviators : (V,) complex array
+        Unit forms in the coordinates of `vertex_frames`; 0 where nothing is wanted.
+    trust : (V,) float array
+        How much the given forms count, from 0 on the guides to 1 far from them.
+    """
+
+    deviators: ComplexArray
+    trust: FloatArray
 
 
 def transport(source: FloatArray, target: FloatArray) -> ComplexArray:
@@ -84,12 +103,17 @@ def _patches(
 
 
 def smooth_forms(
-    surface: CongruenceMesh, trace: FloatArray, deviator: ComplexArray, length: float
+    surface: CongruenceMesh,
+    trace: FloatArray,
+    deviator: ComplexArray,
+    length: float,
+    guidance: Guidance | None = None,
 ) -> tuple[FloatArray, ComplexArray]:
     """Smooth a field of forms where it says little, and keep it where it is sure.
 
     Trace and deviator are (V,), in the coordinates of `vertex_frames`. `length` is the distance
-    over which the field is smoothed, in mean edges; 0 gives the normalised field.
+    over which the field is smoothed, in mean edges; 0 gives the normalised field. Where there
+    is guidance, its forms take the place of the given ones.
 
     Notes
     -----
@@ -103,11 +127,16 @@ def smooth_forms(
     size = np.sqrt(trace**2 + np.abs(deviator) ** 2)
     unit_size = np.where(size > 0, size, 1.0)
     trace, deviator = trace / unit_size, deviator / unit_size
-    if length == 0:
+    if length == 0 and guidance is None:
         return trace, deviator
     middle = float(np.median(size))
     confidence = size / (size + middle) if middle > 0 else np.zeros_like(size)
     confidence = confidence * _coherence(surface, trace, deviator) ** COHERENCE
+    if guidance is not None:
+        is_guided = guidance.deviators != 0
+        confidence = np.where(is_guided, GUIDED, guidance.trust * confidence)
+        trace = np.where(is_guided, 0.0, trace)
+        deviator = np.where(is_guided, guidance.deviators, deviator)
     weights = surface.vertex_areas * np.maximum(confidence, LEAST_STIFFNESS)
     flat = _solve(length**2 * _stiffness(surface, 0).real, weights, trace)
     # In real coordinates: the factorisation of complex matrices is ten times slower.

@@ -57,10 +57,15 @@ def parametrize(
     frames: CombedFrames,
     seams: Seams,
     edge_length: float,
+    spacing: FloatArray | None = None,
+    *,
+    aligns: bool = True,
 ) -> Parametrization:
     """Map the cut mesh so that unit steps, in mean edges, follow the directions.
 
-    Singular vertices lie at whole numbers, aligned boundaries half-way between.
+    Singular vertices lie at whole numbers, aligned boundaries half-way between. The spacing
+    (V,) is the length of steps at the vertices in that of all; sides of the boundary may be
+    left as they are.
 
     Raises
     ------
@@ -76,11 +81,12 @@ def parametrize(
     ----------
     Bommes, Zimmer, Kobbelt, Mixed-integer quadrangulation, 2009, for the greedy rounding.
     """
-    gradients = _chart_gradients(surface, frames, edge_length)
-    alignments = [
-        _consistent(seams, alignment)
-        for alignment in align_boundary(surface, fans, frames, seams, edge_length)
-    ]
+    gradients = _chart_gradients(surface, frames, _steps(surface, edge_length, spacing))
+    n_integers = seams.shifts.shape[1]
+    found = align_boundary(surface, fans, frames, seams, edge_length) if aligns else ()
+    alignments = [_consistent(seams, alignment) for alignment in found] or [
+        no_alignment(n_integers), no_alignment(n_integers)
+    ]  # fmt: skip
     first, second = gradients.along_first, gradients.along_second
     coordinates = [
         eliminate(surface, seams, alignment, *slopes)
@@ -111,8 +117,17 @@ def parametrize(
     )  # fmt: skip
 
 
+def _steps(
+    surface: CongruenceMesh, edge_length: float, spacing: FloatArray | None
+) -> FloatArray:
+    """Length of a step on each face (F,), in mean edges."""
+    if spacing is None:
+        return np.full(len(surface.triangles), edge_length)
+    return edge_length * spacing[surface.triangles].mean(axis=1)
+
+
 def _chart_gradients(
-    surface: CongruenceMesh, frames: CombedFrames, edge_length: float
+    surface: CongruenceMesh, frames: CombedFrames, steps: FloatArray
 ) -> ChartGradients:
     """Derivatives along the two directions, per edge length; signs and shifts are trivial."""
     points = surface.points[surface.triangles]
@@ -123,7 +138,7 @@ def _chart_gradients(
     for angles in (frames.first, frames.second):
         circle = np.stack([np.cos(angles), np.sin(angles)], 1)
         directions = np.einsum("fi,fij->fj", circle, surface.face_frames[:, :2])
-        along.append(edge_length * np.einsum("fcj,fj->fc", slopes, directions))
+        along.append(steps[:, None] * np.einsum("fcj,fj->fc", slopes, directions))
     count = 3 * len(surface.triangles)
     return ChartGradients(
         surface.triangles, along[0], along[1], surface.face_areas, np.ones(count),

@@ -1,15 +1,18 @@
 """Quads along the lines of curvature, with a support structure."""
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
 from ....kernel.meshes.mesh import Mesh
 from ....kernel.patterns import quad_pattern as quads
 from ....kernel.patterns.net_flaws import PatternJudgement
+from ....kernel.remesh.field.guides import BoundaryLines, NetWishes
 from ....kernel.sphere_meshes.sphere_mesh import SphereMesh
 from ....kernel.surfaces.surface import Surface
 from ...graphs.node import node
+from ...graphs.ports import Port
+from ..arrays import Segments, Vector
 from .reports import (
     EdgeLength,
     Expected,
@@ -28,9 +31,16 @@ class QuadPattern(NamedTuple):
     report: PatternReport
 
 
-@node(version="2")
+@node(version="3")
 def quad_pattern(
-    mesh: Mesh | Surface, edge_length: EdgeLength, *, insist: bool = False
+    mesh: Mesh | Surface,
+    edge_length: EdgeLength,
+    direction: Vector | None = None,
+    guides: Segments | None = None,
+    boundary: BoundaryLines = "near",
+    density: Annotated[float, Port(min=0, max=1)] = 0.0,
+    *,
+    insist: bool = False,
 ) -> QuadPattern:
     """Cover a surface with quads whose spheres have a support structure.
 
@@ -44,9 +54,21 @@ def quad_pattern(
         A dense mesh of any faces, or a surface as `read_surface` gives it.
     edge_length : float
         Length of the edges, in model units.
+    direction : (3,) float array, optional
+        Lines run along it instead of the lines of curvature, wherever it lies in the surface.
+    guides : (n, 2, 3) float array, optional
+        Segments of curves on the surface that lines run along; two edges away the lines of
+        curvature come back.
+    boundary : {"near", "follow", "free"}
+        Sides of the boundary become lines where they lie within 20 degrees of one; or they are
+        guides; or lines end at them as they come.
+    density : float
+        From 0, edges of one length, to 1: edges as the radius of curvature, at most 1.6 times
+        longer or shorter. Panels are about as many.
     insist : bool
-        Whether nodes are made free of torsion even where the surface is all but a sphere;
-        without, the net of such a surface is left for upright beams.
+        Whether nodes are made free of torsion even where the surface is all but a sphere, or
+        lines leave the lines of curvature on more than 5 % of its area; without, such a net is
+        left for upright beams.
 
     Returns
     -------
@@ -64,7 +86,8 @@ def quad_pattern(
     >>> report["status"], report["flaws"]["faces"]
     ('usable', 0)
     """
-    found = quads.quad_pattern(mesh, edge_length, insists=insist)
+    wishes = NetWishes(direction, guides, boundary)
+    found = quads.quad_pattern(mesh, edge_length, wishes, density=density, insists=insist)
     best = found.best
     if best.net is None or best.judgement is None:  # never: the kernel refuses such surfaces
         raise AssertionError(best.message)
@@ -116,6 +139,7 @@ def _plain_try(tried: quads.NetTry) -> dict[str, Any]:
         "shortest_edge": judgement.shortest,
         "node_axis_p95_deg": float(np.degrees(judgement.lean_p95)),
         "node_distance": tried.distance,
+        "turned_share": tried.turned_share,
         "flaws": len(judgement.flaws),
     }
 

@@ -183,7 +183,8 @@ def support() -> Beams:
 def labels(path: Path) -> set[str]:
     """Names of solids in gmsh."""
     gmsh = pytest.importorskip("gmsh", reason="gmsh")
-    gmsh.initialize()
+    # It would leave Ctrl+C without a handler for all tests that follow.
+    gmsh.initialize(interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.model.occ.importShapes(str(path))

@@ -94,7 +94,19 @@ def test_a_sphere_has_angles_of_its_patterns() -> None:
         assert angles(k, k, 0.2, -0.5) == pytest.approx(0.0, abs=1e-15)
 
 
-@settings(max_examples=15)
+def test_hexagons_grow_long_where_neighbours_are_alike() -> None:
+    first, second = np.array([1.0, 1.0]), np.array([0.0, 0.0])
+    near, far = np.array([1.02, 1.02]), np.array([9.0, 9.0])
+    even = hexagon_angles(first, second, 0.1, near)
+    # Nearly alike along the first direction: edges are flipped, and angles are smaller.
+    assert (hexagon_angles(first, second, 0.1, near, near) < 0.8 * even).all()
+    # A metric that is all but round flips nothing.
+    assert hexagon_angles(first, second, 0.1, far, far) == pytest.approx(
+        hexagon_angles(first, second, 0.1, far), rel=1e-3
+    )
+
+
+@settings(max_examples=10)
 @given(st.floats(-3, 3), st.integers(0, 99))
 def test_law_nothing_depends_on_units_place_and_numbers(exponent: float, seed: int) -> None:
     surface, scale = exact_ellipsoid(8), 10.0**exponent
