@@ -29,6 +29,7 @@ from .scenes import (
     Colors,
     Scene,
     beams_scene,
+    counted,
     edge_scene,
     lines_scene,
     mesh_polygons,
@@ -140,7 +141,7 @@ def _mesh(value: Mesh, _: Carriers) -> Scene:
 
 
 def _spheres(value: SphereMesh, _: Carriers) -> Scene:
-    return mesh_scene(value, f"{value.mesh.n_faces:,} spheres", [_radii(value)])
+    return mesh_scene(value, counted(value.mesh.n_faces, "sphere"), [_radii(value)])
 
 
 def _radii(value: SphereMesh) -> Colors:
@@ -153,7 +154,7 @@ def _surface(value: Surface, _: Carriers) -> Scene:
 
 
 def _beams(value: Beams, carriers: Carriers) -> Scene:
-    return beams_scene(value, _panels_of(carriers), f"{value.n_beams:,} beams")
+    return beams_scene(value, _panels_of(carriers), counted(value.n_beams, "beam"))
 
 
 def _annuli(value: Annuli, carriers: Carriers) -> Scene:
@@ -166,7 +167,7 @@ def _annuli(value: Annuli, carriers: Carriers) -> Scene:
 def _arcs(value: Arcs, carriers: Carriers) -> Scene:
     points = arc_points(value, np.linspace(-1, 1, 9))
     starts, ends = points[:, :-1].reshape(-1, 3), points[:, 1:].reshape(-1, 3)
-    return _lines(starts, ends, carriers, f"{len(points):,} arcs")
+    return _lines(starts, ends, carriers, counted(len(points), "arc"))
 
 
 def _lines(starts: FloatArray, ends: FloatArray, carriers: Carriers, words: str) -> Scene:

@@ -5,7 +5,7 @@ drawn face by face; values of faces, edges and vertices as pieces of faces, each
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -107,7 +107,6 @@ class Scene:
     words: str = ""
     edges: bool = True
     is_ghost: bool = False
-    facts: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
 
 def packed_scene(scene: Scene) -> bytes:
@@ -170,7 +169,6 @@ def _head(
         "colors": colors,
         "edges": scene.edges,
         "ghost": scene.is_ghost,
-        "facts": scene.facts,
     }
 
 
@@ -247,6 +245,11 @@ def _node_points(nodes: NodeCylinders) -> FloatArray:
     return np.concatenate([nodes.origins, ends])
 
 
+def counted(count: int, what: str) -> str:
+    """A number of things: "1 panel", "1,440 panels"."""
+    return f"{count:,} {what}{'' if count == 1 else 's'}"
+
+
 def panels_scene(panels: Panels) -> Scene:
     """Panels, coloured by mould and by size."""
     colors: list[Colors] = []
@@ -257,8 +260,9 @@ def panels_scene(panels: Panels) -> Scene:
         Colors("Radius", np.asarray(panel_radii(panels).radii, float)),
         Colors("Area", panel_areas(panels)),
     ]
-    words = f"{panels.n_panels:,} panels" + (f" · {len(moulds)} moulds" if len(moulds) else "")
-    return Scene(panels, colors=colors, ids=panels.ids, words=words)
+    words = [counted(panels.n_panels, "panel"), counted(len(moulds), "mould")]
+    said = " · ".join(words if len(moulds) else words[:1])
+    return Scene(panels, colors=colors, ids=panels.ids, words=said)
 
 
 def beams_scene(beams: Beams, panels: Panels | None, words: str) -> Scene:

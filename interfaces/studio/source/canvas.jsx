@@ -7,11 +7,11 @@ import { given, layout, placesOf, sizeOf, whyNot, wiresOf } from "./graph.js";
 import { keyPressed } from "./keys.js";
 import { Empty } from "./start.jsx";
 import { bestOutput, edit, now, set, show, useStudio } from "./store.js";
-import { GroupNode, SliderNode, StepNode } from "./step.jsx";
+import { GroupNode, SliderNode, Sliders, StepNode } from "./step.jsx";
 
 const NODE_TYPES = { step: StepNode, slider: SliderNode, group: GroupNode };
-/** Below these zooms nobody reads fields, or names. */
-const FAR = 0.3, FARTHER = 0.12;
+/** Below these zooms sliders are too small for a hand, nobody reads fields, nobody reads names. */
+const SMALL = 0.75, FAR = 0.3, FARTHER = 0.12;
 const PADDING = { top: 44, side: 18, bottom: 18 };
 
 /** Nodes as the graph has them; what the canvas knows of them, such as their sizes, is kept. */
@@ -61,6 +61,7 @@ function Flow() {
   const doc = useStudio((s) => s.doc), fit = useStudio((s) => s.fit), refusal = useStudio((s) => s.refusal), expanded = useStudio((s) => s.expanded);
   const [nodes, setNodes] = useState([]);
   const [picked, setPicked] = useState(new Set());
+  const [isSmall, setSmall] = useState(false);
   const flow = useReactFlow(), held = useRef(null), moving = useRef(null), fitted = useRef(-1), box = useRef(null);
   useEffect(() => { setNodes((before) => nodesOf(now(), before)); }, [doc, expanded]);
   const edges = useMemo(() => edgesOf(now()).map((edge) => (picked.has(edge.id) ? { ...edge, selected: true } : edge)), [doc, picked]);
@@ -157,7 +158,7 @@ function Flow() {
     };
     const context = { flow, middle, picked: () => picked, selectAll: () => setNodes((before) => before.map((each) => ({ ...each, selected: true }))),
       select: (ids) => { set({ selected: ids }); setNodes((before) => before.map((each) => ({ ...each, selected: ids.includes(each.id) }))); },
-      tidy: () => tidy(flow) };
+      tidy: () => tidy(flow), reveal: (node) => reveal(node, box.current, flow) };
     canvasActions.current = context;
     const press = (event) => keyPressed(event, context);
     const copy = (event) => copied(event), paste = (event) => pasted(event, middle());
@@ -177,6 +178,7 @@ function Flow() {
   const onMove = useCallback((_, { zoom }) => {
     box.current?.classList.toggle("far", zoom < FAR);
     box.current?.classList.toggle("farther", zoom < FARTHER);
+    setSmall(zoom < SMALL);
   }, []);
 
   return (
@@ -191,6 +193,7 @@ function Flow() {
         proOptions={{ hideAttribution: true }} fitView fitViewOptions={{ padding: 0.08, maxZoom: 1 }}>
         <Background variant={BackgroundVariant.Dots} gap={22} size={1.1} color="#d9dce1" />
         {refusal ? <Panel position="bottom-center"><div id="refusal" role="alert">{refusal}</div></Panel> : null}
+        {isSmall ? <Panel position="bottom-left"><Sliders /></Panel> : null}
         {!nodes.length ? <Panel position="top-center"><Empty /></Panel> : null}
       </ReactFlow>
     </div>
@@ -199,6 +202,14 @@ function Flow() {
 
 /** What keys of the canvas act on. */
 export const canvasActions = { current: null };
+
+/** Move the canvas until all of a node is seen, if it is not. */
+function reveal(node, box, flow) {
+  const inner = node.getBoundingClientRect(), outer = box.getBoundingClientRect(), { x, y, zoom } = flow.getViewport();
+  const off = (low, high, first, last) => (low < first ? first - low : Math.min(0, Math.max(last - high, first - low)));
+  const dx = off(inner.left, inner.right, outer.left + 16, outer.right - 16), dy = off(inner.top, inner.bottom, outer.top + 16, outer.bottom - 16);
+  if (dx || dy) flow.setViewport({ x: x + dx, y: y + dy, zoom }, { duration: 200 });
+}
 
 function withGroups(nodes) {
   const s = now(), plain = nodes.filter((node) => node.type !== "group");

@@ -60,6 +60,16 @@ export function placesOf(s) {
   return places;
 }
 
+/** A place for a new step near another: below what stands there already. */
+export function freePlace(s, [x, y]) {
+  const boxes = Object.entries(placesOf(s)).map(([id, at]) => [...at, ...sizeOf(s, id)]).sort((a, b) => a[1] - b[1]);
+  const height = 150;
+  for (const [left, top, w, h] of boxes) {
+    if (left < x + STEP_WIDTH + 16 && x < left + w + 16 && top < y + height && y < top + h + 16) y = top + h + 26;
+  }
+  return [Math.round(x), Math.round(y)];
+}
+
 /** Operations that place something, with the places of all others before: what was laid out stays so. */
 export function anchored(s, ops) {
   const { canvas } = s.doc.graph;

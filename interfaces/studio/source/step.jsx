@@ -149,6 +149,31 @@ export const SliderNode = memo(({ data, selected }) => {
   );
 });
 
+/** The sliders once more, in a list beside a canvas on which they are small. */
+export function Sliders() {
+  const params = useStudio((s) => s.doc.graph.params);
+  const [isOpen, setOpen] = useState(true);
+  const gesture = useRef("");
+  const entries = Object.entries(params).filter(([, { value, choices }]) => typeof value === "number" && !choices);
+  if (!entries.length) return null;
+  return (
+    <section className="sliders nowheel nopan" aria-label="sliders">
+      <button aria-expanded={isOpen} onClick={() => setOpen(!isOpen)}>Sliders</button>
+      {isOpen ? entries.map(([name, { value, min, max }]) => {
+        const whole = [value, min ?? 0, max ?? 0].every(Number.isInteger);
+        const move = (next, held) => edit([{ op: "set", param: name, value: next }], held ?? gesture.current);
+        return (
+          <div key={name}>
+            <span>{name.replaceAll("_", " ")}</span>
+            <Range label={`${name} in the list, slider`} value={value} min={min ?? softMin(value)} max={max ?? softMax(value, min)} whole={whole} onChange={move} />
+            <NumberField label={`${name} in the list`} value={value} min={min} max={max} whole={whole} onChange={(next) => next !== null && move(next)} />
+          </div>
+        );
+      }) : null}
+    </section>
+  );
+}
+
 const softMin = (value) => (value < 0 ? 2 * value : 0);
 const softMax = (value, min) => Math.max(2 * Math.abs(value), (min ?? 0) + 10);
 
