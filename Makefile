@@ -54,10 +54,10 @@ lint: system
 	$(BIN)/vulture
 	$(BIN)/deptry .
 
+# About half an hour: docs/benchmarks.md, and lines in benchmarks/tables/history.jsonl.
 bench: system
-	$(BIN)/python benchmarks/run.py
-	$(BIN)/python benchmarks/angles.py targets large
-	$(BIN)/python benchmarks/energy.py large scipy
+	@$(BIN)/python -c 'import pyceres' 2>/dev/null || $(BIN)/python -m pip install -qq --group bench
+	$(BIN)/python benchmarks/tables/run.py
 
 docs: system
 	@$(BIN)/python -c 'import furo, myst_parser' 2>/dev/null || $(BIN)/python -m pip install -qq --group docs

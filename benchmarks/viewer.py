@@ -1,18 +1,16 @@
-"""Figures of the viewer: what pictures and pages cost, and whether they agree.
+"""Figures of the viewer: what triangles, pictures and reports cost; pages have `page.py`.
 
-python benchmarks/viewer.py            all but the browser in a few seconds
-python benchmarks/viewer.py browser    with pages in the system's Chromium, drawing in software
+python benchmarks/viewer.py
 """
 
 import resource
-import shutil
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -30,17 +28,9 @@ from spheremesh.nodes import (
     panels,
     render,
     write_report,
-    write_view,
 )
 
 Result = TypeVar("Result")
-FLAGS = [
-    "--enable-unsafe-swiftshader",
-    "--no-sandbox",
-    "--use-gl=angle",
-    "--use-angle=swiftshader",
-]
-ROUNDS = 3
 
 
 def timed(call: Callable[[], Result]) -> tuple[Result, float]:
@@ -89,18 +79,6 @@ def triangles() -> None:
     print(f"triangles of {made.n_panels} panels: {seconds:.2f} s CPU, {len(skin.triangles)}")
 
 
-def pages(folder: Path, *, browser: bool) -> None:
-    """Sizes of pages and seconds to write them; in a browser also those until they answer."""
-    for rows, columns, carried in ((50, 100, True), (50, 100, False), (100, 200, False)):
-        made, beams = model(rows, columns, carried=carried)
-        path = folder / "view.html"
-        _, seconds = timed(lambda: write_view(made, str(path), beams=beams))  # noqa: B023
-        words = f"page of {made.n_panels} {'solids with beams' if carried else 'surfaces'}"
-        print(f"{words}: {path.stat().st_size / 1e6:.2f} MB, written in {seconds:.2f} s CPU")
-        if browser:
-            opened(path)
-
-
 def report(folder: Path) -> None:
     """Size of a report and seconds to write it."""
     optimum = minimize_angles(fit_spheres(roof_net(50, 100, 80.0)))
@@ -112,24 +90,6 @@ def report(folder: Path) -> None:
     print(f"report of {cut.panels.n_panels} panels: {size:.2f} MB, {seconds:.2f} s CPU")
 
 
-def opened(path: Path) -> None:
-    """When a page answers, counted from its address on, by its own clock."""
-    from playwright.sync_api import sync_playwright
-
-    program = shutil.which("chromium") or shutil.which("chromium-browser")
-    for _ in range(ROUNDS):
-        with sync_playwright() as play:
-            chromium = play.chromium.launch(executable_path=program, args=FLAGS)
-            page: Any = chromium.new_page(viewport={"width": 1280, "height": 800})
-            asked: list[str] = []
-            page.on("request", lambda request: asked.append(request.url))  # noqa: B023
-            page.goto(path.as_uri())
-            page.wait_for_selector("html[data-ready]", state="attached", timeout=120_000)
-            ready = page.evaluate("performance.getEntriesByName('ready')[0].startTime")
-            chromium.close()
-            print(f"  ready after {ready / 1000:.2f} s, {len(asked) - 1} requests")
-
-
 if __name__ == "__main__":
     words = sys.argv[1:]
     if words[:1] == ["picture"]:
@@ -139,4 +99,3 @@ if __name__ == "__main__":
             triangles()
             report(Path(name))
             pictures(Path(name))
-            pages(Path(name), browser="browser" in words)

@@ -142,6 +142,8 @@ PLANE_SAGITTA: Final = 1e-6
 """A panel whose bulge is below this share of its size is built as a plane (1 µm per m)."""
 NEAR_CENTER: Final = 1e-3
 """A layer of a panel needs more than this share of the radius of its sphere."""
+SAME_EDGE: Final = 1e-7
+"""Edges of neighbours this close, in chords, are one in triangles: float32 tells no more."""
 THIN: Final = 1e-6
 """A panel whose thickness is below this share of its size is refused (1 µm per m)."""
 ENCLOSING: Final = 1e-12

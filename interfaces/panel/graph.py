@@ -139,7 +139,7 @@ def panel_graph(
     if moves:
         _add_moves(graph, mesh, spheres)
     add_papers(graph, options, made, has_moulds=clusters is not None)
-    _add_pages(graph, made, checked, spheres, report)
+    _add_pages(graph, options, made, checked, spheres, report)
     return graph
 
 
@@ -152,6 +152,7 @@ def _cost(graph: Graph, options: PanelOptions, made: Mapping[str, Wire]) -> dict
 
 def _add_pages(
     graph: Graph,
+    options: PanelOptions,
     made: Mapping[str, Wire],
     checked: Mapping[str, Wire],
     spheres: Wire,
@@ -161,9 +162,15 @@ def _add_pages(
     title = graph.title
     shown = {**checked, "reference": spheres}
     graph.add("write_view", "view", **made, **shown, path="view.html", title=title)
+    sheets: dict[str, Step] = {}
+    if options.nest and "beams" in made:
+        # As in beams.dxf.
+        sheets["sheets"] = graph.add(
+            "nest_parts", "sheets", beams=made["beams"], kerf=10.0, margin=10.0, grain="along"
+        )
     graph.add(
         "write_report", "summary", report=report, panels=made["panels"], sphere_mesh=spheres,
-        path="report.html", title=title,
+        path="report.html", title=title, **sheets,
     )  # fmt: skip
 
 

@@ -196,6 +196,7 @@ def polygon_arrays(polygons: Polygons, grid: Grid) -> dict[str, NDArray[Any]]:
         "outer_kinds": lookup[degrees],
         "outer_sizes": np.array([(degree + 1, degree) for degree in kinds], np.int64),
         "outer_triangles": np.concatenate(patterns),
+        "outer_rims": np.ones(sum(kinds), np.int64),
     }
 
 

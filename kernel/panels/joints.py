@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, batches_by_count, dot, norm, unit
+from ..solvers.weighted_graphs import piece_labels
 from ..spheres.arcs import Arcs, arc_distances, sphere_arcs
 from ..spheres.incidence import meet_lines
 from ..spheres.minkowski import minkowski
@@ -89,15 +90,9 @@ def _onto(points: FloatArray, normals: FloatArray) -> FloatArray:
 
 def corner_nodes(panels: Panels) -> IntArray:
     """The node of each corner (H,): corners that neighbours share across edges have one."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     twins = opposite_corners(panels)
     has_twin = np.flatnonzero(twins >= 0)
-    count = len(twins)
-    links = has_twin, panels.next_corners[twins[has_twin]]
-    graph = coo_array((np.ones(len(has_twin)), links), shape=(count, count))
-    return np.asarray(connected_components(graph, directed=False)[1], np.int64)
+    return piece_labels(has_twin, panels.next_corners[twins[has_twin]], len(twins))
 
 
 def unjointed_corners(panels: Panels) -> tuple[FloatArray, FloatArray]:

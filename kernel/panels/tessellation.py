@@ -2,9 +2,11 @@
 
 A panel is triangulated as a fan about its middle, in the stereographic chart of its sphere: the
 chart keeps circles, so its outline stays as simple as the panel. Rings of points divide the
-fan; the outermost ring lies on the arcs of the edges.
+fan; the outermost ring lies on the arcs of the edges, with as many points as the finer of two
+neighbours needs where they have the edge in common.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +15,9 @@ from ..arrays import BoolArray, FloatArray, IntArray, dot, norm, unit
 from ..errors import InputError
 from ..spheres.arcs import Arcs, arc_points
 from ..spheres.incidence import normals, project
+from .fans import are_stars, cut_ears, cut_fan
 from .panels import Panels, boundaries, panel_arcs
+from .rims import Rims, divide_edges
 
 MAX_STEPS = 32
 
@@ -37,6 +41,9 @@ class PanelTriangles:
         Panel of each triangle.
     surfaces : (T,) int array
         Surface of each triangle, a row of `surface_rows`.
+    steps : (H,) int array
+        Steps along each edge of the panels. The last points of each face lie along its edges,
+        so many on each.
     """
 
     origin: FloatArray
@@ -45,6 +52,7 @@ class PanelTriangles:
     triangles: IntArray
     panels: IntArray
     surfaces: IntArray
+    steps: IntArray
 
 
 def surface_rows(panels: Panels) -> FloatArray:
@@ -75,9 +83,9 @@ def tessellate(
     Returns
     -------
     PanelTriangles
-        Points of a panel agree to the bit where its faces and walls meet. Neighbours agree as
-        well as their arcs do (see `edge_gaps`) where both take the same number of steps, else
-        within the tolerance.
+        Points of a panel agree to the bit where its faces and walls meet, and those of
+        neighbours where their edges are the same (within `SAME_EDGE`); elsewhere there is the
+        gap that there is between them (see `edge_gaps`).
 
     Raises
     ------
@@ -86,30 +94,33 @@ def tessellate(
 
     Notes
     -----
-    Works on all panels of one degree and number of steps at a time. Panels that cannot be
+    Works on all panels of one degree and the same steps at a time. Panels that cannot be
     seen whole from their middle are cut into ears along their outline, without inner points.
     """
     if not np.min(tolerance, initial=np.inf) > 0:
         raise InputError(f"the tolerance must be positive, not {tolerance}")
     sides = boundaries(panels) if solid else [(panels.spheres, panel_arcs(panels))]
     steps = _steps(panels, sides[0][1], tolerance)
+    origin = panels.origins.mean(axis=0) if panels.n_panels else np.zeros(3)
+    shifts = panels.origins - origin
+    rims = divide_edges(panels, [arcs for _, arcs in sides], steps, shifts)
     pieces: list[_Piece] = []
-    kinds = np.unique(np.stack([panels.degrees, steps], 1), axis=0)
-    for degree, count in kinds.tolist():
-        members = np.flatnonzero((panels.degrees == degree) & (steps == count))
-        edges = panels.offsets[members][:, None] + np.arange(int(degree))
-        rims = [_rim_points(arcs, edges, count) for _, arcs in sides]
+    for members, edges, fan in _kinds(panels, steps, rims.steps):
         for side, (rows, arcs) in enumerate(sides):
-            faces = _face_pieces(rows[members], arcs, edges, rims[side], members)
+            rim = _rim_points(rims, side, edges)
+            faces = _face_pieces(rows[members], arcs, edges, rim, members, shifts, fan)
             pieces += faces if side == 0 else [_inside_out(piece, panels) for piece in faces]
-        if len(sides) == 2:
-            pieces.append(_wall_piece(panels, edges, rims, members))
-    return _join(panels, pieces)
+    if len(sides) == 2:
+        pieces += _wall_pieces(panels, rims)
+    return _join(origin, pieces, rims.steps)
 
 
 @dataclass(frozen=True)
 class _Piece:
-    """Points (n, m, 3), normals, triangles (t, 3) of n alike pieces, (n,) panels, surfaces."""
+    """Points (n, m, 3), normals, triangles (t, 3) of n alike pieces, (n,) panels, surfaces.
+
+    Points are seen from the common origin.
+    """
 
     points: FloatArray
     normals: FloatArray
@@ -127,52 +138,82 @@ def _steps(panels: Panels, arcs: Arcs, tolerance: FloatArray | float) -> IntArra
     return np.clip(count, 1, MAX_STEPS).astype(np.int64)
 
 
-def _select(arcs: Arcs, ids: IntArray) -> Arcs:
-    return Arcs(arcs.starts[ids], arcs.ends[ids], arcs.rises[ids], arcs.sagittas[ids])
+@dataclass(frozen=True)
+class _Fan:
+    """How a face is divided: steps from its middle to the rim, and along each edge."""
+
+    steps: int
+    edges: tuple[int, ...]
 
 
-def _edge_points(arcs: Arcs, edges: IntArray, steps: int) -> FloatArray:
-    """Points (n, k, steps, 3) of the arcs of n panels, the start of each arc to the bit."""
-    parameters = np.linspace(-1, 1, steps, endpoint=False)
-    points = arc_points(_select(arcs, edges.ravel()), parameters)
-    points[:, 0] = arcs.starts[edges.ravel()]
-    return points.reshape(*edges.shape, steps, 3)
+def _kinds(
+    panels: Panels, steps: IntArray, edge_steps: IntArray
+) -> Iterator[tuple[IntArray, IntArray, _Fan]]:
+    """Panels that are divided alike, their edges (n, k), and how they are divided."""
+    for degree in np.unique(panels.degrees).tolist():
+        members = np.flatnonzero(panels.degrees == degree)
+        edges = panels.offsets[members][:, None] + np.arange(int(degree))
+        keys = np.column_stack([steps[members], edge_steps[edges]])
+        kinds, which = np.unique(keys, axis=0, return_inverse=True)
+        for kind, (count, *along) in enumerate(kinds.tolist()):
+            chosen = which.ravel() == kind
+            yield members[chosen], edges[chosen], _Fan(count, tuple(along))
 
 
-def _rim_points(arcs: Arcs, edges: IntArray, steps: int) -> FloatArray:
-    points = _edge_points(arcs, edges, steps)
+def _ring_points(arcs: Arcs, edges: IntArray, steps: int) -> FloatArray:
+    """Points (n, k steps, 3) of the arcs of n panels, in as many steps each."""
+    ids = edges.ravel()
+    chosen = Arcs(arcs.starts[ids], arcs.ends[ids], arcs.rises[ids], arcs.sagittas[ids])
+    points = arc_points(chosen, np.linspace(-1, 1, steps, endpoint=False))
     return points.reshape(len(edges), -1, 3)
 
 
+def _rim_points(rims: Rims, side: int, edges: IntArray) -> FloatArray:
+    """Points (n, m, 3) around panels that are divided alike."""
+    count = int(rims.steps[edges[0]].sum())
+    return rims.sides[side][rims.starts[edges[:, :1]] + np.arange(count)]
+
+
 def _face_pieces(
-    rows: FloatArray, arcs: Arcs, edges: IntArray, rim: FloatArray, panels: IntArray
+    rows: FloatArray,
+    arcs: Arcs,
+    edges: IntArray,
+    rim: FloatArray,
+    panels: IntArray,
+    shifts: FloatArray,
+    fan: _Fan,
 ) -> list[_Piece]:
     """A fan for the panels that can be seen whole from their middle, ears for the others."""
-    degree = edges.shape[1]
-    steps = rim.shape[1] // degree
-    chart = _Chart.about(rows, rim.mean(axis=1))
-    outline = chart.flatten(rim)
-    turns = _cross(outline, np.roll(outline, -1, axis=1))
-    is_star = np.all(turns > 0, axis=1)
+    moved = shifts[panels][:, None]
+    chart = _Chart.about(rows, (rim - moved).mean(axis=1))
+    outline = chart.flatten(rim - moved)
+    is_star = are_stars(outline)
     pieces: list[_Piece] = []
     if is_star.any():
         star = chart.select(is_star)
         rings = [star.middle[:, None]]
-        for ring in range(1, steps):
-            inner = star.flatten(_rim_points(arcs, edges[is_star], ring))
-            rings.append(star.lift(inner * (ring / steps)))
-        points = np.concatenate([*rings, rim[is_star]], axis=1)
-        pieces.append(_piece(rows[is_star], points, _fan(degree, steps), panels[is_star]))
+        for ring in range(1, fan.steps):
+            inner = star.flatten(_ring_points(arcs, edges[is_star], ring))
+            rings.append(star.lift(inner * (ring / fan.steps)))
+        inside = np.concatenate(rings, axis=1) + moved[is_star]
+        points = np.concatenate([inside, rim[is_star]], axis=1)
+        triangles = cut_fan(fan.steps, fan.edges)
+        pieces.append(_piece(rows[is_star], points, triangles, panels[is_star], moved[is_star]))
     for panel in np.flatnonzero(~is_star):
         one = slice(panel, panel + 1)
-        pieces.append(_piece(rows[one], rim[one], cut_ears(outline[panel]), panels[one]))
+        triangles = cut_ears(outline[panel])
+        pieces.append(_piece(rows[one], rim[one], triangles, panels[one], moved[one]))
     return pieces
 
 
 def _piece(
-    rows: FloatArray, points: FloatArray, triangles: IntArray, panels: IntArray
+    rows: FloatArray,
+    points: FloatArray,
+    triangles: IntArray,
+    panels: IntArray,
+    moved: FloatArray,
 ) -> _Piece:
-    return _Piece(points, normals(rows[:, None], points), triangles, panels, panels)
+    return _Piece(points, normals(rows[:, None], points - moved), triangles, panels, panels)
 
 
 def _inside_out(piece: _Piece, panels: Panels) -> _Piece:
@@ -182,35 +223,27 @@ def _inside_out(piece: _Piece, panels: Panels) -> _Piece:
     return _Piece(piece.points, -piece.normals, turned, piece.panels, surfaces)
 
 
-def _wall_piece(
-    panels: Panels, edges: IntArray, rims: list[FloatArray], members: IntArray
-) -> _Piece:
+def _wall_pieces(panels: Panels, rims: Rims) -> list[_Piece]:
     """Strips between the outer and the inner arc of each edge."""
-    outer, inner = (_open_edges(rim, edges.shape[1]) for rim in rims)
-    steps = int(outer.shape[1]) - 1
-    low: IntArray = np.arange(steps)
-    high = low + steps + 1
-    strip = (low, high, low + 1), (low + 1, high, high + 1)
-    triangles = np.concatenate([np.stack(corners, 1) for corners in strip])
-    points = np.concatenate([outer, inner], axis=1)
-    outwards = -panels.plane_normals[edges.ravel()][:, None]
-    owners = np.repeat(members, edges.shape[1])
-    surfaces = 2 * panels.n_panels + edges.ravel()
-    return _Piece(points, np.broadcast_to(outwards, points.shape), triangles, owners, surfaces)
+    owners, ends = panels.corner_panels, rims.starts[panels.next_corners]
+    pieces: list[_Piece] = []
+    for steps in np.unique(rims.steps).tolist():
+        edges = np.flatnonzero(rims.steps == steps)
+        along = rims.starts[edges][:, None] + np.arange(int(steps))
+        ids = np.concatenate([along, ends[edges][:, None]], axis=1)
+        points = np.concatenate([side[ids] for side in rims.sides], axis=1)
+        low: IntArray = np.arange(int(steps))
+        high = low + steps + 1
+        strip = (low, high, low + 1), (low + 1, high, high + 1)
+        triangles = np.concatenate([np.stack(corners, 1) for corners in strip])
+        outwards = np.broadcast_to(-panels.plane_normals[edges][:, None], points.shape)
+        surfaces = 2 * panels.n_panels + edges
+        pieces.append(_Piece(points, outwards, triangles, owners[edges], surfaces))
+    return pieces
 
 
-def _open_edges(rim: FloatArray, degree: int) -> FloatArray:
-    """Points (n k, steps + 1, 3) of each edge, both ends included."""
-    edges = rim.reshape(len(rim), degree, -1, 3)
-    ends = np.roll(edges[:, :, :1], -1, axis=1)
-    closed = np.concatenate([edges, ends], axis=2)
-    return closed.reshape(-1, closed.shape[2], 3)
-
-
-def _join(panels: Panels, pieces: list[_Piece]) -> PanelTriangles:
-    origin = panels.origins.mean(axis=0) if panels.n_panels else np.zeros(3)
-    shifts = panels.origins - origin
-    points = [(piece.points + shifts[piece.panels][:, None]).reshape(-1, 3) for piece in pieces]
+def _join(origin: FloatArray, pieces: list[_Piece], steps: IntArray) -> PanelTriangles:
+    points = [piece.points.reshape(-1, 3) for piece in pieces]
     vectors = [piece.normals.reshape(-1, 3) for piece in pieces]
     first = np.cumsum([0, *(len(part) for part in points)])
     triangles = [
@@ -227,6 +260,7 @@ def _join(panels: Panels, pieces: list[_Piece]) -> PanelTriangles:
         np.concatenate([nobody.reshape(0, 3), *triangles]),
         np.concatenate([nobody, *owners]),
         np.concatenate([nobody, *surfaces]),
+        steps,
     )
 
 
@@ -235,29 +269,6 @@ def _numbered(piece: _Piece) -> IntArray:
     n, m = int(piece.points.shape[0]), int(piece.points.shape[1])
     starts: IntArray = m * np.arange(n)
     return starts[:, None, None] + piece.triangles
-
-
-def _fan(degree: int, steps: int) -> IntArray:
-    """Triangles of a fan of `degree` sectors, each divided in ``steps²``.
-
-    Point 0 is the middle; ring j of ``degree * j`` points follows ring j - 1.
-    """
-
-    def point(ring: int, index: IntArray) -> IntArray:
-        first = 1 + degree * ring * (ring - 1) // 2 if ring else 0
-        return first + index % max(degree * ring, 1)
-
-    triangles: list[IntArray] = []
-    sector: IntArray = np.arange(degree)[:, None]
-    for ring in range(1, steps + 1):
-        index: IntArray = np.arange(ring)
-        inner, outer = sector * (ring - 1) + index, sector * ring + index
-        corners = (point(ring - 1, inner), point(ring, outer), point(ring, outer + 1))
-        triangles.append(np.stack(corners, -1).reshape(-1, 3))
-        inner, outer = inner[:, :-1], outer[:, :-1] + 1
-        corners = (point(ring - 1, inner), point(ring, outer), point(ring - 1, inner + 1))
-        triangles.append(np.stack(corners, -1).reshape(-1, 3))
-    return np.concatenate(triangles)
 
 
 @dataclass(frozen=True)
@@ -293,43 +304,3 @@ class _Chart:
         local = np.concatenate([flat, square[..., None]], axis=-1)
         local /= (1 + self.curvatures[:, None] * square)[..., None]
         return self.middle[:, None] + np.einsum("nij,nmi->nmj", self.frame, local)
-
-
-def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-
-
-def cut_ears(outline: FloatArray) -> IntArray:
-    """Triangulate a simple polygon (n, 2), counter-clockwise, by its ears: (n - 2, 3).
-
-    A polygon that crosses itself, and has no ear left, is closed by triangles that may overlap.
-
-    Examples
-    --------
-    >>> arrow = np.array([[0.0, 0.0], [2.0, -1.0], [1.0, 0.0], [2.0, 1.0]])
-    >>> cut_ears(arrow).tolist()
-    [[0, 1, 2], [0, 2, 3]]
-    """
-    left = list(range(len(outline)))
-    triangles: list[tuple[int, int, int]] = []
-    while len(left) > 3:
-        best = max(range(len(left)), key=lambda i: _ear_quality(outline, left, i))
-        triangles.append((left[best - 1], left[best], left[(best + 1) % len(left)]))
-        del left[best]
-    triangles.append((left[0], left[1], left[2]))
-    return np.array(triangles, np.int64)
-
-
-def _ear_quality(outline: FloatArray, left: list[int], index: int) -> float:
-    """Height over base of the triangle at a corner; below 0 where it is no ear."""
-    others = [left[index - 1], left[index], left[(index + 1) % len(left)]]
-    a, b, c = outline[others]
-    area = float(_cross(b - a, c - a))
-    rest = outline[[i for i in left if i not in others]]
-    is_inside = (
-        (_cross(b - a, rest - a) >= 0)
-        & (_cross(c - b, rest - b) >= 0)
-        & (_cross(a - c, rest - c) >= 0)
-    )
-    longest = max(float(dot(side, side)) for side in (b - a, c - b, a - c))
-    return area / longest if area > 0 and not is_inside.any() else -1.0

@@ -2,18 +2,20 @@
 
 import sys
 from functools import cache
+from typing import Any
 
-import compas.datastructures
 import numpy as np
 import pytest
-import pyvista
-import trimesh
 
 from spheremesh import Mesh, SphereMesh
 from spheremesh.kernel.beams.beams import Beams, beam_volumes
 from spheremesh.kernel.errors import ArgumentError, InputError, MissingLibraryError
 from spheremesh.kernel.panels.panels import panel_areas
 from spheremesh.nodes import axis_support, beams, fit_spheres, panels, vase_mesh
+
+datastructures: Any = pytest.importorskip("compas.datastructures")
+pyvista: Any = pytest.importorskip("pyvista")
+trimesh: Any = pytest.importorskip("trimesh")
 
 MIXED = Mesh(
     [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0.5, 0]], [[0, 1, 2, 3], [1, 4, 2]]
@@ -42,7 +44,7 @@ def same(left: Mesh, right: Mesh) -> bool:
 def test_polygons_go_through_pyvista_and_compas_and_come_back(mesh: Mesh) -> None:
     assert same(Mesh.from_pyvista(mesh.to_pyvista()), mesh)
     faces = [face.tolist() for face in mesh.faces]
-    other = compas.datastructures.Mesh.from_vertices_and_faces(mesh.vertices.tolist(), faces)
+    other = datastructures.Mesh.from_vertices_and_faces(mesh.vertices.tolist(), faces)
     assert same(Mesh.from_compas(other), mesh)
 
 

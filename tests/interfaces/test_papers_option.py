@@ -21,6 +21,7 @@ def test_papers_stand_beside_the_other_files(tmp_path: Path) -> None:
     assert done.exit_code == 0, done.stderr
     names = {path.name for path in out.iterdir()}
     assert {"tables.xlsx", "drawings.pdf", "drawings.dxf", "beams.dxf", "beams.csv"} <= names
+    assert "<h2>Sheets: " in (out / "report.html").read_text("utf-8")
 
 
 def test_tables_are_those_of_what_there_is() -> None:

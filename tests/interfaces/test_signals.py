@@ -60,3 +60,13 @@ def test_a_study_that_is_ended_ends_its_workers(graph: Path) -> None:
     said, _ = process.communicate(timeout=60)  # it ends when its workers have
     assert process.returncode == 143, said.decode()
     assert not list(out.rglob(".spheremesh-*"))
+
+
+def test_a_reader_that_goes_away_ends_a_command_in_silence() -> None:
+    command = [sys.executable, "-m", "spheremesh", "nodes"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.close()
+        said = process.stderr.read()
+    assert (process.returncode, said) == (1, b"")

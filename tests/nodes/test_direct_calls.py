@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import trimesh
 
 from spheremesh import Graph, Mesh
 from spheremesh.kernel.errors import ArgumentError, InputError
@@ -79,7 +78,7 @@ MISTAKES: list[tuple[Callable[[Any], object], str]] = [
         "repair_mesh(...).mesh",
     ),
     (
-        lambda _: fit_spheres(trimesh.creation.box()),
+        lambda _: fit_spheres(pytest.importorskip("trimesh").creation.box()),
         "fit_spheres: mesh must be Mesh, not Trimesh: make a mesh of it with "
         "Mesh.from_trimesh(...)",
     ),

@@ -2,7 +2,7 @@
 
 The triangles are those of `tessellate`. Panels of the same degree and fineness have the same
 ones, so that a page is told each pattern once. Walls are left out: they hang between the rims,
-which are the last points of each face.
+which are the last points of each face, so many on each edge.
 """
 
 from dataclasses import dataclass
@@ -40,6 +40,8 @@ class Faces:
         Pattern of each panel.
     patterns : tuple of (T, 3) int array
         Triangles, counted from the first point of a panel.
+    rims : tuple of tuple of int
+        Points along each edge, of each pattern: the last ones.
     """
 
     points: FloatArray
@@ -47,6 +49,7 @@ class Faces:
     starts: IntArray
     kinds: IntArray
     patterns: tuple[IntArray, ...]
+    rims: tuple[tuple[int, ...], ...]
 
 
 def panel_faces(panels: Panels, tolerance: float | None = None) -> list[Faces]:
@@ -73,13 +76,12 @@ def _side(panels: Panels, skin: PanelTriangles, side: int) -> Faces:
     bounds = np.searchsorted(owners, np.arange(count + 1))
     first = np.minimum.reduceat(triangles.min(axis=1), bounds[:-1])
     last = np.maximum.reduceat(triangles.max(axis=1), bounds[:-1])
-    known: dict[bytes, int] = {}
-    kinds = [
-        known.setdefault((triangles[low:high] - start).tobytes(), len(known))
-        for low, high, start in zip(
-            bounds[:-1].tolist(), bounds[1:].tolist(), first.tolist(), strict=True
-        )
-    ]
+    known: dict[tuple[bytes, tuple[int, ...]], int] = {}
+    kinds: list[int] = []
+    for panel in range(count):
+        own = triangles[bounds[panel] : bounds[panel + 1]] - first[panel]
+        rim = tuple(skin.steps[panels.offsets[panel] : panels.offsets[panel + 1]].tolist())
+        kinds.append(known.setdefault((own.tobytes(), rim), len(known)))
     sizes = last - first + 1
     starts: IntArray = np.concatenate([[0], np.cumsum(sizes)])
     ids = np.repeat(first - starts[:-1], sizes) + np.arange(int(starts[-1]))
@@ -88,7 +90,8 @@ def _side(panels: Panels, skin: PanelTriangles, side: int) -> Faces:
         skin.normals[ids] * (1 - 2 * side),
         starts[:-1],
         np.array(kinds, np.int64),
-        tuple(np.frombuffer(each, np.int64).reshape(-1, 3) for each in known),
+        tuple(np.frombuffer(each, np.int64).reshape(-1, 3) for each, _ in known),
+        tuple(rim for _, rim in known),
     )
 
 
@@ -99,7 +102,8 @@ def face_arrays(panels: Panels, faces: list[Faces], grid: Grid) -> dict[str, NDA
     first point of its face, in units of the grid's size: at another point p the normal is
     ``n - 2 A (p - p0)``, on the inner face as well. Of each side, ``outer`` and ``inner``, the
     ``points`` (N, 3), the ``kinds`` (P,), and of all patterns one after the other the
-    ``triangles`` (T, 3) and their number of ``sizes`` (K, 2): points and triangles.
+    ``triangles`` (T, 3), the points along each edge ``rims`` and the ``sizes`` (K, 2): points
+    and triangles.
     """
     first = grid.center + grid.steps(faces[0].points)[faces[0].starts] * (grid.size / STEPS)
     local = first - panels.origins
@@ -115,6 +119,7 @@ def face_arrays(panels: Panels, faces: list[Faces], grid: Grid) -> dict[str, NDA
             f"{name}_kinds": side.kinds,
             f"{name}_sizes": np.array(sizes, np.int64),
             f"{name}_triangles": np.concatenate(side.patterns),
+            f"{name}_rims": np.concatenate(side.rims),
         }
     return arrays
 

@@ -59,6 +59,8 @@ class ReportFacts:
         Of spheremesh.
     millimeters : float
         Of a model unit.
+    sheets : mapping, optional
+        How pieces lie on stock sheets, as `nest_parts` tells it.
     """
 
     title: str
@@ -67,6 +69,7 @@ class ReportFacts:
     graph: str
     version: str
     millimeters: float
+    sheets: Mapping[str, Any] | None = None
 
 
 def report_text(panels: Panels, facts: ReportFacts) -> str:
@@ -76,6 +79,7 @@ def report_text(panels: Panels, facts: ReportFacts) -> str:
         _verdict(report),
         _before_and_after(panels, facts),
         _moulds(report, facts.millimeters),
+        _sheets(facts.sheets),
         _gaps(panels, report, facts.millimeters),
         _faults(report),
         _cost(report),
@@ -186,6 +190,26 @@ def _moulds(report: Mapping[str, Any], millimeters: float) -> str:
         "<p>A blank is the round sheet that the largest panel of a mould is cut from; "
         "each panel in its blank is drawn in <code>moulds.dxf</code> and "
         "<code>moulds.svg</code>.</p>"
+    )
+
+
+def _sheets(sheets: Mapping[str, Any] | None) -> str:
+    """How many sheets must be bought, of what is nested."""
+    if sheets is None:
+        return ""
+    oversize: list[str] = sheets["oversize"]
+    pieces = len(sheets["pieces"]) - len(oversize)
+    names = ", ".join(oversize[:MOST_PARTS]) + (", ..." if len(oversize) > MOST_PARTS else "")
+    beyond = (
+        f" <b>{len(oversize):,} pieces are larger than a sheet</b> and need one of their own: "
+        f"{escape(names)}."
+        if oversize
+        else ""
+    )
+    return (
+        f"<h2>Sheets: {sheets['sheets']:,} for {pieces:,} pieces</h2>"
+        f"<p>By their areas alone they would need {sheets['bound']:,}; "
+        f"{100 * sheets['waste']:.0f} % of the sheets is left over.{beyond}</p>"
     )
 
 

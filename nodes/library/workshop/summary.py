@@ -11,6 +11,7 @@ from ....kernel.sphere_meshes.sphere_mesh import SphereMesh, intersection_angles
 from ....viewer.report.document import ReportFacts, report_text
 from ...graphs.node import node, running_graph
 from ...graphs.ports import WritePath
+from .drawings import NestingReport
 from .report import PanellingReport
 
 
@@ -21,12 +22,13 @@ def write_report(
     sphere_mesh: SphereMesh,
     path: WritePath = "report.html",
     title: str = "Spherical panels",
+    sheets: NestingReport | None = None,
 ) -> str:
     """Write what a panelling came to as a page to read, to send and to print.
 
     One file without scripts, which asks for nothing else: flat panels and spheres under the
-    same stripes, angles as histograms, moulds with their counts and blanks, gaps, what is
-    rejected and why, what it costs, and how to reproduce it, with the graph as a picture.
+    same stripes, angles as histograms, moulds with their counts and blanks, sheets, gaps, what
+    is rejected and why, what it costs, and how to reproduce it, with the graph as a picture.
 
     Parameters
     ----------
@@ -40,6 +42,8 @@ def write_report(
         Ends in .html.
     title : str
         Heading of the page.
+    sheets : NestingReport, optional
+        Result of `nest_parts`: how many stock sheets beams or blanks are cut from.
 
     Returns
     -------
@@ -68,6 +72,7 @@ def write_report(
         running_graph(),
         __version__,
         millimeters_per(report["input"]["units"]),
+        sheets,
     )
     text = report_text(panels, facts)
     with replacing(path) as temporary:

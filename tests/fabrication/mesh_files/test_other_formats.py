@@ -1,6 +1,5 @@
 """Formats read through meshio and trimesh: polygons kept, faults in one line."""
 
-import importlib
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -20,8 +19,8 @@ from spheremesh.kernel.errors import InputError, MissingLibraryError
 
 ErrorOf: TypeAlias = Callable[..., str]
 
-meshio: Any = importlib.import_module("meshio")
-trimesh: Any = importlib.import_module("trimesh")
+meshio: Any = pytest.importorskip("meshio")
+trimesh: Any = pytest.importorskip("trimesh")
 
 POINTS = np.array(
     [[0, 0, 0], [1, 0, 0.1], [2, 0, 0], [0, 1, 1 / 3], [1, 1, 0.5], [2, 1, 0], [1, 2, 0.1]]

@@ -1,5 +1,7 @@
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from spheremesh.kernel.arrays import dot, norm, sum_by
 from spheremesh.kernel.errors import InputError
@@ -7,18 +9,14 @@ from spheremesh.kernel.meshes.mesh import Mesh
 from spheremesh.kernel.optimization.angle_minimization import minimize_angles
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.facts import panel_volumes
+from spheremesh.kernel.panels.fans import cut_ears, cut_fan
 from spheremesh.kernel.panels.panels import Panels, panel_areas
-from spheremesh.kernel.panels.tessellation import (
-    PanelTriangles,
-    cut_ears,
-    surface_rows,
-    tessellate,
-)
+from spheremesh.kernel.panels.tessellation import PanelTriangles, surface_rows, tessellate
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
 from spheremesh.kernel.sphere_meshes.sphere_mesh import SphereMesh
 from spheremesh.kernel.spheres.incidence import signed_distance
 from spheremesh.kernel.spheres.rows import from_center_radius, normalize
-from spheremesh.kernel.surfaces.circular_nets import ellipsoid_net, roof_net, torus_net
+from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
 
 RTOL = 1e-12
 
@@ -71,17 +69,95 @@ def test_area_converges_quadratically_to_the_closed_form() -> None:
     assert errors[1] / errors[2] > 2.5
 
 
-def test_thick_panels_are_closed_to_the_bit() -> None:
-    panels = torus_panels(0.05)
+def open_edges(points: np.ndarray, triangles: np.ndarray) -> int:
+    """Directed edges without their opposite, points being the same to the bit alone."""
+    _, ids = np.unique(points, axis=0, return_inverse=True)
+    corners = ids.ravel()[triangles]
+    halves = np.concatenate([np.roll(corners, k, 1)[:, :2] for k in range(3)])
+    keys, counts = np.unique(halves, axis=0, return_counts=True)
+    assert (counts == 1).all()
+    known = {tuple(half) for half in keys.tolist()}
+    return sum((b, a) not in known for a, b in known)
+
+
+def closed_torus(thickness: float = 0.0) -> Panels:
+    """Spheres that meet in circles through the vertices."""
+    return cut_panels(
+        fit_spheres(torus_net(24, 10, 3.0, 1.0)), "intersection", thickness=thickness
+    )[0]
+
+
+def test_law_rims_neighbours_are_closed_to_the_bit() -> None:
+    """However fine each of them is."""
+    panels = closed_torus()
+    finer = np.random.default_rng(3).choice([0.05, 0.01, 0.002], panels.n_panels)
+    drawn = tessellate(panels, finer)
+    assert len(np.unique(drawn.steps)) > 2
+    assert open_edges(drawn.points, drawn.triangles) == 0
+    assert np.abs(surface_distances(panels, drawn)).max() < RTOL
+
+
+@given(
+    turn=st.floats(0.0, 6.0),
+    size=st.floats(-6.0, 6.0),
+    away=st.floats(0.0, 1e4),
+    seed=st.integers(0, 99),
+)
+@settings(max_examples=4)
+def test_law_rims_wherever_a_net_is(turn: float, size: float, away: float, seed: int) -> None:
+    """Turned, scaled, moved, renumbered: between spheres that touch no triangles gape."""
+    net = torus_net(24, 10, 3.0, 1.0)
+    spin = np.array(
+        [[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]]
+    )
+    order = np.random.default_rng(seed).permutation(net.n_faces)
+    vertices = (net.vertices @ spin + away) * 10.0**size
+    moved = Mesh(vertices, [net.faces[face] for face in order])
+    drawn = tessellate(cut_panels(fit_spheres(moved), "intersection")[0], 0.01)
+    assert open_edges(drawn.points, drawn.triangles) == 0
+
+
+def test_solids_of_neighbours_share_their_walls_to_the_bit() -> None:
+    panels = closed_torus(0.05)
     drawn = tessellate(panels, 0.01)
-    for panel in (0, 7, 100):
-        points = drawn.points[drawn.triangles[drawn.panels == panel]]
-        _, ids = np.unique(points.reshape(-1, 3), axis=0, return_inverse=True)
-        ids = ids.reshape(-1, 3)
-        halves = np.concatenate([ids, np.roll(ids, -1, 1)]).reshape(2, -1).T
-        keys = {tuple(half) for half in halves.tolist()}
-        assert len(keys) == len(halves)
-        assert keys == {(b, a) for a, b in keys}
+    outer = drawn.surfaces < panels.n_panels
+    assert open_edges(drawn.points, drawn.triangles[outer]) == 0
+    for panel in range(0, panels.n_panels, 23):
+        assert open_edges(drawn.points, drawn.triangles[drawn.panels == panel]) == 0
+
+
+def test_gaps_and_joints_stay_open() -> None:
+    net = torus_net(24, 10, 3.0, 1.0)
+    jointed = cut_panels(fit_spheres(net), "intersection", joint_gap=0.01)[0]
+    drawn = tessellate(jointed, 0.02)
+    assert open_edges(drawn.points, drawn.triangles) == drawn.steps.sum()
+    # Bisecting planes leave gaps between the arcs; corners, which lie on all spheres, are one.
+    drawn = tessellate(cut_panels(fit_spheres(net))[0], 0.02)
+    assert open_edges(drawn.points, drawn.triangles) > 0
+    rims = np.unique(drawn.points, axis=0)
+    assert len(rims) < len(drawn.points) - 3 * net.n_vertices + 1
+
+
+@pytest.mark.parametrize(("steps", "edges"), [(1, (1, 3, 2)), (3, (3, 5, 3, 8)), (4, (4,) * 6)])
+def test_fans_cover_a_polygon_once(steps: int, edges: tuple[int, ...]) -> None:
+    """With finer edges than their inside: the area of the rim, without an edge left open."""
+    turns = 2 * np.pi * np.arange(len(edges) + 1) / len(edges)
+    corners = np.stack([np.cos(turns), np.sin(turns)], 1)
+
+    def ring(share: float, counts: tuple[int, ...]) -> np.ndarray:
+        pairs = zip(corners[:-1], corners[1:], counts, strict=True)
+        return np.concatenate(
+            [share * (a + np.arange(n)[:, None] / n * (b - a)) for a, b, n in pairs]
+        )
+
+    inner = [ring(k / steps, (k,) * len(edges)) for k in range(1, steps)]
+    points = np.concatenate([np.zeros((1, 2)), *inner, ring(1.0, edges)])
+    triangles = cut_fan(steps, edges)
+    a, b, c = np.moveaxis(points[triangles], 1, 0)
+    areas = ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) / 2
+    assert areas.min() > 0
+    assert areas.sum() == pytest.approx(len(edges) / 2 * np.sin(2 * np.pi / len(edges)))
+    assert open_edges(points, triangles) == sum(edges)
 
 
 def test_thick_panels_enclose_their_volume() -> None:
@@ -97,20 +173,6 @@ def test_without_walls_only_the_outer_faces_remain() -> None:
     panels = torus_panels(0.05)
     drawn = tessellate(panels, 0.01, solid=False)
     assert drawn.surfaces.max() < panels.n_panels
-
-
-def test_neighbours_on_one_sphere_share_their_edges() -> None:
-    mesh = ellipsoid_net(12, 2, 5.0, 5.0, 0.6)
-    drawn = tessellate(cut_panels(fit_spheres(mesh), "intersection")[0], 0.01)
-    _, ids = np.unique(np.round(drawn.points, 9), axis=0, return_inverse=True)
-    corners = ids.reshape(-1)[drawn.triangles]
-    halves = {tuple(h) for i in range(3) for h in np.roll(corners, i, 1)[:, :2].tolist()}
-    rim = [half for half in halves if half[::-1] not in halves]
-    heights = np.zeros(ids.max() + 1)
-    heights[ids.reshape(-1)] = drawn.points[:, 2] + drawn.origin[2]
-    # Open along the two rims, where the caps are missing, and nowhere else.
-    assert len(rim) > 24
-    assert np.abs(heights[np.array(rim)]).min() > 2.8
 
 
 def test_plane_panels_are_exact_with_one_step() -> None:

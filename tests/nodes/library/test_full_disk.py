@@ -1,6 +1,8 @@
-"""No room: every writer says so in one error and leaves the older file as it was."""
+"""No room or no right: every writer says so in one error and keeps the older file."""
 
+import os
 import sys
+import tempfile
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from pathlib import Path
@@ -24,6 +26,21 @@ def room(n_bytes: int) -> Generator[None]:
         yield
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@contextmanager
+def read_only(folder: Path) -> Generator[None]:
+    """No file of a folder can be made or replaced; root, who may all, is nobody meanwhile."""
+    folder.chmod(0o555)
+    is_root = os.geteuid() == 0
+    if is_root:
+        os.seteuid(65534)
+    try:
+        yield
+    finally:
+        if is_root:
+            os.seteuid(0)
+        folder.chmod(0o755)
 
 
 def writers() -> dict[str, Callable[[Path], object]]:
@@ -62,18 +79,23 @@ def writers() -> dict[str, Callable[[Path], object]]:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no bound on sizes of files")
-def test_every_writer_on_a_full_disk(tmp_path: Path) -> None:
+def test_every_writer_on_a_full_disk_and_in_a_folder_that_is_read_only() -> None:
     calls = writers()
     load_library()
     writing = {node.name for node in REGISTRY.values() if node.is_writer}
     assert {name.split(".")[0] for name in calls} >= writing
-    for name, write in calls.items():
-        path = tmp_path / name
-        write(path)
-        size = path.stat().st_size
-        for n_bytes in (0, size // 2, size - 1):
+    # The folder of pytest is closed to nobody.
+    with tempfile.TemporaryDirectory() as folder:
+        for name, write in calls.items():
+            path = Path(folder) / name
+            write(path)
+            size = path.stat().st_size
             path.write_bytes(b"old")
-            with room(n_bytes), pytest.raises(InputError, match=f"cannot write .*{name}"):
+            for n_bytes in (0, size // 2, size - 1):
+                with room(n_bytes), pytest.raises(InputError, match=f"cannot write .*{name}"):
+                    write(path)
+                assert path.read_bytes() == b"old"
+            with read_only(path.parent), pytest.raises(InputError, match=f"cannot .*{name}"):
                 write(path)
             assert path.read_bytes() == b"old"
-    assert {path.name for path in tmp_path.iterdir()} == set(calls)
+        assert {path.name for path in Path(folder).iterdir()} == set(calls)

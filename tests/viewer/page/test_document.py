@@ -3,6 +3,7 @@
 import base64
 import gzip
 import hashlib
+import itertools
 import json
 import re
 import time
@@ -18,7 +19,7 @@ from spheremesh.kernel.arrays import dot, norm, unit
 from spheremesh.kernel.beams.beams import Beams
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.panels.cutting import cut_panels
-from spheremesh.kernel.panels.panels import Panels
+from spheremesh.kernel.panels.panels import Panels, opposite_corners
 from spheremesh.kernel.parts.findings import Finding
 from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.fit import face_planes, fit_spheres
@@ -129,18 +130,23 @@ def test_normals_of_a_page_are_those_of_the_spheres(thickness: float, place: flo
         assert (dot(found, exact) > 0).all()
 
 
-def test_neighbours_meet_to_the_bit_and_faces_are_closed() -> None:
+def test_neighbours_meet_to_the_bit() -> None:
+    """Points along a common edge are those of the neighbour, in whole steps of the grid."""
     made = vase(edges="intersection", thickness=0.03)
     _, arrays = unpack_arrays(page_data(made, None, texts(made)))
-    for side in ("outer", "inner"):
-        sizes, kinds = arrays[f"{side}_sizes"], arrays[f"{side}_kinds"]
-        ends = np.cumsum(sizes[kinds, 0])
-        degree = int(arrays["degrees"][0])
-        rims = [
-            {tuple(p) for p in arrays[f"{side}_points"][end - degree : end].tolist()}
-            for end in ends
-        ]
-        assert all(len(rim) == degree for rim in rims)
+    sizes, kinds = arrays["outer_sizes"][:, 0], arrays["outer_kinds"]
+    ends = np.cumsum(sizes[kinds])
+    steps = arrays["outer_rims"].reshape(len(sizes), 4)[kinds]
+    points = arrays["outer_points"].tolist()
+    rims: list[list[tuple[int, ...]]] = []
+    for end, counts in zip(ends.tolist(), steps.tolist(), strict=True):
+        ring = [tuple(point) for point in points[end - sum(counts) : end]]
+        starts = np.cumsum([0, *counts]).tolist()
+        ring.append(ring[0])
+        rims += [ring[a : b + 1] for a, b in itertools.pairwise(starts)]
+    known = {tuple(rim) for rim in rims}
+    twins = [tuple(reversed(rim)) in known for rim in rims]
+    assert twins == (opposite_corners(made) >= 0).tolist()
 
 
 def test_a_page_is_small_and_soon_written() -> None:

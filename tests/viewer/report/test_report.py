@@ -10,11 +10,13 @@ import pytest
 from spheremesh import Graph
 from spheremesh.kernel.panels.panels import Panels
 from spheremesh.nodes import (
+    NodeWarning,
     audit,
     cluster_radii,
     fit_spheres,
     minimize_angles,
     mould_blanks,
+    nest_parts,
     panel_report,
     panels,
     vase_mesh,
@@ -115,6 +117,18 @@ def test_what_is_wrong_is_sorted_and_counted(made: tuple[Panels, Any]) -> None:
     assert "20 parts cannot be made; 1 errors" in words
     assert "P0011 and 8 more" in words
     assert words.index("P101") < words.index("P201")
+
+
+def test_sheets_are_counted_where_pieces_are_nested(made: tuple[Panels, Any]) -> None:
+    cut, report = made
+    assert "Sheets" not in read(report_text(cut, facts(report))).words
+    with pytest.warns(NodeWarning, match="larger than the sheet"):
+        found = nest_parts(cut, sheet=(600.0, 600.0), margin=0.0)
+    words = read(report_text(cut, facts(report, sheets=found))).words
+    large = len(found["oversize"])
+    assert 0 < large < 72
+    assert f"Sheets: {found['sheets']} for {72 - large} pieces" in words
+    assert f"{large} pieces are larger than a sheet" in words
 
 
 def test_histograms_count_shares() -> None:

@@ -38,14 +38,15 @@ function panelRows(model, i) {
     return `<tr><td>${k + 1}</td><td>${number(length)}</td><td>${number(p.sagittas_mm[i][k])}</td>`
       + `<td>${angle === null ? "–" : number(angle)}</td><td>${link(model, p.neighbors[i][k])}</td></tr>`;
   }).join("");
+  const around = [...new Set(p.neighbors[i].filter((j) => j !== null && j >= 0))].map((j) => link(model, j)).join(" ");
   return row("Mould", mould === null ? "–" : `<button class="mould" data-mould="${mould}">${mould}</button>`)
-    + row("Radius", radius) + row("Area", `${number(p.area_m2[i])} m²`)
+    + row("Neighbours", around || "none") + row("Radius", radius) + row("Area", `${number(p.area_m2[i])} m²`)
     + row("Size", `${p.size_mm[i].map(number).join(" × ")} mm`)
     + row("Thickness", p.thickness_mm[i] ? `${number(p.thickness_mm[i])} mm` : "surface")
     + row("Largest angle", p.angle_deg[i] === null ? "–" : `${number(p.angle_deg[i])}°`)
     + row("Tilt of walls", `${number(p.tilt_deg[i])}°`)
     + row("Corners off plane", `${number(p.planarity_mm[i])} mm`)
-    + `</dl><table class="edges"><thead><tr><th>Edge</th><th>Length mm</th><th>Rise mm</th><th>Angle °</th><th>Next</th></tr></thead><tbody>${edges}</tbody></table><dl>`;
+    + `</dl><table class="edges"><thead><tr><th>Edge</th><th>Length mm</th><th>Rise mm</th><th>Angle °</th><th>Neighbour</th></tr></thead><tbody>${edges}</tbody></table><dl>`;
 }
 
 function beamRows(model, b) {

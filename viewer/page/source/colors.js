@@ -97,7 +97,8 @@ export function partColors(mode, filter, model, size) {
     }
     const kind = mode.kinds?.find((each) => (i < panels || each.all) && each.has(i));
     if (kind && (i < panels || kind.key !== "good")) color = kind.color;
-    colors.set([...color, passes(mode, filter, i, panels, scale) ? 255 : 0], 4 * i);
+    for (let k = 0; k < 3; k++) colors[4 * i + k] = color[k];
+    colors[4 * i + 3] = passes(mode, filter, i, panels, scale) ? 255 : 0;
   }
   return colors;
 }

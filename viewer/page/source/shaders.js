@@ -52,11 +52,17 @@ void main() {
     pixel = vec4(float(id & 255), float((id >> 8) & 255), float((id >> 16) & 255), 255.0) / 255.0;
     return;
   }
-  // The exact normal: planes have A = 0, cylinders an axis.
-  vec3 n = first.xyz - 2.0 * first.w * (own - second.xyz);
-  n = normalize(n - dot(n, axis) * axis);
-  if (kind == 1.0) n = -n;
+  // The exact normal: planes have A = 0, cylinders an axis. Triangles lie a little off their
+  // surface: a step of Newton along the ray leads onto it. Inner faces lie on another sphere
+  // about the same centre, which their surface does not tell.
   vec3 ray = normalize(world - eye);
+  vec3 d = own - second.xyz;
+  d -= dot(d, axis) * axis;
+  vec3 n = first.xyz - 2.0 * first.w * d;
+  float miss = kind == 1.0 ? 0.0 : first.w * dot(d, d) - dot(first.xyz, d), slope = dot(n, ray);
+  n -= 2.0 * first.w * miss * slope / (slope * slope + 0.0001) * (ray - dot(ray, axis) * axis);
+  n = normalize(n);
+  if (kind == 1.0) n = -n;
   bool turned = dot(n, ray) > 0.0;
   if (turned) n = -n;
   bool inside = kind == 1.0 != turned;

@@ -11,14 +11,18 @@ import { add, cross, scale, sub, unit } from "./vectors.js";
 const STEPS = 1 << 20;
 export const OUTER = 0, INNER = 1, WALL = 2, BEAM = 3, NODE = 4;
 
-const MANY = 2000;
 /** Panels from which on lines along the lower edges are left out: they would be a veil. */
+const MANY = 2000;
 
 export function buildShapes(head, arrays) {
+  const count = head.panels.id.length, beams = head.beams.id.length, nodes = head.nodes.id.length;
+  const corners = arrays.degrees?.reduce((a, b) => a + b, 0) ?? 0;
+  const points = ((arrays.outer_points?.length ?? 0) + (arrays.inner_points?.length ?? 0)) / 3;
   const shapes = {
-    surfaces: new Surfaces(), parts: head.panels.id.length, panels: new Soup(), walls: new Soup(), beams: new Soup(),
-    nodes: new Soup(), flat: new Soup(), edges: new Lines(), flatEdges: new Lines(), axes: new Lines(),
-    centers: [], lifts: [], corners: [], outlines: [],
+    surfaces: new Surfaces(2 * count + corners + 4 * beams + 3 * nodes), parts: count, panels: new Soup(points),
+    walls: new Soup(), beams: new Soup(18 * beams), nodes: new Soup(32 * nodes), flat: new Soup(count + corners),
+    edges: new Lines(points), flatEdges: new Lines(2 * corners), axes: new Lines(2 * nodes),
+    centers: [], lifts: [], corners: [], outlines: [], touching: [],
   };
   const at = (array, i) => [array[3 * i] / STEPS, array[3 * i + 1] / STEPS, array[3 * i + 2] / STEPS];
   addPanels(shapes, head, arrays, at);
@@ -37,53 +41,54 @@ export function buildShapes(head, arrays) {
 }
 
 /** The kinds of triangulated faces: points, triangles, and how many steps each edge has. */
-function patterns(sizes, triangles) {
-  const found = [];
-  for (let k = 0, t = 0; 2 * k < sizes.length; k++) {
-    const count = 3 * sizes[2 * k + 1];
-    found.push({ points: sizes[2 * k], triangles: triangles.subarray(t, t + count), steps: {} });
+function patterns(sizes, triangles, rims, kinds, degrees) {
+  const found = [], known = [];
+  kinds.forEach((kind, f) => { known[kind] ??= degrees[f]; });
+  for (let k = 0, t = 0, r = 0; 2 * k < sizes.length; k++) {
+    const count = 3 * sizes[2 * k + 1], steps = rims.subarray(r, r + known[k]);
+    const rim = steps.reduce((a, b) => a + b, 0);
+    found.push({ points: sizes[2 * k], triangles: triangles.subarray(t, t + count), steps, rim });
     t += count;
+    r += known[k];
   }
   return found;
-}
-
-/** The last points of a face lie on its rim, as many as its edges have steps. */
-function stepsOf(pattern, degree) {
-  if (degree in pattern.steps) return pattern.steps[degree];
-  const { points, triangles } = pattern;
-  // A fan of s steps a side has 1 + degree s (s + 1) / 2 points; ears have the rim alone.
-  let steps = points / degree;
-  for (let s = 1; 1 + (degree * s * (s + 1)) / 2 <= points; s++) {
-    if (1 + (degree * s * (s + 1)) / 2 === points && triangles.length === 3 * degree * s * s) steps = s;
-  }
-  return (pattern.steps[degree] = steps);
 }
 
 function addPanels(shapes, head, arrays, at) {
   const { panels: soup, parts: count } = shapes;
   if (!count) return;
-  const outer = patterns(arrays.outer_sizes, arrays.outer_triangles);
-  const inner = arrays.inner_sizes ? patterns(arrays.inner_sizes, arrays.inner_triangles) : null;
+  const kinds = (side) => ["sizes", "triangles", "rims", "kinds"].map((name) => arrays[`${side}_${name}`]);
+  const outer = patterns(...kinds("outer"), arrays.degrees);
+  const inner = arrays.inner_sizes ? patterns(...kinds("inner"), arrays.degrees) : null;
   let o = 0, i = 0;
   for (let f = 0; f < count; f++) {
-    const own = outer[arrays.outer_kinds[f]], degree = arrays.degrees[f];
+    const own = outer[arrays.outer_kinds[f]];
     const n = [arrays.normals[3 * f], arrays.normals[3 * f + 1], arrays.normals[3 * f + 2]];
     const face = shapes.surfaces.add(n, arrays.curvatures[f], at(arrays.outer_points, o), f);
-    const rim = addFace(soup, own, arrays.outer_points, arrays.outer_light, o, face, OUTER, degree);
-    addOutline(shapes, rim, f, degree);
+    const rim = addFace(soup, own, arrays.outer_points, arrays.outer_light, o, face, OUTER);
+    addOutline(shapes, rim, f);
     shapes.lifts.push(n);
     if (inner) {
       const other = inner[arrays.inner_kinds[f]];
-      const under = addFace(soup, other, arrays.inner_points, arrays.inner_light, i, face, INNER, degree);
-      addWalls(shapes, rim, under, f, degree, (e) => head.tight === true && head.panels.neighbors[f][e] !== null);
+      const under = addFace(soup, other, arrays.inner_points, arrays.inner_light, i, face, INNER);
+      const touches = head.panels.neighbors[f].map((j) => head.tight === true && j !== null);
+      addWalls(shapes, soup, rim, under, f, touches.map((yes) => !yes));
+      shapes.touching.push([rim, under, f, touches]);
       i += other.points;
     }
     o += own.points;
   }
+  if (count <= MANY) addTouchingWalls(shapes);
 }
 
-/** Its first vertex on the rim, and the steps of each edge. */
-function addFace(soup, pattern, points, light, start, face, side, degree) {
+/** Walls that touch a neighbour's are seen in sections only: of many panels they come later. */
+export function addTouchingWalls(shapes) {
+  for (const wall of shapes.touching) addWalls(shapes, shapes.walls, ...wall);
+  shapes.touching = [];
+}
+
+/** Its vertices on the rim, with the steps of each edge. */
+function addFace(soup, pattern, points, light, start, face, side) {
   const first = soup.size;
   for (let k = start; k < start + pattern.points; k++) {
     soup.vertex(
@@ -92,54 +97,55 @@ function addFace(soup, pattern, points, light, start, face, side, degree) {
     );
   }
   soup.pattern(first, pattern.triangles);
-  const steps = stepsOf(pattern, degree);
-  return { first: first + pattern.points - degree * steps, steps };
+  return { first: first + pattern.points - pattern.rim, count: pattern.rim, steps: pattern.steps };
 }
 
-function addOutline(shapes, rim, part, degree) {
-  const { panels: soup, edges, flat, flatEdges } = shapes, { first, steps } = rim;
-  const count = degree * steps, corners = [];
+function addOutline(shapes, { first, count, steps }, part) {
+  const { panels: soup, edges, flat, flatEdges } = shapes, degree = steps.length, places = [];
   for (let k = 0; k < count; k++) edges.between(soup, first + k, first + ((k + 1) % count), part);
-  for (let k = 0; k < degree; k++) corners.push(soup.point(first + k * steps));
-  const middle = scale(corners.reduce((a, b) => add(a, b), [0, 0, 0]), 1 / degree);
+  for (let k = 0, place = first; k < degree; place += steps[k++]) places.push(place);
+  const corners = places.map((place) => soup.point(place));
+  let middle = [0, 0, 0], n = [0, 0, 0], up = 0, down = 0;
+  for (const corner of corners) middle = add(middle, corner, 1 / degree);
   shapes.corners.push(corners);
   shapes.centers.push(middle);
-  let n = [0, 0, 0], up = 0, down = 0;
-  corners.forEach((p, k) => {
-    n = add(n, cross(sub(p, middle), sub(corners[(k + 1) % degree], middle)));
-    up += soup.shares[2 * (first + k * steps)] / degree;
-    down += soup.shares[2 * (first + k * steps) + 1] / degree;
-  });
+  for (let k = 0; k < degree; k++) {
+    n = add(n, cross(sub(corners[k], middle), sub(corners[(k + 1) % degree], middle)));
+    up += soup.shares[2 * places[k]] / degree;
+    down += soup.shares[2 * places[k] + 1] / degree;
+  }
   const plane = shapes.surfaces.add(unit(n), 0, middle, part);
-  const start = flat.vertex(...middle, plane, OUTER, up, down);
-  corners.forEach((p, k) => {
-    const i = first + k * steps;
+  const start = flat.vertex(middle[0], middle[1], middle[2], plane, OUTER, up, down);
+  for (let k = 0; k < degree; k++) {
+    const p = corners[k], i = places[k];
     flat.vertex(p[0], p[1], p[2], plane, OUTER, soup.shares[2 * i], soup.shares[2 * i + 1]);
     flat.triangle(start, start + 1 + k, start + 1 + ((k + 1) % degree));
     flatEdges.add(p, corners[(k + 1) % degree], part);
-  });
+  }
 }
 
-/** Walls, those that touch a neighbour's apart: they are seen in sections only. */
-function addWalls(shapes, rim, under, part, degree, touches) {
-  if (under.steps !== rim.steps) return;
-  const { panels: soup, edges } = shapes, { steps } = rim, count = degree * steps;
-  for (let e = 0; e < degree; e++) {
-    const place = (row, k) => row.first + ((e * steps + k) % count);
-    const top = soup.point(place(rim, 0)), end = soup.point(place(rim, steps)), low = soup.point(place(under, 0));
+/** The walls of a panel along those edges that are chosen. */
+function addWalls(shapes, target, rim, under, part, chosen) {
+  const { panels: soup, edges } = shapes, { count } = rim;
+  for (let e = 0, start = 0; e < chosen.length; start += rim.steps[e++]) {
+    if (!chosen[e]) continue;
+    const steps = rim.steps[e];
+    const top = soup.point(rim.first + start), low = soup.point(under.first + start);
+    const end = soup.point(rim.first + ((start + steps) % count));
     const wall = shapes.surfaces.add(unit(cross(sub(low, top), sub(end, top))), 0, top, part);
-    const target = touches(e) ? shapes.walls : soup;
-    const rows = [under, rim].map((row) => {
-      const first = target.size;
-      for (let k = 0; k <= steps; k++) {
-        const [x, y, z] = soup.point(place(row, k));
-        target.vertex(x, y, z, wall, WALL, 200, 200);
-      }
-      return first;
-    });
-    target.strip(rows[0], rows[1], steps + 1);
+    const lower = addRow(target, soup, under, start, steps, wall), upper = addRow(target, soup, rim, start, steps, wall);
+    target.strip(lower, upper, steps + 1);
     if (shapes.parts > MANY) continue;
-    for (let k = 0; k < steps; k++) edges.between(target, rows[0] + k, rows[0] + k + 1, part);
-    edges.between(target, rows[1], rows[0], part);
+    for (let k = 0; k < steps; k++) edges.between(target, lower + k, lower + k + 1, part);
+    edges.between(target, upper, lower, part);
   }
+}
+
+function addRow(target, soup, { first, count }, start, steps, wall) {
+  const row = target.size;
+  for (let k = start; k <= start + steps; k++) {
+    const i = 3 * (first + (k % count)), { points } = soup;
+    target.vertex(points[i], points[i + 1], points[i + 2], wall, WALL, 200, 200);
+  }
+  return row;
 }

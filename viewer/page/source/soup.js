@@ -1,6 +1,6 @@
 // Triangles, lines and surfaces in arrays that grow.
 
-const MANY = 1 << 14;
+const LITTLE = 1 << 10;
 
 function grown(array, length) {
   if (array.length >= length) return array;
@@ -11,13 +11,15 @@ function grown(array, length) {
 
 /** Vertices and triangles: points in whole models' sizes, each with its surface and light. */
 export class Soup {
-  constructor() {
+  /** Room for so many vertices, and more as it is needed. */
+  constructor(room = LITTLE) {
+    const count = Math.max(1, room);
     this.size = this.corners = 0;
-    this.points = new Float32Array(3 * MANY);
-    this.owners = new Float32Array(MANY);
-    this.shares = new Uint8Array(2 * MANY);
-    this.kinds = new Uint8Array(MANY);
-    this.ids = new Uint32Array(6 * MANY);
+    this.points = new Float32Array(3 * count);
+    this.owners = new Float32Array(count);
+    this.shares = new Uint8Array(2 * count);
+    this.kinds = new Uint8Array(count);
+    this.ids = new Uint32Array(6 * count);
   }
 
   get positions() { return this.points.subarray(0, 3 * this.size); }
@@ -73,10 +75,11 @@ export class Soup {
 
 /** Segments of lines, each end with its part. */
 export class Lines {
-  constructor() {
+  constructor(room = LITTLE) {
+    const count = Math.max(1, room);
     this.size = 0;
-    this.points = new Float32Array(3 * MANY);
-    this.owners = new Float32Array(MANY);
+    this.points = new Float32Array(3 * count);
+    this.owners = new Float32Array(count);
   }
 
   get positions() { return this.points.subarray(0, 3 * this.size); }
@@ -109,9 +112,9 @@ export class Lines {
 
 /** Surfaces: three texels each, see `shapes.js`. */
 export class Surfaces {
-  constructor() {
+  constructor(room = LITTLE) {
     this.length = 0;
-    this.rows = new Float32Array(12 * MANY);
+    this.rows = new Float32Array(12 * Math.max(1, room));
   }
 
   /** The plane, sphere or cylinder with normal n at p, curvature A and an axis. */

@@ -1,19 +1,5 @@
 // What `viewer/page/container.py` has packed: a head of plain values, and arrays.
 
-const text = (id) => document.getElementById(id).textContent.trim();
-
-async function inflate(base64) {
-  const binary = atob(base64);
-  const bytes = new Uint8Array(binary.length);
-  for (let i = 0; i < bytes.length; i++) bytes[i] = binary.charCodeAt(i);
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
-}
-
-export async function unpackModel(id) {
-  return decodeModel(await inflate(text(id)));
-}
-
 /** Head and arrays of the bytes of a model. */
 export function decodeModel(data) {
   const length = new DataView(data.buffer, data.byteOffset).getUint32(0, true);

@@ -1,56 +1,13 @@
 // The picture: what is drawn, from where, and which part is under the pointer.
 
-import {
-  BufferAttribute, BufferGeometry, DataTexture, DoubleSide, FloatType, FrontSide, GLSL3,
-  LinearFilter, LineSegments, Mesh, NearestFilter, PerspectiveCamera, PlaneGeometry,
-  RawShaderMaterial, RedFormat, RGBAFormat, Scene, UnsignedByteType, Vector3, Vector4,
-  WebGLRenderer, WebGLRenderTarget,
-} from "three";
+import { DoubleSide, FrontSide, PerspectiveCamera, Scene, Vector3, WebGLRenderer, WebGLRenderTarget } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import {
-  GROUND_FRAGMENT, GROUND_VERTEX, LINE_FRAGMENT, LINE_VERTEX, MESH_FRAGMENT, MESH_VERTEX,
-} from "./shaders.js";
-import { Lines } from "./soup.js";
-import { add, cross, dot, length, scale, sub, unit } from "./vectors.js";
+import { cameraThatFits, FIELD } from "./cameras.js";
+import { groundOf, linesOf, makeUniforms, meshGeometry, meshOf, surfaceTexture } from "./scene.js";
+import { addTouchingWalls } from "./shapes.js";
+import { add, cross, length, sub, unit } from "./vectors.js";
 
-const FIELD = 24, MANY = 2000;
-const PULL = 4e-6; // of lines before the surfaces that they lie on, in depth
-export const NAMED_VIEWS = {
-  home: null, top: [0, -0.001, 1], front: [0, -1, 0.12], side: [1, 0, 0.12], below: [0.5, -0.7, -0.6],
-};
-
-const table = (data, width, height) => texture(data, width, height, RGBAFormat, FloatType, NearestFilter);
-
-function texture(data, width, height, format, type, filter) {
-  const result = new DataTexture(data, width, height, format, type);
-  result.minFilter = result.magFilter = filter;
-  result.needsUpdate = true;
-  return result;
-}
-
-function meshGeometry(soup) {
-  const result = new BufferGeometry();
-  result.setAttribute("position", new BufferAttribute(soup.positions, 3));
-  result.setAttribute("surface", new BufferAttribute(soup.surfaces, 1));
-  result.setAttribute("side", new BufferAttribute(soup.sides, 1));
-  result.setAttribute("light", new BufferAttribute(soup.lights, 2, true));
-  result.setIndex(new BufferAttribute(soup.triangles, 1));
-  return result;
-}
-
-function lineGeometry(lines) {
-  const result = new BufferGeometry();
-  result.setAttribute("position", new BufferAttribute(lines.positions, 3));
-  result.setAttribute("part", new BufferAttribute(lines.parts, 1));
-  return result;
-}
-
-/** Displacement of each part where the model is drawn apart, for an amount of 1: texels. */
-function shiftTexels(shapes) {
-  const rows = Math.ceil(Math.max(1, shapes.centers.length) / 1024), data = new Float32Array(4096 * rows);
-  shapes.centers.forEach((c, i) => data.set(add(scale(c, 0.4), shapes.lifts[i], 0.07), 4 * i));
-  return data;
-}
+const MANY = 2000;
 
 export class View {
   constructor(canvas, head, arrays, shapes) {
@@ -83,7 +40,7 @@ export class View {
     this.shapes = shapes;
     const parts = shapes.centers.length;
     this.colorData = new Uint8Array(1024 * Math.ceil(Math.max(1, parts) / 1024) * 4).fill(255);
-    this.uniforms = this.makeUniforms(parts);
+    this.uniforms = makeUniforms(shapes, this.colorData);
     this.edge = meanEdge(shapes.corners);
     this.build(head, arrays);
     this.draw();
@@ -109,52 +66,31 @@ export class View {
     this.renderer.dispose();
   }
 
-  makeUniforms(parts) {
-    const rows = Math.ceil(Math.max(1, parts) / 1024), [texels, height] = this.shapes.surfaces.texels(1536);
-    return {
-      surfaces: { value: table(texels, 1536, height) },
-      shifts: { value: table(shiftTexels(this.shapes), 1024, rows) },
-      colors: { value: texture(this.colorData, 1024, rows, RGBAFormat, UnsignedByteType, NearestFilter) },
-      shading: { value: 0 }, selected: { value: -1 }, picking: { value: 0 },
-      cuts: { value: false }, solid: { value: false }, explode: { value: 0 },
-      eye: { value: new Vector3() }, right: { value: new Vector3(1, 0, 0) },
-      back: { value: new Vector3(0, 1, 0) }, sun: { value: new Vector3(0, 0, 1) },
-      plane: { value: new Vector4(1, 0, 0, 9) },
-    };
-  }
-
   build(head, arrays) {
-    const { shapes } = this, { uniforms } = this;
-    const material = (solid) => new RawShaderMaterial({
-      vertexShader: MESH_VERTEX, fragmentShader: MESH_FRAGMENT, glslVersion: GLSL3, side: DoubleSide,
-      uniforms: { ...uniforms, solid: { value: solid } },
-    });
-    const line = (ink, only = -1, pull = PULL) => new RawShaderMaterial({
-      vertexShader: LINE_VERTEX, fragmentShader: LINE_FRAGMENT, glslVersion: GLSL3, transparent: true,
-      uniforms: { ...uniforms, ink: { value: new Vector4(...ink) }, only: { value: only }, pull: { value: pull } },
-      depthWrite: false,
-    });
-    const mesh = (soup, solid) => new Mesh(meshGeometry(soup), material(solid));
+    const { shapes, uniforms } = this, mesh = (soup, solid) => meshOf(soup, uniforms, solid);
     this.meshes = {
       panels: mesh(shapes.panels, head.solid), walls: mesh(shapes.walls, head.solid), flat: mesh(shapes.flat, false),
       beams: mesh(shapes.beams, true), nodes: mesh(shapes.nodes, true),
     };
-    const ink = [0.13, 0.15, 0.18, 0.5], edges = lineGeometry(shapes.edges);
-    this.marked = line([0.78, 0.30, 0.02, 1], -1, 0.0006);
-    this.lines = {
-      edges: new LineSegments(edges, line(ink)),
-      flatEdges: new LineSegments(lineGeometry(shapes.flatEdges), line(ink)),
-      marked: new LineSegments(edges, this.marked),
-      axes: new LineSegments(lineGeometry(shapes.axes), line([0.10, 0.30, 0.62, 0.9])),
-      missing: new LineSegments(lineGeometry(outlines(shapes)), line([0.78, 0.16, 0.12, 1], -2)),
-    };
-    this.ground = ground(head, arrays);
+    this.lines = linesOf(shapes, uniforms);
+    this.marked = this.lines.marked.material;
+    this.ground = groundOf(head, arrays);
     // In this order: what hides most comes first, and what it hides is not shaded.
     this.renderer.sortObjects = false;
     for (const each of [this.ground, ...Object.values(this.meshes), ...Object.values(this.lines)]) {
       each.frustumCulled = false;
       this.scene.add(each);
     }
+  }
+
+  /** Walls that touch, when they are first seen. */
+  buildWalls() {
+    const { shapes, uniforms, meshes } = this;
+    addTouchingWalls(shapes);
+    uniforms.surfaces.value.dispose();
+    uniforms.surfaces.value = surfaceTexture(shapes);
+    meshes.walls.geometry.dispose();
+    meshes.walls.geometry = meshGeometry(shapes.walls);
   }
 
   setColors(colors) {
@@ -176,30 +112,11 @@ export class View {
     if (this.ready) this.drawNow();
   }
 
-  /** The nearest camera from a direction whose pyramid holds the model: `frame_scene`. */
+  /** Look at the whole model from a direction. */
   fit(direction) {
     this.fitted = direction;
-    const axes = viewAxes(direction);
-    const t = Math.tan((FIELD * Math.PI) / 360), sides = this.freeSides();
-    // Of each pair of sides the slopes: left and right, below and above.
-    const slopes = [[sides.left, sides.right].map((m) => t * this.camera.aspect * m), [sides.below, sides.above].map((m) => t * m)];
-    const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
-    let near = -Infinity, far = Infinity;
     const points = this.shapes.corners.length ? this.shapes.corners.flat() : this.shapes.centers;
-    for (const p of points) {
-      const z = dot(axes[2], p);
-      near = Math.max(near, z);
-      far = Math.min(far, z);
-      slopes.forEach(([s, r], k) => {
-        const x = dot(axes[k], p);
-        low[k] = Math.min(low[k], x - s * z);
-        high[k] = Math.max(high[k], x + r * z);
-      });
-    }
-    const distance = Math.max(...slopes.map(([s, r], k) => (high[k] - low[k]) / (s + r)));
-    const middle = slopes.map(([s, r], k) => (low[k] + s * distance + high[k] - r * distance) / 2);
-    const eye = [0, 1, 2].map((k) => axes[0][k] * middle[0] + axes[1][k] * middle[1] + axes[2][k] * distance);
-    const target = add(eye, axes[2], (near + far) / 2 - distance);
+    const [eye, target] = cameraThatFits(points, direction, this.camera.aspect, this.freeSides());
     this.camera.position.set(...eye);
     this.controls.target.set(...target);
     this.controls.update();
@@ -286,6 +203,7 @@ export class View {
     meshes.panels.visible = visible.panels && !flat;
     // Walls that touch are seen in a section, or where parts stand apart.
     const open = this.uniforms.cuts.value || this.uniforms.explode.value > 0;
+    if (open && this.shapes.touching.length) this.buildWalls();
     meshes.walls.visible = meshes.panels.visible && open;
     meshes.flat.visible = visible.panels && flat;
     lines.edges.visible = visible.panels && visible.edges && !flat;
@@ -379,37 +297,4 @@ function meanEdge(polygons) {
     count += corners.length;
   }
   return count ? sum / count : 1;
-}
-
-function outlines(shapes) {
-  const lines = new Lines();
-  shapes.outlines.forEach((outline, i) => {
-    if (!outline.length) return;
-    const middle = shapes.centers[shapes.total + i];
-    const corners = outline.map((p) => add(p, add(middle, p, -1), 0.06));
-    const part = shapes.total + i, half = Math.floor(corners.length / 2);
-    corners.forEach((p, k) => lines.add(p, corners[(k + 1) % corners.length], part));
-    corners.slice(0, half).forEach((p, k) => lines.add(p, corners[k + half], part));
-  });
-  return lines;
-}
-
-function ground(head, arrays) {
-  const n = head.ground.points, shade = new Uint8Array(arrays.ground);
-  const map = texture(shade, n, n, RedFormat, UnsignedByteType, LinearFilter);
-  const plane = new PlaneGeometry(head.ground.size, head.ground.size);
-  const material = new RawShaderMaterial({
-    vertexShader: GROUND_VERTEX, fragmentShader: GROUND_FRAGMENT, glslVersion: GLSL3, transparent: true,
-    depthWrite: false, side: FrontSide, uniforms: { shade: { value: map } },
-  });
-  const result = new Mesh(plane, material);
-  result.position.set(...head.ground.middle);
-  return result;
-}
-
-function viewAxes(direction) {
-  const back = unit(direction);
-  const upright = Math.abs(back[2]) < 0.9999 ? [0, 0, 1] : [0, 1, 0];
-  const right = unit(cross(upright, back));
-  return [right, cross(back, right), back];
 }

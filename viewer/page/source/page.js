@@ -1,0 +1,246 @@
+// The page: its state, and what changes by it.
+
+import { addressOf, LAYERS, showAddress } from "./address.js";
+import { cardMarkup, spoken } from "./card.js";
+import { colorModes, legendMarkup, partColors, passes, scaleOf } from "./colors.js";
+import { faultsMarkup, missingMarkup } from "./faults.js";
+import { listen } from "./listeners.js";
+import { PartList } from "./list.js";
+import { locate, Measure } from "./measure.js";
+import { findPart, makeModel } from "./model.js";
+import { paint } from "./painter.js";
+import { buildShapes } from "./shapes.js";
+import { escapeText, number, plural } from "./text.js";
+import { View } from "./view.js";
+
+const $ = (id) => document.getElementById(id);
+
+export class Page {
+  constructor(head, arrays) {
+    this.model = makeModel(head);
+    this.shapes = buildShapes(head, arrays);
+    this.head = head;
+    this.modes = colorModes(this.model);
+    this.state = { color: this.modes[0].key, shading: 0, flat: "off", axis: "", depth: 0.5, explode: 0, part: -1, hidden: new Set(["axes"]) };
+    this.filter = null;
+    this.home = head.home;
+    try {
+      this.view = new View($("canvas"), head, arrays, this.shapes);
+      this.view.ready = false; // until `drawFirst` has drawn
+    } catch {
+      this.view = null;
+    }
+    this.measure = this.view ? new Measure(this.view, $("measure"), head.size_mm) : null;
+    if (this.view) this.view.drawn = () => this.measure.draw();
+    this.list = new PartList($("table"), this.model, (part) => this.choose(part));
+  }
+
+  get mode() { return this.modes.find((mode) => mode.key === this.state.color); }
+
+  start() {
+    const { model } = this;
+    $("title").querySelector("h1").textContent = model.title;
+    $("title").querySelector("p").innerHTML = this.summary();
+    $("color").innerHTML = this.modes.map((m) => `<option value="${m.key}">${escapeText(m.name)}</option>`).join("");
+    if (model.count <= 3000) $("names").innerHTML = model.ids.map((id) => `<option value="${escapeText(id)}">`).join("");
+    this.fillFaults();
+    this.fillLayers();
+    listen(this);
+    $("app").classList.remove("loading");
+    $("message").textContent = "";
+    if (!this.view) this.paintInstead();
+    this.view?.resize();
+    this.readAddress();
+    this.refresh();
+    if (this.view && !this.placed) {
+      this.view.fit(this.home);
+      if (this.state.part >= 0) this.view.reveal(this.state.part);
+    }
+  }
+
+  summary() {
+    const { model } = this, worst = [...model.worst], errors = worst.filter((w) => w === 2).length;
+    const texts = [plural(model.panels.id.length, "panel")];
+    if (model.beams.id.length) texts.push(plural(model.beams.id.length, "beam"));
+    if (model.moulds.length) texts.push(plural(model.moulds.length, "mould"));
+    if (errors) texts.push(`<button>${plural(errors, "part")} with errors</button>`);
+    if (model.missing.length) texts.push(`<b>${number(model.missing.length)} missing</b>`);
+    return texts.join(" · ");
+  }
+
+  fillFaults() {
+    $("missing").hidden = this.model.missing.length === 0;
+    $("missing").innerHTML = missingMarkup(this.model);
+    $("faults").innerHTML = faultsMarkup(this.model);
+    $("faults").hidden = !$("faults").innerHTML;
+  }
+
+  fillLayers() {
+    const { model } = this;
+    const has = { panels: model.panels.id.length, edges: model.panels.id.length, beams: model.beams.id.length, nodes: model.nodes.id.length, axes: this.shapes.axes.size, missing: this.shapes.outlines.some((o) => o.length) };
+    $("layers").querySelector(".checks").innerHTML = Object.entries(LAYERS).filter(([key]) => has[key])
+      .map(([key, name]) => `<label><input type="checkbox" data-layer="${key}" checked>${name}</label>`).join("");
+  }
+
+  paintInstead() {
+    $("app").classList.add("painted");
+    $("message").textContent = "This browser shows no WebGL, so the model stands still. Colours, search and the table work; to turn it, allow hardware acceleration or open the page in another browser.";
+    this.showTable(true);
+  }
+
+  /** A click or a touch of the picture: a part, or an end of a distance. */
+  tap(x, y) {
+    if (!this.measure.on) {
+      this.select(this.view.pick(x, y));
+      return;
+    }
+    this.measure.take(locate(this.view, x, y));
+    if (this.measure.distance !== null) $("spoken").textContent = this.measure.text().join("; ");
+    this.writeAddress();
+  }
+
+  /** Parts that are drawn apart are not where they are: there is nothing to measure. */
+  setMeasuring(on) {
+    this.measure.on = on && !this.state.explode;
+    if (!this.measure.on) this.measure.points = [];
+    $("measuring").firstElementChild.setAttribute("aria-pressed", String(this.measure.on));
+    $("stage").classList.toggle("measuring", this.measure.on);
+    this.measure.draw();
+    this.writeAddress();
+  }
+
+  moveDivider(share) {
+    this.view.swipe = Math.min(0.98, Math.max(0.02, share));
+    $("divider").style.left = `${100 * this.view.swipe}%`;
+    $("divider").querySelector("i").setAttribute("aria-valuenow", Math.round(100 * this.view.swipe));
+    this.view.draw();
+  }
+
+  toggleKind(kind) {
+    const kinds = new Set(this.filter?.kinds ?? []);
+    if (kinds.has(kind)) kinds.delete(kind);
+    else kinds.add(kind);
+    this.filter = kinds.size ? { kinds } : null;
+    this.refresh();
+  }
+
+  /** Only the parts of some kinds, in their colours. */
+  showKinds(color, ...kinds) {
+    this.state.color = color;
+    this.filter = { kinds: new Set(kinds) };
+    this.refresh();
+  }
+
+  /** The next panel among those that the filter leaves. */
+  step(by) {
+    const left = this.left().filter((i) => i < this.model.panels.id.length).sort((a, b) => a - b);
+    if (!left.length) return;
+    const after = left.findIndex((i) => i > this.state.part), place = left.indexOf(this.state.part);
+    const start = place >= 0 ? place + by : by > 0 ? (after < 0 ? 0 : after) : (after < 0 ? left.length : after) - 1;
+    this.choose(left[(start + left.length) % left.length]);
+  }
+
+  left() {
+    const { mode, filter, model } = this, count = model.panels.id.length;
+    const scale = mode.values ? scaleOf(mode) : null, found = [];
+    for (let i = 0; i < model.count; i++) if (passes(mode, filter, i, count, scale)) found.push(i);
+    return found;
+  }
+
+  find() {
+    const input = $("search").querySelector("input");
+    if (!input.value.trim()) return;
+    const part = findPart(this.model, input.value);
+    input.classList.toggle("unknown", part < 0);
+    if (part >= 0) this.choose(part);
+    else $("spoken").textContent = `There is no part ${input.value}.`;
+  }
+
+  set(changes, clear = false) {
+    Object.assign(this.state, changes);
+    if (clear) this.filter = null;
+    this.refresh();
+  }
+
+  /** Select a part by its name, and turn the model until it is seen. */
+  choose(part) {
+    this.view?.reveal(part);
+    this.select(part);
+  }
+
+  select(part) {
+    this.state.part = part;
+    $("card").hidden = part < 0;
+    if (part >= 0) {
+      $("card").innerHTML = cardMarkup(this.model, part);
+      $("spoken").textContent = spoken(this.model, part);
+    }
+    this.view?.select(part);
+    this.list.select(part);
+    this.writeAddress();
+  }
+
+  showTable(open) {
+    $("table").hidden = !open;
+    $("listing").setAttribute("aria-expanded", String(open));
+    if (open) {
+      this.list.show(this.left());
+      this.list.select(this.state.part);
+    }
+  }
+
+  refresh() {
+    const { state, view, mode } = this;
+    $("color").value = state.color;
+    $("scale").innerHTML = legendMarkup(mode, this.filter, this.model);
+    $("all").hidden = !this.filter;
+    for (const id of ["shading", "flat", "axis"]) {
+      for (const button of $(id).children) button.setAttribute("aria-pressed", String(button.dataset.value === String(state[id])));
+    }
+    for (const box of $("layers").querySelectorAll("input")) box.checked = !state.hidden.has(box.dataset.layer);
+    $("depth").disabled = !state.axis;
+    $("depth").value = Math.round(1000 * state.depth);
+    $("explode").value = Math.round(1000 * state.explode);
+    const size = 1024 * Math.ceil(Math.max(1, this.shapes.centers.length) / 1024) * 4;
+    const colors = partColors(mode, this.filter, this.model, size);
+    if (view) this.refreshView(colors);
+    else paint($("canvas"), this.shapes, colors, this.home);
+    if (!$("table").hidden) this.list.show(this.left());
+    this.writeAddress();
+  }
+
+  refreshView(colors) {
+    const { state, view } = this, { uniforms } = view;
+    uniforms.shading.value = state.shading;
+    uniforms.explode.value = state.explode;
+    if (state.explode && this.measure.on) this.setMeasuring(false);
+    $("measuring").firstElementChild.disabled = state.explode > 0;
+    uniforms.cuts.value = state.axis !== "";
+    const k = "xyz".indexOf(state.axis), { low, high } = this.head;
+    if (k >= 0) {
+      const n = [0, 0, 0];
+      // The nearer part goes: one looks into the section.
+      const sign = this.home[k] < 0 ? -1 : 1;
+      n[k] = sign;
+      const place = sign > 0 ? high[k] - state.depth * (high[k] - low[k]) : low[k] + state.depth * (high[k] - low[k]);
+      uniforms.plane.value.set(...n, sign * place);
+    }
+    for (const layer of Object.keys(LAYERS)) view.visible[layer] = !state.hidden.has(layer);
+    view.flat = state.flat;
+    $("divider").hidden = state.flat !== "swipe";
+    if (state.flat === "swipe") this.moveDivider(view.swipe);
+    view.setColors(colors);
+  }
+
+  writeAddress() {
+    clearTimeout(this.later);
+    this.later = setTimeout(() => {
+      this.written = addressOf(this);
+      try { history.replaceState(null, "", this.written); } catch { /* a sandboxed frame has no address */ }
+    }, 250);
+  }
+
+  readAddress() {
+    if (location.hash.length > 1 && location.hash !== this.written) showAddress(this, location.hash);
+  }
+}
