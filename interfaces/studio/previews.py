@@ -36,7 +36,6 @@ from .scenes import (
     mesh_scene,
     packed_scene,
     panels_scene,
-    point_stars,
     row_scene,
     vertex_scene,
 )
@@ -203,7 +202,7 @@ def _array_scene(array: NDArray[Any], carriers: Carriers, name: str, unit: str) 
     if array.ndim == 3 and array.shape[1:] == (2, 3) and len(array):
         return _lines(array[:, 0], array[:, 1], carriers, words)
     if array.ndim == 2 and array.shape[1] == 3 and len(array) and np.isfinite(array).all():
-        return _lines(*point_stars(array.astype(float)), carriers, words)
+        return _lines(*_point_stars(array.astype(float)), carriers, words)
     if array.ndim != 1:
         return None
     values = array.astype(np.int64) if array.dtype.kind in "biu" else array.astype(float)
@@ -233,6 +232,13 @@ def _colored(carrier: Mesh | SphereMesh | Panels, colors: Colors, words: str) ->
     if count == len(net.topology.edge_corners):
         return edge_scene(net, colors, words)
     return None
+
+
+def _point_stars(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Points as three short rods each: starts and ends (3 N, 3)."""
+    reach = 0.004 * (float(np.ptp(points, axis=0).max()) or 1.0) * np.eye(3)
+    starts = (points[:, None] - reach).reshape(-1, 3)
+    return starts, (points[:, None] + reach).reshape(-1, 3)
 
 
 def _numbers(array: NDArray[Any], name: str, unit: str) -> bytes:

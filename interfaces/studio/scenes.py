@@ -150,6 +150,10 @@ def _head(
 ) -> dict[str, Any]:  # fmt: skip
     low = (np.min([each.min(axis=0) for each in points], axis=0) - grid.center) / grid.size
     beams, nodes = scene.beams, scene.nodes
+    # Without neighbours every wall is drawn.
+    alone = [
+        [None] * n for n in ([] if scene.panels is None else scene.panels.degrees.tolist())
+    ]
     return {
         "kind": "model",
         "words": scene.words,
@@ -160,7 +164,7 @@ def _head(
         "size": grid.size,
         "center": grid.center.tolist(),
         "ground": ground,
-        "panels": {"id": list(scene.ids)},
+        "panels": {"id": list(scene.ids), "neighbors": alone},
         "beams": {"id": list(beams.ids) if beams is not None else []},
         "beam_thickness": beams.thickness / grid.size if beams is not None else 0.0,
         "nodes": {"id": list(nodes.ids) if nodes is not None else []},
@@ -357,13 +361,6 @@ def _pieces(
         corners.reshape(-1, 3), offsets, corners.mean(axis=1), outwards, np.zeros(count)
     )
     return Scene(polygons=polygons, colors=[colors], ids=ids, words=words, edges=False)
-
-
-def point_stars(points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Points as three short rods each: starts and ends (3 N, 3)."""
-    reach = 0.004 * (float(np.ptp(points, axis=0).max()) or 1.0) * np.eye(3)
-    starts = (points[:, None] - reach).reshape(-1, 3)
-    return starts, (points[:, None] + reach).reshape(-1, 3)
 
 
 def row_scene(meshes: Sequence[Mesh | SphereMesh], words: str) -> Scene:

@@ -206,8 +206,11 @@ export const canvasActions = { current: null };
 /** Move the canvas until all of a node is seen, if it is not. */
 function reveal(node, box, flow) {
   const inner = node.getBoundingClientRect(), outer = box.getBoundingClientRect(), { x, y, zoom } = flow.getViewport();
+  // On a narrow canvas the list of sliders takes the lower part.
+  const list = box.querySelector(".sliders")?.getBoundingClientRect();
+  const low = list && list.width > outer.width / 2 ? list.top : outer.bottom;
   const off = (low, high, first, last) => (low < first ? first - low : Math.min(0, Math.max(last - high, first - low)));
-  const dx = off(inner.left, inner.right, outer.left + 16, outer.right - 16), dy = off(inner.top, inner.bottom, outer.top + 16, outer.bottom - 16);
+  const dx = off(inner.left, inner.right, outer.left + 16, outer.right - 16), dy = off(inner.top, inner.bottom, outer.top + 16, low - 16);
   if (dx || dy) flow.setViewport({ x: x + dx, y: y + dy, zoom }, { duration: 200 });
 }
 
