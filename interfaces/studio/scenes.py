@@ -151,9 +151,8 @@ def _head(
     low = (np.min([each.min(axis=0) for each in points], axis=0) - grid.center) / grid.size
     beams, nodes = scene.beams, scene.nodes
     # Without neighbours every wall is drawn.
-    alone = [
-        [None] * n for n in ([] if scene.panels is None else scene.panels.degrees.tolist())
-    ]
+    degrees: list[int] = [] if scene.panels is None else scene.panels.degrees.tolist()
+    alone = [[None] * degree for degree in degrees]
     return {
         "kind": "model",
         "words": scene.words,
