@@ -63,7 +63,7 @@ docs: system
 	@$(BIN)/python -c 'import furo, myst_parser' 2>/dev/null || $(BIN)/python -m pip install -qq --group docs
 	$(BIN)/python docs/site/build.py out/docs
 
-# All pictures of README and docs, and the gallery with its numbers.
+# All pictures of README and docs, those of page and studio too, and the gallery with its numbers.
 figures: system browser
 	$(BIN)/python examples/pictures.py docs/images
 	$(BIN)/python examples/page_pictures.py docs/images

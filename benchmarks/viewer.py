@@ -14,12 +14,13 @@ from typing import TypeVar
 
 import numpy as np
 
+from spheremesh.kernel.arrays import FloatArray, IntArray
 from spheremesh.kernel.beams.beams import Beams
 from spheremesh.kernel.panels.cutting import cut_panels
 from spheremesh.kernel.panels.panels import Panels
 from spheremesh.kernel.panels.tessellation import tessellate
 from spheremesh.kernel.sphere_meshes.fit import fit_spheres
-from spheremesh.kernel.surfaces.circular_nets import roof_net
+from spheremesh.kernel.surfaces.circular_nets import roof_net, torus_net
 from spheremesh.nodes import beams as cut_beams
 from spheremesh.nodes import (
     bisector_support,
@@ -73,10 +74,29 @@ def picture(rows: int, columns: int, carried: str) -> None:
 
 
 def triangles() -> None:
-    """Seconds of triangles, and whether panels are closed to the bit."""
+    """Seconds of triangles, and whether a closed net of spheres is closed to the bit."""
     made, _ = model(50, 100)
     skin, seconds = timed(lambda: tessellate(made))
-    print(f"triangles of {made.n_panels} panels: {seconds:.2f} s CPU, {len(skin.triangles)}")
+    print(f"triangles of {made.n_panels} solids: {seconds:.2f} s CPU, {len(skin.triangles)}")
+    for thickness in (0.0, 0.01):
+        spheres = fit_spheres(torus_net(100, 50, 3.0, 1.0))
+        torus, _ = cut_panels(spheres, "intersection", thickness=thickness)
+        skin, seconds = timed(lambda: tessellate(torus))  # noqa: B023
+        outer = skin.triangles[skin.surfaces < torus.n_panels]
+        print(
+            f"triangles of a torus of {torus.n_panels} panels {thickness:g} thick: "
+            f"{seconds:.2f} s CPU, {open_edges(skin.points, outer)} of {3 * len(outer)} edges "
+            "of the outer faces are open"
+        )
+
+
+def open_edges(points: FloatArray, corners: IntArray) -> int:
+    """Directed edges of triangles without their opposite; points are equal to the bit alone."""
+    _, ids = np.unique(points, axis=0, return_inverse=True)
+    rows = ids.ravel()[corners]
+    halves = np.concatenate([np.roll(rows, k, axis=1)[:, :2] for k in range(3)])
+    known = {tuple(half) for half in halves.tolist()}
+    return sum((b, a) not in known for a, b in known)
 
 
 def report(folder: Path) -> None:
@@ -96,6 +116,7 @@ if __name__ == "__main__":
         picture(int(words[1]), int(words[2]), words[3])
     else:
         with tempfile.TemporaryDirectory() as name:
+            # First, while this process is small: others that it starts count its memory.
+            pictures(Path(name))
             triangles()
             report(Path(name))
-            pictures(Path(name))

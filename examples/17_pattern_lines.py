@@ -8,7 +8,7 @@ from PIL import Image
 import spheremesh as sm
 from spheremesh.nodes import panels, quad_pattern, render
 
-WIDTH, HEIGHT, EDGE = 620, 400, 0.9
+WIDTH, HEIGHT, EDGE = 620, 400, 1.15
 
 
 def height(x: np.ndarray, y: np.ndarray) -> np.ndarray:

@@ -237,6 +237,11 @@ def pattern_lines() -> Image.Image:
     return _made_by("17_pattern_lines", "pattern_lines.png").quantize(128)
 
 
+def pattern_scales() -> Image.Image:
+    """One pattern without every second line, as it is, and split."""
+    return _made_by("18_pattern_scales", "pattern_scales.png").quantize(128)
+
+
 def supports() -> Image.Image:
     """Beams on node axes from below, one of their nodes, and upright beams at a cylinder."""
     mesh = roof_mesh(12, 18)
@@ -405,6 +410,7 @@ PICTURES = {
     "quad-pattern": quad_pattern,
     "patterns": patterns,
     "pattern-lines": pattern_lines,
+    "pattern-scales": pattern_scales,
     "supports": supports,
     "cost-curve": cost_against_smoothness,
     "assemblies": assemblies,

@@ -80,6 +80,24 @@ def sum_by(ids: IntArray, values: FloatArray, size: int) -> FloatArray:
     return np.stack(columns, axis=1)
 
 
+def gather(table: FloatArray, ids: IntArray) -> FloatArray:
+    """Rows of a table, its columns stored one after the other: ``table[ids]``, only faster.
+
+    So do formulas run along all rows and not over the few numbers of each.
+
+    Parameters
+    ----------
+    table : (n, k) float array
+    ids : (m,) int array
+
+    Returns
+    -------
+    (m, k) float array
+        In Fortran order.
+    """
+    return np.take(table.T, ids, axis=1).T
+
+
 def batches_by_count(ids: IntArray, size: int) -> Iterator[tuple[IntArray, IntArray]]:
     """Groups of equal size, gathered so that each batch is one array.
 

@@ -11,7 +11,8 @@ os.environ["SPHEREMESH_CACHE"] = "off"
 @pytest.fixture(autouse=True)
 def interruptible() -> Generator[None]:
     """No test, and no library that it calls, leaves another handler of Ctrl+C."""
+    before = signal.getsignal(signal.SIGINT)
     yield
-    handler = signal.getsignal(signal.SIGINT)
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    assert handler is signal.default_int_handler
+    after = signal.getsignal(signal.SIGINT)
+    signal.signal(signal.SIGINT, before)
+    assert after is before

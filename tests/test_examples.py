@@ -9,8 +9,16 @@ import pytest
 
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("[0-9]*.py"))
 
+LONG = {"17_pattern_lines"}
+"""Six patterns: 12 seconds."""
 
-@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
+CASES = [
+    pytest.param(path, id=path.stem, marks=[pytest.mark.long] if path.stem in LONG else [])
+    for path in EXAMPLES
+]
+
+
+@pytest.mark.parametrize("example", CASES)
 def test_example_runs(example: Path, tmp_path: Path) -> None:
     command = [sys.executable, str(example)]
     environment = {**os.environ, "PYTHONWARNINGS": "default"}

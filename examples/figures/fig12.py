@@ -2,14 +2,14 @@
 
 from figure import Figure, View, cut, run
 
-from spheremesh.nodes import face_planes, fit_spheres, minimize_angles, vase_mesh
+from spheremesh.nodes import ellipsoid_mesh, face_planes, fit_spheres, minimize_angles
 
 
 def draw(*, small: bool = False) -> Figure:
-    """A vase at two levels of detail."""
+    """An ellipsoid at two levels of detail."""
     n, m = (16, 10) if small else (40, 24)
     fine, coarse = (
-        minimize_angles(fit_spheres(vase_mesh(n // k, m // k, amplitude=0.2))) for k in (1, 2)
+        minimize_angles(fit_spheres(ellipsoid_mesh(n // k, m // k))) for k in (1, 2)
     )
     flat = fine.report["angles_deg"]["planar"]["mean"]
     angles = [each.report["angles_deg"]["spherical"]["mean"] for each in (fine, coarse)]

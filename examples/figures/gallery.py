@@ -49,7 +49,8 @@ def main() -> None:
     figures: dict[str, Figure] = {}
     for script in SCRIPTS:
         figures[script] = importlib.import_module(script).draw()
-        print(f"{figures[script].name}: {figures[script].says}", flush=True)
+        holds = "" if figures[script].holds else " THIS DOES NOT HOLD"
+        print(f"{figures[script].name}: {figures[script].says}{holds}", flush=True)
         path = DOCS / "images" / "figures" / f"{script}.png"
         paint(figures[script]).quantize(192).save(path, optimize=True)
     (DOCS / "gallery.md").write_text(page(figures), encoding="utf-8")

@@ -5,6 +5,7 @@ in how they spell it.
 
 beam_geometry   Corners, faces, circles and cuts of beams.
 beams           Beams as solids.
+measures        Volume, area and centre of mass, from their own numbers.
 nodes           Cylinders about node axes as solids.
 panel_geometry  Places, tolerances and axes of panels.
 panels          Panels as solids, or as faces without thickness.

@@ -24,14 +24,13 @@ from ..model import Model, Written, check_model
 from ..step.bodies import Body, step_bodies
 from ..step.values import numbers, real, references, string
 from ..units import millimeters_per
-from .bodies import BodyWriter, add_triangles
+from .bodies import BodyWriter, IfcSpheres, add_triangles
 from .entities import Entities
 from .properties import Properties, beam_properties, panel_properties
 from .triangles import Triangles, beam_triangles, cylinder_bodies, panel_triangles
 
 IfcShapes = Literal["exact", "triangles", "both"]
 IfcUnits = Literal["mm", "m"]
-IfcSpheres = Literal["rational", "spherical"]
 
 
 @dataclass(frozen=True)
@@ -40,14 +39,15 @@ class IfcOptions:
 
     It declares ``mm`` or ``m``; the title names the project and is part of all GlobalIds.
     Shapes are exact solids, triangles, or exact solids with triangles beside them for programs
-    that have no exact solids. Spheres are rational patches, as exact as spherical surfaces
-    and read by more programs, or those.
+    that have no exact solids. Spheres are polynomial patches, within a billionth of the size
+    of a panel and read as they are; rational ones, exact, whose weights IfcOpenShell drops; or
+    spherical surfaces, which few programs know.
     """
 
     units: IfcUnits = "mm"
     title: str = "Spherical panels"
     shapes: IfcShapes = "both"
-    spheres: IfcSpheres = "rational"
+    spheres: IfcSpheres = "polynomial"
 
 
 _BOTH_IN_MM: Final = IfcOptions()
@@ -163,9 +163,7 @@ class _File:
             )
             for name in ("Body", "Body-Fallback")
         }
-        self._bodies = BodyWriter(
-            self._entities, has_spheres=self._options.spheres == "spherical"
-        )
+        self._bodies = BodyWriter(self._entities, self._options.spheres)
         self._place = add(f"IFCLOCALPLACEMENT($,#{axes})")
         wall = self._spatial(whole)
         parts = [part for each in self._parts() for part in self._add_parts(each)]

@@ -6,7 +6,7 @@ shared by all parts. A part may stand in several places.
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final, Literal, NamedTuple
 
 from ...kernel.parts.colors import Color
 from ..dates import file_date
@@ -50,12 +50,21 @@ class Instance:
     place: Place
 
 
+class Measured(NamedTuple):
+    """What a reader of a solid should find, in the unit of the file."""
+
+    volume: float
+    area: float
+    center: tuple[float, ...]
+
+
 @dataclass(frozen=True)
 class Part:
     """A body as it appears in a file, once or several times.
 
     The body is at its own origin. Its layer is made where it is new; the colour is sRGB, from 0
     to 255; points of the part nearer than the tolerance, in the unit of the file, are one.
+    Readers may compare what it is measured with what they find.
     """
 
     body: Body
@@ -64,6 +73,7 @@ class Part:
     color: Color
     tolerance: float
     instances: tuple[Instance, ...]
+    measured: Measured | None = None
 
 
 @dataclass(frozen=True)
@@ -93,9 +103,10 @@ class StepHeader:
 
 @dataclass(frozen=True)
 class _Definition:
-    """Numbers of the product definition and the shape representation of a part or group."""
+    """Numbers of the product definition of a part or group, its shape and representation."""
 
     product: int
+    aspect: int
     shape: int
 
 
@@ -133,6 +144,7 @@ class _Assembler:
         self._colors: dict[Color, int] = {}
         self._styles: dict[Color, int] = {}
         self._contexts: dict[float, int] = {}
+        self._derived: tuple[int, int] | None = None
         _, protocol, year, subject = _SCHEMAS[header.schema]
         self._application = self._add(f"APPLICATION_CONTEXT('{subject}')")
         self._add(
@@ -229,7 +241,7 @@ class _Assembler:
         self._count += 1
         representation = self._count
         self._add(f"SHAPE_DEFINITION_REPRESENTATION(#{shape},#{representation})")
-        return _Definition(definition, representation)
+        return _Definition(definition, shape, representation)
 
     def _add_group(self, group: Group) -> _Definition:
         definition = self._define(group.name)
@@ -279,7 +291,39 @@ class _Assembler:
         style = self._line_style(part.color) if is_line else self._surface_style(part.color)
         self._styled.append(self._add(f"STYLED_ITEM('color',(#{style}),#{first})"))
         self._layers.setdefault(part.layer, []).append(first)
+        if part.measured is not None:
+            self._validate(definition.aspect, context, part.measured)
         return definition
+
+    def _validate(self, aspect: int, context: int, measured: Measured) -> None:
+        """Geometric validation properties, as the CAx Implementor Forum recommends them."""
+        area, volume = self._measures()
+        center = ",".join(map(_shortened, measured.center))
+        items = {
+            "volume": "MEASURE_REPRESENTATION_ITEM('volume measure',"
+            f"VOLUME_MEASURE({_shortened(measured.volume)}),#{volume})",
+            "surface area": "MEASURE_REPRESENTATION_ITEM('surface area measure',"
+            f"AREA_MEASURE({_shortened(measured.area)}),#{area})",
+            "centroid": f"CARTESIAN_POINT('centre point',({center}))",
+        }
+        for name, text in items.items():
+            stated = self._add(
+                f"PROPERTY_DEFINITION('geometric validation property','{name}',#{aspect})"
+            )
+            item = self._add(text)
+            found = self._add(f"REPRESENTATION('{name}',(#{item}),#{context})")
+            self._add(f"PROPERTY_DEFINITION_REPRESENTATION(#{stated},#{found})")
+
+    def _measures(self) -> tuple[int, int]:
+        """Numbers of the units of area and volume."""
+        if self._derived is None:
+            elements = [
+                self._add(f"DERIVED_UNIT_ELEMENT(#{self._units[0]},{power})")
+                for power in ("2.", "3.")
+            ]
+            area, volume = (self._add(f"DERIVED_UNIT((#{element}))") for element in elements)
+            self._derived = area, volume
+        return self._derived
 
     def _color(self, color: Color) -> int:
         if color not in self._colors:
@@ -323,3 +367,8 @@ class _Assembler:
         )
         self._add(f"CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#{relation},#{shape})")
         return placement
+
+
+def _shortened(number: float) -> str:
+    """Twelve digits: what is measured has no more."""
+    return real(float(f"{number:.12g}"))

@@ -45,6 +45,10 @@ SHORTEST = 0.1
 TOO_FAR = 0.2
 """Axes that pass their bound by more (radians) do not come back by themselves."""
 ROUNDS, RETREATS = 8, 20
+NESTED_BOUNDS = (3.0, 5.0, 10.0, 15.0, 20.0, 30.0, 45.0, 60.0)
+"""Bounds that are tried, in degrees: those no looser than the one asked for."""
+FINE_GRID = 8_000
+"""Meshes with more vertices take every second bound."""
 ITERATIONS = 40
 LEAST_GAIN = 1e-3
 
@@ -130,11 +134,7 @@ def evolve_spheres(
     Meshes with Spherical Faces, Sec. 7.
     """
     check_triangles(mesh)
-    if not 0 < max_axis_angle < np.pi / 2:
-        raise InputError(
-            "the largest angle of an axis must lie between 0 and 90 degrees, not "
-            f"{np.degrees(max_axis_angle):g}"
-        )
+    _check_bound(max_axis_angle)
     surface, is_outer = tangent_surface(mesh, side)
     # Flips change dual edges at their shortest; without them none needs to be so short.
     rules = (MAX_SWEEPS, -DUAL_EDGE) if flips else (0, SHORTEST)
@@ -154,6 +154,46 @@ def evolve_spheres(
         *run,
         is_outer=is_outer,
     )
+
+
+def _check_bound(bound: float) -> None:
+    if not 0 < bound < np.pi / 2:
+        raise InputError(
+            "the largest angle of an axis must lie between 0 and 90 degrees, not "
+            f"{np.degrees(bound):g}"
+        )
+
+
+def evolve_best(
+    mesh: Mesh,
+    max_axis_angle: float = np.pi / 12,
+    side: CenterSide = "auto",
+    *,
+    flips: bool = True,
+) -> Evolution:
+    """The largest spheres over a fixed grid of bounds: a looser bound never makes them smaller.
+
+    Parameters and errors as for `evolve_spheres`; the bounds are those of `NESTED_BOUNDS` that
+    are no looser, or the one given if it is tighter than all.
+
+    Returns
+    -------
+    Evolution
+        Of those that converged the one with the largest mean of ``λ / ρ``; else of all.
+
+    Notes
+    -----
+    A descent ends in one of many local optima, since edges are flipped on the way, and one
+    with a looser bound may be worse. What keeps a tighter bound keeps the looser one as well.
+    """
+    check_triangles(mesh)
+    _check_bound(max_axis_angle)
+    grid = NESTED_BOUNDS if mesh.n_vertices <= FINE_GRID else NESTED_BOUNDS[::2]
+    bounds = [each for each in np.radians(grid) if each <= max_axis_angle + AXIS_SLACK]
+    found = [evolve_spheres(mesh, bound, side, flips=flips) for bound in bounds]
+    if not found:
+        return evolve_spheres(mesh, max_axis_angle, side, flips=flips)
+    return max(found, key=lambda each: (each.converged, (each.offsets / each.radii).mean()))
 
 
 class _Rules(NamedTuple):

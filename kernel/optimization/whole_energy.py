@@ -227,6 +227,7 @@ class _Run:
     stages: tuple[Stage, ...] = ()
     is_held: bool = True
     lowest: float = -np.inf
+    problem: EnergyProblem | None = None
 
 
 def _landed(
@@ -303,7 +304,7 @@ def _first_steps(run: _Run, name: str, problem: EnergyProblem, most: int = FIRST
     steps = min(run.max_iterations, most)
     found = descend_energy(problem, run.unknowns, steps, FIRST_DECREMENT, is_exact=False)
     stage = stage_of(problem, name, found)
-    return replace(run, unknowns=found.state, stages=(*run.stages, stage))
+    return replace(run, unknowns=found.state, stages=(*run.stages, stage), problem=problem)
 
 
 def _held(run: _Run, weights: EnergyWeights, hard: tuple[str, ...]) -> _Run:
@@ -321,7 +322,8 @@ def _within(run: _Run, weights: EnergyWeights, conditions: Conditions) -> _Run:
     misses = np.zeros(0)
     for factor in NEARER:
         near = replace(weights, sphericity=factor * (weights.sphericity or 1.0))
-        run = _first_steps(run, "nearer", energy_problem(run.setting, run.freedom, near))
+        problem = energy_problem(run.setting, run.freedom, near, known=run.problem)
+        run = _first_steps(run, "nearer", problem)
         misses = np.abs(term.residuals(run.setting, run.unknowns))
         if misses.max() < BOUND_MARGIN * allowance:
             break
@@ -341,7 +343,8 @@ def _rounds(
     if weights.support > 0:
         hard = (*hard, "support")
     raised = {name: HARD[name] * (getattr(weights, name) or 1.0) for name in hard}
-    problem = energy_problem(run.setting, run.freedom, replace(weights, **raised))
+    weights = replace(weights, **raised)
+    problem = energy_problem(run.setting, run.freedom, weights, known=run.problem)
     problem = replace(problem, hard=frozenset(hard), limits=limits)
     held = hold(problem, run.unknowns, run.max_iterations, bound_weights)
     return replace(

@@ -17,7 +17,7 @@ net_flaws           What keeps a net from being built, by face and cause.
 panel_scale         A surface as panels of a size see it: curvatures, convex spheres.
 polishing           Hexagons without slivers: vertices slide until no dual edge is short.
 quad_pattern        The short list of curvatures: remesh, planarise, judge, keep the best.
-rim_repair          Cells at the boundary lose corners that no other cell needs.
+scales              A pattern with four times the faces, or a quarter.
 semiregular         Triangles or quads with corners cut, or drawn apart.
 surface_curvatures  Principal curvatures of a mesh or surface, and the area each stands for.
 """

@@ -23,7 +23,7 @@ BOUNDS: Final = (2.0, 3.0, 5.0, 9.0, 15.0, 20.0, 30.0)
 """Bounds on the angle of node axes, in degrees: a looser one takes all tighter ones along."""
 
 GROWTHS = 2
-"""How often spheres grow to keep a bound: after polishing, vertices lie better for it."""
+"""How often spheres grow with one bound at most."""
 
 LEAN_SLACK = 0.1
 """Degrees by which an axis may pass its bound."""
@@ -86,13 +86,26 @@ def hexagon_pattern(
     ------
     InputError
         If an option is out of range, or no hexagons can be made.
+    """
+    tries = hexagon_tries(source, edge, bound, boundary)
+    best = smoothest_within(tries, bound)
+    if best.net is None:
+        raise InputError(f"no hexagons can be made on this surface: {best.message}")
+    return best, [_bounded(found, bound) for found in tries]
+
+
+def hexagon_tries(
+    source: Mesh | Surface, edge: float, bound: float, boundary: BoundaryRule
+) -> list[DualTry]:
+    """Convex hexagons grown with each bound of a fixed grid that is no looser.
+
+    Parameters and errors as for `hexagon_pattern`.
 
     Notes
     -----
-    Polishing turns axes by a few degrees: what was grown with a tighter bound may just keep
-    the one asked for, and what does not keep it is no choice. The grid is nested, so a looser
-    bound never makes hexagons rougher; below all of it the bound and its half are tried.
-    Without flaws comes before fewer flaws, then smaller angles.
+    Polishing turns axes by a few degrees. Where the result has flaws, and with the tightest
+    bound if it is passed, spheres grow once more: polished vertices lie better for it. Below
+    all of the grid the bound and its half are tried.
     """
     if not 0 < bound < 90:
         raise InputError(f"the largest angle of an axis lies between 0 and 90, not {bound:g}")
@@ -100,15 +113,25 @@ def hexagon_pattern(
     surface = _mesh_of(source)
     triangles = even_triangles(surface, np.sqrt(3) * edge)
     bounds = [each for each in BOUNDS if each <= bound] or [bound / 2, bound]
-    tries = [
-        _bounded(found, bound)
+    return [
+        found
         for each in bounds
-        for found in _grown(triangles, surface, each, boundary)
+        for found in _grown(triangles, surface, each, boundary, is_first=each == bounds[0])
     ]
-    best = min(tries, key=_badness)
-    if best.net is None:
-        raise InputError(f"no hexagons can be made on this surface: {best.message}")
-    return best, tries
+
+
+def smoothest_within(tries: list[DualTry], bound: float) -> DualTry:
+    """The best of hexagons within a bound on the axes, in degrees.
+
+    Notes
+    -----
+    What was grown with a tighter bound may just keep this one, and what does not keep it is no
+    choice. The grid is nested, so a looser bound never makes hexagons rougher. Without flaws
+    comes before fewer flaws, then axes that pass the bound by less, then smaller angles.
+    """
+    return min(
+        (_bounded(found, bound) for found in tries), key=lambda each: _badness(each, bound)
+    )
 
 
 def _mesh_of(source: Mesh | Surface) -> Mesh:
@@ -116,9 +139,9 @@ def _mesh_of(source: Mesh | Surface) -> Mesh:
 
 
 def _grown(
-    triangles: Mesh, surface: Mesh, bound: float, boundary: BoundaryRule
+    triangles: Mesh, surface: Mesh, bound: float, boundary: BoundaryRule, *, is_first: bool
 ) -> list[DualTry]:
-    """Hexagons grown with one bound and polished; grown anew from there where they pass it."""
+    """Hexagons grown with one bound and polished; grown anew from there if that may help."""
     found: list[DualTry] = []
     for _ in range(GROWTHS):
         try:
@@ -135,7 +158,8 @@ def _grown(
             lean_max=float(grown.axis_angles.max()),
         )
         found.append(DualTry(bound, net, judgement, ""))
-        if judgement.is_usable and np.degrees(judgement.lean_max) <= bound + LEAN_SLACK:
+        keeps = np.degrees(judgement.lean_max) <= bound + LEAN_SLACK
+        if judgement.is_usable and (keeps or not is_first):
             break
         triangles = grown.mesh
     return found
@@ -151,8 +175,9 @@ def _bounded(found: DualTry, bound: float) -> DualTry:
     return replace(found, judgement=replace(judgement, flaws=(*judgement.flaws, flaw)))
 
 
-def _badness(found: DualTry) -> tuple[bool, int, float]:
+def _badness(found: DualTry, bound: float) -> tuple[bool, int, float, float]:
     judgement = found.judgement
     if judgement is None:
-        return True, 0, 0.0
-    return False, len({flaw.face for flaw in judgement.flaws}), judgement.angle
+        return True, 0, 0.0, 0.0
+    excess = max(float(np.degrees(judgement.lean_max)) - bound - LEAN_SLACK, 0.0)
+    return False, len({flaw.face for flaw in judgement.flaws}), excess, judgement.angle

@@ -21,8 +21,11 @@ from ..meshes.triangulation import triangulate
 SHORT_DUAL, AIM = 0.1, 1.2
 """Dual edges below this share of the edge they cross are lengthened to so many times it."""
 
-LONGEST_MOVE, MOVES = 0.04, 25
+LONGEST_MOVE, MOVES = 0.04, 60
 """Farthest move of a vertex in a round, in mean edges, and most rounds."""
+
+CALM = 25
+"""Rounds after which moves are half as long: some edges that were flipped come to rest."""
 
 DIFFERENCE = 1e-5
 """Step of the differences that gradients are made of, in mean edges."""
@@ -94,8 +97,8 @@ def polish(found: Evolution, surface: Mesh) -> Polished:
         (found.mesh.vertices - origin) / size, upwards, found.offsets / size, corners
     )
     is_inner = ~found.mesh.topology.is_boundary_vertex
-    for _ in range(MOVES):
-        moves = _moves(sites, is_inner)
+    for i in range(MOVES):
+        moves = _moves(sites, is_inner) * (0.5 if i >= CALM else 1.0)
         if not moves.any():
             break
         sites = _flipped(_slid(sites, moves, ground))

@@ -20,10 +20,9 @@ from ..tolerances import CREASE, OPENING
 from .density import even_spacing
 from .expected_angles import quad_angles
 from .gain_report import SHARP_TURN, check_edge, is_round, turn_p95
-from .held_nets import FARTHEST_NODE, HeldNet, held_nets
+from .held_nets import FARTHEST_NODE, HeldNet, held_nets, without_loose_corners
 from .net_flaws import Flaw, PatternJudgement, judge_faces, judge_net
 from .panel_scale import FINENESS, curvatures_on, even_triangles
-from .rim_repair import without_loose_corners
 from .surface_curvatures import SurfaceCurvatures
 
 SMALLEST_RADIUS = 1.5

@@ -168,3 +168,22 @@ def add_up(matrix: SparseArray, rows: FloatArray) -> FloatArray:
     size = int(np.prod(rows.shape[1:], dtype=np.int64))
     flat: FloatArray = matrix @ rows.reshape(len(rows), size)
     return flat.reshape(matrix.shape[0], *rows.shape[1:])
+
+
+def weighted(matrix: SparseArray, weights: FloatArray) -> SparseArray:
+    """A `sum_matrix` whose rows (m,) count by their weight."""
+    from scipy.sparse import csr_array
+
+    parts = weights[matrix.indices], matrix.indices, matrix.indptr
+    return csr_array(parts, shape=matrix.shape)
+
+
+def add_up_products(matrix: SparseArray, first: FloatArray, second: FloatArray) -> FloatArray:
+    """Sums (size, p, q) of the tables ``a bᵀ`` of rows (m, p) and (m, q) of each slot.
+
+    The tables themselves, often far larger than all sums, are never made.
+    """
+    result = np.empty((matrix.shape[0], first.shape[1], second.shape[1]))
+    for number, column in enumerate(first.T):
+        result[:, number] = weighted(matrix, column) @ second
+    return result

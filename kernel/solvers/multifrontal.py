@@ -8,13 +8,20 @@ front that is not: LAPACK says so, and the factorisation ends there. That is the
 inertia that Newton's method needs.
 """
 
+import itertools
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from .dissection import dissect
+
+SMALLEST_TRIANGLE = 32
+"""Triangles of so few unknowns are not halved."""
+
+Run: TypeAlias = tuple[int, int, int]
+"""First and end of unknowns side by side, and where the first of them goes."""
 
 
 class Front(NamedTuple):
@@ -28,8 +35,8 @@ class Front(NamedTuple):
         Unknowns of later fronts that it touches, ascending.
     parent : int
         Front to which what is left is handed; -1 for none.
-    into_own, into_later : (k,) and (m - k,) int arrays
-        Places of `later` among the unknowns, and among the later unknowns, of the parent.
+    into_own, into_later : tuples of Run
+        Where `later` is among the unknowns, and among the later unknowns, of the parent.
     diagonal_places, own_pairs, own_places, later_pairs, later_places : int arrays
         Where the blocks of the diagonal and of the pairs go in the two tables of the front.
     """
@@ -38,8 +45,8 @@ class Front(NamedTuple):
     stop: int
     later: IntArray
     parent: int
-    into_own: IntArray
-    into_later: IntArray
+    into_own: tuple[Run, ...]
+    into_later: tuple[Run, ...]
     diagonal_places: IntArray
     own_pairs: IntArray
     own_places: IntArray
@@ -157,8 +164,10 @@ def _front(
         stop * width,
         _unknowns(touched, width),
         parent,
-        _unknowns(touched[is_own] - parent_start, width),
-        _unknowns(np.searchsorted(parent_touched, touched[~is_own]), width),
+        _runs(np.flatnonzero(is_own), touched[is_own] - parent_start, width),
+        _runs(
+            np.flatnonzero(~is_own), np.searchsorted(parent_touched, touched[~is_own]), width
+        ),
         _places(diagonal, diagonal, own, width),
         ids[inside],
         _places(rows[inside] - start, columns[inside], own, width),
@@ -169,6 +178,21 @@ def _front(
 
 def _levels(nodes: IntArray) -> IntArray:
     return np.frexp(nodes.astype(np.float64))[1].astype(np.int64) - 1
+
+
+def _runs(elements: IntArray, places: IntArray, width: int) -> tuple[Run, ...]:
+    """Runs of unknowns that stay side by side."""
+    breaks = np.flatnonzero((np.diff(places) != 1) | (np.diff(elements) != 1)) + 1
+    bounds = [0, *breaks.tolist(), len(places)]
+    return tuple(
+        (
+            width * int(elements[first]),
+            width * int(elements[stop - 1] + 1),
+            width * int(places[first]),
+        )
+        for first, stop in itertools.pairwise(bounds)
+        if stop > first
+    )
 
 
 def _unknowns(elements: IntArray, width: int) -> IntArray:
@@ -220,7 +244,7 @@ def factorize_fronts(
     mixed : (m, width, width) float array
         Blocks of the pairs, rows by the first element.
     """
-    from scipy.linalg.blas import dsyrk, dtrsm
+    from scipy.linalg.blas import dsyrk
     from scipy.linalg.lapack import dpotrf
 
     diagonal = diagonal[pattern.order]
@@ -235,12 +259,32 @@ def factorize_fronts(
         if failed:
             return None
         if len(front.later):
-            under = dtrsm(1.0, own, under, side=1, lower=1, trans_a=1, overwrite_b=1)
+            _divide(under, own)
             rest = dsyrk(-1.0, under, beta=1.0, c=rest, lower=1, overwrite_c=1)
             waiting[front.parent].append((front, rest))
         triangles.append(own)
         below.append(under)
     return FrontalFactors(pattern, tuple(triangles), tuple(below))
+
+
+def _divide(rows: FloatArray, triangle: FloatArray) -> None:
+    """Multiply rows (m, k) by the inverse of the transpose of a triangle (k, k), in place.
+
+    Halves of it by multiplication of matrices, which is several times faster than the routine
+    for triangles; that one does the small rest.
+    """
+    from scipy.linalg.blas import dgemm, dtrsm
+
+    size = len(triangle)
+    if size <= SMALLEST_TRIANGLE:
+        dtrsm(1.0, triangle, rows, side=1, lower=1, trans_a=1, overwrite_b=1)
+        return
+    half = size // 2
+    first, second = rows[:, :half], rows[:, half:]
+    _divide(first, triangle[:half, :half])
+    below = triangle[half:, :half]
+    dgemm(-1.0, first, below, beta=1.0, c=second, trans_b=1, overwrite_c=1)
+    _divide(second, triangle[half:, half:])
 
 
 def _assembled(
@@ -260,17 +304,25 @@ def _assembled(
     own_t, under_t = own.reshape(size, size), under.reshape(size, later)
     rest_t = np.zeros((later, later))
     for child, rest in handed_up:
-        split, left = len(child.into_own), rest.T
-        _scatter(own_t, child.into_own, child.into_own, left[:split, :split])
-        _scatter(under_t, child.into_own, child.into_later, left[:split, split:])
-        _scatter(rest_t, child.into_later, child.into_later, left[split:, split:])
+        left = rest.T
+        for number, run in enumerate(child.into_own):
+            for other in child.into_own[number:]:
+                _add(own_t, left, run, other)
+            for other in child.into_later:
+                _add(under_t, left, run, other)
+        for number, run in enumerate(child.into_later):
+            for other in child.into_later[number:]:
+                _add(rest_t, left, run, other)
     return own_t.T, under_t.T, rest_t.T
 
 
-def _scatter(table: FloatArray, rows: IntArray, columns: IntArray, values: FloatArray) -> None:
-    """Add values to rows and columns of a table; by flat places several times faster."""
-    places = rows[:, None] * table.shape[1] + columns
-    np.add.at(table.reshape(-1), places.ravel(), values.ravel())
+def _add(table: FloatArray, values: FloatArray, rows: Run, columns: Run) -> None:
+    """Add runs of rows and columns of values to a table, where they go."""
+    first, stop, row = rows
+    start, end, column = columns
+    table[row : row + stop - first, column : column + end - start] += values[
+        first:stop, start:end
+    ]
 
 
 def solve_fronts(factors: FrontalFactors, right: FloatArray) -> FloatArray:

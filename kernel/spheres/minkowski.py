@@ -28,7 +28,11 @@ def minkowski_gradient(rows: FloatArray) -> FloatArray:
 
     ``(-2 C, B, -2 A)`` for rows ``(A, B, C)``, (..., 5).
     """
-    return rows[..., [4, 1, 2, 3, 0]] * np.array([-2.0, 1.0, 1.0, 1.0, -2.0])
+    result = np.empty_like(rows)
+    result[..., 0] = -2 * rows[..., 4]
+    result[..., 1:4] = rows[..., 1:4]
+    result[..., 4] = -2 * rows[..., 0]
+    return result
 
 
 def angle(s: FloatArray, t: FloatArray) -> FloatArray:

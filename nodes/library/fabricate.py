@@ -136,6 +136,7 @@ def write_step(  # noqa: PLR0913, PLR0917 - a node has an input per choice
     beams: Beams | None = None,
     parameter_curves: Literal["needed", "all", "none"] = "needed",
     engine: Literal["text", "cadquery"] = "text",
+    validation: bool = False,  # noqa: FBT001, FBT002 - a toggle on the canvas
 ) -> str:
     """Write panels and beams to a STEP file: exact solids, or faces without thickness.
 
@@ -160,6 +161,9 @@ def write_step(  # noqa: PLR0913, PLR0917 - a node has an input per choice
         without, so that Boolean operations work on sharply curved panels; everywhere; nowhere.
     engine : {"text", "cadquery"}
         Our own text, or OpenCASCADE by way of CadQuery: slower, and the same model.
+    validation : bool
+        Whether every solid states its volume, area and centre, so that readers can tell whether
+        they read it right.
 
     Returns
     -------
@@ -176,8 +180,9 @@ def write_step(  # noqa: PLR0913, PLR0917 - a node has an input per choice
     True
     """
     options = step.StepOptions(
-        step_units, schema, copies=copies, parameter_curves=parameter_curves, engine=engine
-    )
+        step_units, schema, copies=copies, parameter_curves=parameter_curves, engine=engine,
+        validation=validation,
+    )  # fmt: skip
     return told_path(step.write_step(Model(panels, beams, units), path, options))
 
 

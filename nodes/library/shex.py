@@ -159,7 +159,7 @@ def tangent_spheres(mesh: Mesh, offset: float | VertexDistances) -> VertexSphere
     return congruence.sphere_congruence(mesh, "tangent", offset)[0]
 
 
-@node
+@node(version="2")
 def evolve_spheres(
     mesh: Mesh,
     max_axis_angle: Annotated[float, Port(unit="deg", min=0, max=90)] = 15.0,
@@ -174,7 +174,9 @@ def evolve_spheres(
     mesh : Mesh
         Triangles.
     max_axis_angle : float
-        Largest angle of a node axis with the surface normal, between 0 and 90.
+        Largest angle of a node axis with the surface normal, between 0 and 90. Of the fixed
+        bounds below, 3, 5, 10, 15, 20 degrees and so on, the one with the largest spheres is
+        taken, so that a looser one never gives less.
     side : {"auto", "plus", "minus"}
         Centres on the side of the normals, beyond, or where the surface bends to on average.
     flips : bool
@@ -197,7 +199,7 @@ def evolve_spheres(
     (True, [])
     """
     angle = float(np.radians(max_axis_angle))
-    found = evolution.evolve_spheres(mesh, angle, side, flips=flips)
+    found = evolution.evolve_best(mesh, angle, side, flips=flips)
     angles = np.degrees(found.axis_angles)
     shares = found.offsets / found.radii
     tilted = np.flatnonzero(found.axis_angles > angle + AXIS_SLACK).tolist()

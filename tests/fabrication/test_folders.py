@@ -186,7 +186,12 @@ def test_signals_wait_until_all_files_have_moved(
         return replace(self, target)
 
     monkeypatch.setattr(Path, "replace", signalled)
-    with pytest.raises(KeyboardInterrupt), replacing_all(tmp_path) as staging:
-        write_both(staging)
+    # Who runs the tests in the background has Ctrl+C ignored.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt), replacing_all(tmp_path) as staging:
+            write_both(staging)
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert contents(tmp_path) == {"a.txt": "new", "b.txt": "new"}
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

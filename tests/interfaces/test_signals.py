@@ -28,7 +28,12 @@ def graph(tmp_path: Path) -> Path:
 
 def started(*words: str) -> subprocess.Popen[bytes]:
     command = [sys.executable, "-m", "spheremesh", *words, "--no-cache"]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    # Who runs the tests in the background has Ctrl+C ignored, and processes inherit that.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
@@ -60,3 +65,13 @@ def test_a_study_that_is_ended_ends_its_workers(graph: Path) -> None:
     said, _ = process.communicate(timeout=60)  # it ends when its workers have
     assert process.returncode == 143, said.decode()
     assert not list(out.rglob(".spheremesh-*"))
+
+
+def test_a_reader_that_goes_away_ends_a_command_in_silence() -> None:
+    command = [sys.executable, "-m", "spheremesh", "nodes"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.close()
+        said = process.stderr.read()
+    assert (process.returncode, said) == (1, b"")

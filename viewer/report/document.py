@@ -4,7 +4,7 @@ One file of text without scripts, which asks for nothing else. What a user has n
 """
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from html import escape
 from typing import Any, Final
@@ -18,12 +18,11 @@ from ...kernel.panels.panels import Panels
 from ...kernel.parts.colors import mould_color
 from .charts import histogram
 from .diagram import graph_picture
+from .faults import MOST_PARTS, faults, verdict
 from .pictures import striped_pictures
+from .tables import table
 
 PLANES, SPHERES, GAPS = "#a9afb8", "#2c6fa6", "#b7793a"
-MOST_PARTS: Final = 12
-"""Parts that are named of each kind of finding; all are in report.json."""
-
 STYLE: Final = """
 body{font:15px/1.5 system-ui,sans-serif;color:#22262b;max-width:60rem;margin:2rem auto;padding:0 1.2rem}
 h1{font-size:1.9rem;margin:0}h2{font-size:1.15rem;margin:2.2rem 0 .6rem;border-bottom:1px solid #dfe2e6;padding-bottom:.3rem}
@@ -34,10 +33,12 @@ th:first-child,td:first-child{text-align:left}th{font-weight:600;color:#5b636d}.
 .pair{display:grid;grid-template-columns:1fr 1fr;gap:1rem}figure{margin:0}figure img{width:100%;border-radius:.4rem}figcaption{color:#5b636d;font-size:.9rem}
 svg{width:100%;height:auto;font:12px system-ui,sans-serif;fill:#3b4149}svg line{stroke:#9aa2ab}.keys{margin:.2rem 0;display:flex;gap:1.2rem}
 i{display:inline-block;width:.9em;height:.9em;border-radius:.2em;margin-right:.4em;vertical-align:-.1em}i,.verdict,pre{print-color-adjust:exact;-webkit-print-color-adjust:exact}
+details summary{cursor:pointer;margin:.8rem 0}.verdict ol{margin:.4rem 0 0;padding-left:1.2rem}
 .graph rect{fill:#f4f5f7;stroke:#c3c8ce}.graph path{fill:none;stroke:#b3bac2}.graph .fine{font-size:9px;fill:#78818b}
 code,pre{font:13px/1.45 ui-monospace,monospace;background:#f4f5f7;border-radius:.3rem}pre{padding:.7rem .9rem;white-space:pre-wrap}code{padding:.1rem .3rem}
 @media (max-width:40rem){.pair{grid-template-columns:1fr}}
-@media print{body{margin:0;max-width:none;font-size:11pt}h2,figure,svg,.verdict{break-inside:avoid;break-after:auto}h2{break-after:avoid}tr{break-inside:avoid}}
+@page{margin:14mm}
+@media print{body{margin:0;max-width:none;padding:0;font-size:11pt}h2,figure,svg,.verdict{break-inside:avoid;break-after:auto}h2{break-after:avoid}tr{break-inside:avoid}}
 """  # noqa: E501 - lines of a style sheet
 
 
@@ -76,12 +77,12 @@ def report_text(panels: Panels, facts: ReportFacts) -> str:
     """The page as text."""
     report = facts.report
     chapters = [
-        _verdict(report),
+        verdict(report),
+        faults(report),
         _before_and_after(panels, facts),
         _moulds(report, facts.millimeters),
         _sheets(facts.sheets),
         _gaps(panels, report, facts.millimeters),
-        _faults(report),
         _cost(report),
         _reproduction(facts),
     ]
@@ -103,29 +104,6 @@ def report_text(panels: Panels, facts: ReportFacts) -> str:
         + "\n".join(chapter for chapter in chapters if chapter)
         + "\n</body>\n</html>\n"
     )
-
-
-def _verdict(report: Mapping[str, Any]) -> str:
-    errors: list[Mapping[str, Any]] = report["audit"]["errors"] if report["audit"] else []
-    rejected = [*report["panels"]["rejected"], *report["beams"]["rejected"]]
-    if report["buildable"]:
-        return (
-            '<p class="verdict"><b>Can be built:</b> no part is rejected, no error found.</p>'
-        )
-    texts = [f"{len(rejected)} parts cannot be made"] if rejected else []
-    if errors:
-        texts.append(f"{len(errors)} errors on parts that can")
-    reasons = escape("; ".join(texts))
-    return f'<p class="verdict bad"><b>Cannot be built as it is:</b> {reasons}. See below.</p>'
-
-
-def _table(heads: Sequence[str], rows: Sequence[Sequence[str]], kind: str = "numbers") -> str:
-    """A table of numbers, or of words; cells are HTML."""
-    head = "".join(f"<th>{escape(text)}</th>" for text in heads)
-    body = "".join(
-        "<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows
-    )
-    return f'<table class="{kind}"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
 
 
 def _before_and_after(panels: Panels, facts: ReportFacts) -> str:
@@ -155,8 +133,26 @@ def _before_and_after(panels: Panels, facts: ReportFacts) -> str:
         + f'<figure><img src="{round_panels}" alt="Spherical panels under stripes">'
         + "<figcaption>The same corners, on spheres</figcaption></figure></div>"
         + "<h2>Angles between neighbours</h2>"
-        + _table(("", "mean", "largest"), rows)
+        + table(("", "mean", "largest"), rows)
+        + _sharp_edges(facts.report["creases"])
         + chart
+    )
+
+
+def _sharp_edges(creases: Mapping[str, Any]) -> str:
+    """What the table of angles leaves out."""
+    count = int(creases["count"])
+    if not count:
+        return ""
+    edges, they = (
+        ("edge stays", "it is") if count == 1 else (f"{count:,} edges stay", "they are")
+    )
+    number = "One " if count == 1 else ""
+    return (
+        f"<p>{number}{edges} sharp, since the design turns there by more than "
+        f"{creases['angle_deg']:.0f}°: {they} left out of the table. With "
+        f"{'it' if count == 1 else 'them'} the largest angle is "
+        f"<b>{creases['max_deg']:.1f}°</b>; the histogram has all.</p>"
     )
 
 
@@ -186,11 +182,16 @@ def _moulds(report: Mapping[str, Any], millimeters: float) -> str:
         )
     heads = ("mould", "radius mm", "panels", "share", "blank mm", "rise mm", "shapes")
     return (
-        f"<h2>Moulds: {count} for {total:,} panels</h2>{_table(heads, rows)}"
+        f"<h2>Moulds: {count} for {total:,} panels</h2>{table(heads, rows)}{_not_made(report)}"
         "<p>A blank is the round sheet that the largest panel of a mould is cut from; "
         "each panel in its blank is drawn in <code>moulds.dxf</code> and "
         "<code>moulds.svg</code>.</p>"
     )
+
+
+def _not_made(report: Mapping[str, Any]) -> str:
+    rejected = len(report["panels"]["rejected"])
+    return f"<p>{rejected:,} of these panels cannot be made.</p>" if rejected else ""
 
 
 def _sheets(sheets: Mapping[str, Any] | None) -> str:
@@ -230,40 +231,13 @@ def _gaps(panels: Panels, report: Mapping[str, Any], millimeters: float) -> str:
     )
 
 
-def _faults(report: Mapping[str, Any]) -> str:
-    """Rejected parts and findings, by kind: the largest kinds first."""
-    kinds: dict[tuple[str, str], list[tuple[str, str]]] = {}
-    for part in (*report["panels"]["rejected"], *report["beams"]["rejected"]):
-        kinds.setdefault((part["code"], "rejected"), []).append((part["id"], part["reason"]))
-    nothing: dict[str, list[Any]] = {"errors": [], "notes": []}
-    audit: Mapping[str, list[Mapping[str, Any]]] = report["audit"] or nothing
-    for severity in ("errors", "notes"):
-        for found in audit[severity]:
-            known = kinds.setdefault((found["code"], severity[:-1]), [])
-            known.append((found["id"], found["message"]))
-    warnings = "".join(f"<li>{escape(text)}</li>" for text in report.get("warnings", ()))
-    tail = f"<h2>Warnings</h2><ul>{warnings}</ul>" if warnings else ""
-    if not kinds:
-        return f"<h2>Rejected, and why</h2><p>Nothing.</p>{tail}"
-    rows: list[tuple[str, ...]] = []
-    order = {"rejected": 0, "error": 1, "note": 2}
-    ranked = sorted(kinds.items(), key=lambda item: (order[item[0][1]], -len(item[1])))
-    for (code, severity), parts in ranked:
-        names = ", ".join(name for name, _ in parts[:MOST_PARTS])
-        more = f" and {len(parts) - MOST_PARTS} more" if len(parts) > MOST_PARTS else ""
-        cause = f"{escape(parts[0][0])}: {escape(parts[0][1])}"
-        rows.append((code, severity, f"{len(parts):,}", cause, escape(names + more)))
-    heads = ("code", "kind", "parts", "for example", "which")
-    return f"<h2>Rejected, and why</h2>{_table(heads, rows, 'words')}{tail}"
-
-
 def _cost(report: Mapping[str, Any]) -> str:
     cost = report["cost"]
     if not cost:
         return ""
     rows = [(escape(name), f"{part:,.0f}") for name, part in cost["parts"].items() if part]
     rows.append(("<b>total</b>", f"<b>{cost['total']:,.0f}</b>"))
-    return f"<h2>Cost</h2>{_table(('', str(cost['currency'])), rows)}"
+    return f"<h2>Cost</h2>{table(('', str(cost['currency'])), rows)}"
 
 
 def _reproduction(facts: ReportFacts) -> str:
@@ -275,10 +249,11 @@ def _reproduction(facts: ReportFacts) -> str:
     graph: Mapping[str, Any] = json.loads(facts.graph)
     params: Mapping[str, Mapping[str, Any]] = graph.get("params", {})
     values = [(escape(name), escape(str(each["value"]))) for name, each in params.items()]
-    sliders = _table(("value", ""), values) if values else ""
+    sliders = table(("value", ""), values) if values else ""
     return (
         "<h2>How to reproduce</h2>"
         f"<p>Made with spheremesh {escape(facts.version)} by <code>graph.json</code>, which "
         "stands beside this page:</p><pre>spheremesh run graph.json -o again</pre>"
-        f"{sliders}{graph_picture(graph)}"
+        f"{sliders}<details><summary>The steps as a graph</summary>"
+        f"{graph_picture(graph)}</details>"
     )

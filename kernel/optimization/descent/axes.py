@@ -9,8 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...arrays import FloatArray, dot, norm, unit
-from ...solvers.block_patterns import add_up
+from ...arrays import FloatArray, dot, gather, norm, unit
+from ...solvers.block_patterns import add_up, add_up_products, weighted
 from ...tolerances import AXIS_LEAN, AXIS_STEP
 from ..energies.centers import center_lines
 from ..energies.setting import Unknowns
@@ -34,12 +34,12 @@ def with_best_axes(problem: EnergyProblem, unknowns: Unknowns) -> Unknowns:
     number = names.index("support")
     setting, weight = problem.setting, problem.weights[number]
     *_, sums = problem.patterns[0].gradients[number]
-    lines = weight * center_lines(setting, unknowns)[setting.spoke_edges]
-    tables = add_up(sums, lines[:, :, None] * lines[:, None, :])
+    lines = weight * gather(center_lines(setting, unknowns), setting.spoke_edges)
+    tables = add_up_products(sums, lines, lines)
     forces = UPRIGHT**2 * problem.upright
     if "support" in problem.multipliers:
         rest = weight * problem.multipliers["support"]
-        forces = forces - add_up(sums, rest[:, None] * lines)
+        forces = forces - add_up(weighted(sums, rest), lines)
 
     found = _least_on_sphere(tables, forces)
     normals = unknowns.normals

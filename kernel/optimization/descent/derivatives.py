@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import FloatArray, dot
-from ...solvers.block_patterns import PairKind, add_up
+from ...solvers.block_patterns import PairKind, add_up, add_up_products, weighted
 from ...solvers.block_systems import Blocks, factorize_system
 from ...solvers.factorization import Solver
 from ...solvers.minimization import Model
@@ -70,7 +70,7 @@ def _slopes(problem: EnergyProblem, unknowns: Unknowns) -> _Slopes:
             pattern.blocks[number], pattern.gradients[number], jacobians[number], strict=True
         ):
             if sums is not None:
-                gradients[block.group] += add_up(sums, forces[:, None] * table)
+                gradients[block.group] += add_up(weighted(sums, forces), table)
     # Upright axes: |n - m|² is 2 - 2 n·m, as n stays unit.
     gradients[Group.NORMAL] -= UPRIGHT**2 * problem.upright
     _, slope, _ = bound(problem, unknowns)
@@ -99,16 +99,17 @@ def _hessian(
         if is_exact:
             bent = term.second_derivatives(problem.setting, unknowns, firsts * values)
         for (i, j), addition in pattern.additions[number].items():
-            first = curvatures[:, None] * tables[i]
-            table = first[:, :, None] * tables[j][:, None, :]
-            if (i, j) in bent:
-                table += bent[i, j]
+            first, second = curvatures[:, None] * tables[i], tables[j]
             target = (
                 diagonal[addition.kind[0]] if addition.is_diagonal else mixed[addition.kind]
             )
-            target += add_up(addition.straight, table)
+            target += add_up_products(addition.straight, first, second)
             if addition.turned is not None:
-                target += add_up(addition.turned, table.transpose(0, 2, 1))
+                target += add_up_products(addition.turned, second, first)
+            if (i, j) in bent:
+                target += add_up(addition.straight, bent[i, j])
+            if (i, j) in bent and addition.turned is not None:
+                target += add_up(addition.turned, bent[i, j].transpose(0, 2, 1))
     blocks = Blocks(diagonal, mixed)
     _add_bound(problem, unknowns, blocks)
     _bend(problem, unknowns, slopes.gradients, blocks, is_exact=is_exact)

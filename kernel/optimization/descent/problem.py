@@ -7,7 +7,7 @@ towards the limit. As ε falls from round to round, of all that costs nothing el
 remains.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ import numpy as np
 from ...arrays import FloatArray, dot
 from ...solvers.block_patterns import HessianPattern, hessian_pattern
 from ...solvers.block_systems import SystemPattern, system_pattern
-from ...solvers.blocks import Layout
+from ...solvers.blocks import Block, Layout
 from ..energies.setting import WIDTHS, Group, Setting, Unknowns
 from ..energies.table import TERMS, EnergyWeights, Term
 from .freedom import Freedom
@@ -75,11 +75,13 @@ def energy_problem(
     freedom: Freedom,
     weights: EnergyWeights,
     bound_weight: float = 0.0,
+    known: EnergyProblem | None = None,
 ) -> EnergyProblem:
     """Collect the terms that have a weight and the unknowns that they need.
 
     Vertices are unknown if they may move at all, dual normals if there is a weight on the
-    support. Gauges are kept by the moves and take no part.
+    support. Gauges are kept by the moves and take no part. The patterns of a known problem of
+    the same mesh serve again if its terms and unknowns are the same.
     """
     n_vertices = setting.n_vertices if freedom.tolerance > 0 else 0
     n_nodes = len(setting.node_vertices) if weights.support > 0 else 0
@@ -96,14 +98,21 @@ def energy_problem(
         if any(layout.counts[block.group] and len(block.ids) for block in blocks)
     ]
     terms, values, blocks = zip(*chosen, strict=True) if chosen else ((), (), ())
+    is_known = known is not None and (known.terms, known.layout) == (terms, layout)
+    patterns = known.patterns if known and is_known else _patterns(setting, layout, blocks)
+    return EnergyProblem(
+        setting, freedom, terms, values, frozenset(), {}, {}, bound_weight,
+        setting.node_normals[:n_nodes], patterns,
+    )  # fmt: skip
+
+
+def _patterns(
+    setting: Setting, layout: Layout, blocks: Sequence[Sequence[Block]]
+) -> tuple[HessianPattern, SystemPattern]:
     pattern = hessian_pattern(layout, blocks)
     points = setting.face_points, setting.vertex_points, setting.node_points
     places = tuple(table[:count] for table, count in zip(points, layout.counts, strict=True))
-    solved = system_pattern(pattern.pairs, STEP_WIDTHS, places)
-    return EnergyProblem(
-        setting, freedom, terms, values, frozenset(), {}, {}, bound_weight,
-        setting.node_normals[:n_nodes], (pattern, solved),
-    )  # fmt: skip
+    return pattern, system_pattern(pattern.pairs, STEP_WIDTHS, places)
 
 
 class WeightedResiduals(NamedTuple):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...arrays import FloatArray, dot
+from ...arrays import FloatArray, dot, gather
 from ...solvers.blocks import Block
 from ...spheres.minkowski import minkowski, minkowski_gradient
 from ...spheres.rows import recenter
@@ -88,6 +88,6 @@ def _product_gradient(other: FloatArray, middle: FloatArray) -> FloatArray:
 def _rows_at_middles(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, FloatArray]:
     first, second = setting.edge_faces.T
     return (
-        recenter(unknowns.spheres[first], setting.edge_middles[0]),
-        recenter(unknowns.spheres[second], setting.edge_middles[1]),
+        recenter(gather(unknowns.spheres, first), setting.edge_middles[0]),
+        recenter(gather(unknowns.spheres, second), setting.edge_middles[1]),
     )

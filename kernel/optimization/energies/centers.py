@@ -6,7 +6,7 @@ the origin and vanishes for two planes.
 
 import numpy as np
 
-from ...arrays import FloatArray, IntArray, dot
+from ...arrays import FloatArray, IntArray, dot, gather
 from ...spheres.incidence import normals
 from .setting import Setting, Unknowns
 
@@ -16,7 +16,7 @@ def center_lines(setting: Setting, unknowns: Unknowns) -> FloatArray:
 
     Normals of the planes in which neighbours meet, not of unit length.
     """
-    first, second = (unknowns.spheres[faces] for faces in setting.edge_faces.T)
+    first, second = (gather(unknowns.spheres, faces) for faces in setting.edge_faces.T)
     b, c = setting.edge_middles
     return first[:, :1] * normals(second, c) - second[:, :1] * normals(first, b)
 
@@ -28,8 +28,8 @@ def center_line_gradients(
 
     Those by C are zero.
     """
-    first, second = (unknowns.spheres[faces] for faces in setting.edge_faces[edges].T)
-    b, c = (middles[edges] for middles in setting.edge_middles)
+    first, second = (gather(unknowns.spheres, faces[edges]) for faces in setting.edge_faces.T)
+    b, c = (gather(middles, edges) for middles in setting.edge_middles)
     return (
         _gradient(normals(second, c) + 2 * second[:, :1] * b, -second[:, :1], directions),
         _gradient(-normals(first, b) - 2 * first[:, :1] * c, first[:, :1], directions),
@@ -38,7 +38,7 @@ def center_line_gradients(
 
 def center_line_forms(setting: Setting, edges: IntArray, directions: FloatArray) -> FloatArray:
     """Matrices K (m, 5, 5) with ``D·a = Sᵀ K S'``, for vectors a (m, 3)."""
-    b, c = (middles[edges] for middles in setting.edge_middles)
+    b, c = (gather(middles, edges) for middles in setting.edge_middles)
     form = np.zeros((len(edges), 5, 5))
     form[:, 0, 0] = 2 * dot(b - c, directions)
     form[:, 0, 1:4] = directions
@@ -50,8 +50,8 @@ def center_line_jacobians(
     setting: Setting, unknowns: Unknowns, edges: IntArray
 ) -> tuple[FloatArray, FloatArray]:
     """Derivatives of the vectors D by the rows of the two faces, (m, 5, 3)."""
-    first, second = (unknowns.spheres[faces] for faces in setting.edge_faces[edges].T)
-    b, c = (middles[edges] for middles in setting.edge_middles)
+    first, second = (gather(unknowns.spheres, faces[edges]) for faces in setting.edge_faces.T)
+    b, c = (gather(middles, edges) for middles in setting.edge_middles)
     results = np.zeros((2, len(edges), 5, 3))
     results[0, :, 0] = normals(second, c) + 2 * second[:, :1] * b
     results[1, :, 0] = -normals(first, b) - 2 * first[:, :1] * c
@@ -61,5 +61,7 @@ def center_line_jacobians(
 
 
 def _gradient(by_a: FloatArray, by_b: FloatArray, directions: FloatArray) -> FloatArray:
-    zero = np.zeros(len(directions))
-    return np.column_stack([dot(by_a, directions), by_b * directions, zero])
+    result = np.zeros((5, len(directions))).T
+    result[:, 0] = dot(by_a, directions)
+    result[:, 1:4] = by_b * directions
+    return result

@@ -1,7 +1,8 @@
 """What an energy of sphere meshes is made of: what stays fixed, and the unknowns.
 
 Lengths are in mean edges. The row of a face is seen from the centroid of the face, so neither
-units nor the position of the model change anything.
+units nor the position of the model change anything. Tables that formulas run along are stored
+column after column.
 """
 
 from dataclasses import dataclass
@@ -9,7 +10,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from ...arrays import FloatArray, IntArray, sum_by, unit
+from ...arrays import FloatArray, IntArray, gather, sum_by, unit
 from ...meshes.mesh import Mesh, face_centroids, face_normals, local_corners, mean_edge_length
 from ...sphere_meshes.sphere_mesh import SphereMesh
 from ...spheres.rows import rescale
@@ -57,7 +58,7 @@ class Setting:
         Corners of the mesh before any vertex moves, local to their face.
     edge_faces : (E, 2) int array
         Faces of each interior edge.
-    edge_middles : (2, E, 3) float array
+    edge_middles : pair of (E, 3) float arrays
         Middle of each interior edge, local to its first and to its second face.
     edge_directions : (E, 3) float array
         Unit vectors along the edges.
@@ -89,7 +90,7 @@ class Setting:
     corner_vertices: IntArray
     corners: FloatArray
     edge_faces: IntArray
-    edge_middles: FloatArray
+    edge_middles: tuple[FloatArray, FloatArray]
     edge_directions: FloatArray
     edge_normals: FloatArray
     edge_weights: FloatArray
@@ -138,11 +139,11 @@ def energy_setting(
     return Setting(
         corner_faces=topology.corner_faces,
         corner_vertices=mesh.corners,
-        corners=corners,
+        corners=np.asfortranarray(corners),
         edge_faces=faces,
-        edge_middles=np.stack([middles[first], middles[second]]),
-        edge_directions=unit(heads[first] - corners[first]),
-        edge_normals=normals[faces[:, 0]] + normals[faces[:, 1]],
+        edge_middles=(gather(middles, first), gather(middles, second)),
+        edge_directions=unit(gather(heads, first) - gather(corners, first)),
+        edge_normals=gather(normals, faces[:, 0]) + gather(normals, faces[:, 1]),
         edge_weights=edge_weights,
         target_angle=target_angle,
         allowance=allowance,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...arrays import FloatArray, dot
+from ...arrays import FloatArray, dot, gather
 from ...solvers.blocks import Block
 from ...spheres.incidence import evaluate, normals
 from .second_derivatives import SecondDerivatives
@@ -28,7 +28,7 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
     Meshes with Spherical Faces, eq. (7) and (8); the last row of φ_sphere as printed has a
     wrong sign.
     """
-    rows = unknowns.spheres[setting.corner_faces]
+    rows = gather(unknowns.spheres, setting.corner_faces)
     return evaluate(rows, _points(setting, unknowns)) - rows[:, 0] * setting.allowance**2
 
 
@@ -39,8 +39,10 @@ def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
     """
     points = _points(setting, unknowns)
     squares = dot(points, points) - setting.allowance**2
-    by_row = np.column_stack([squares, -points, np.ones(len(points))])
-    return by_row, -normals(unknowns.spheres[setting.corner_faces], points)
+    by_row = np.ones((5, len(points))).T
+    by_row[:, 0] = squares
+    by_row[:, 1:4] = -points
+    return by_row, -normals(gather(unknowns.spheres, setting.corner_faces), points)
 
 
 def second_derivatives(
@@ -58,4 +60,4 @@ def second_derivatives(
 
 
 def _points(setting: Setting, unknowns: Unknowns) -> FloatArray:
-    return setting.corners + unknowns.displacements[setting.corner_vertices]
+    return setting.corners + gather(unknowns.displacements, setting.corner_vertices)

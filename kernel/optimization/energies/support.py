@@ -1,6 +1,6 @@
 """E_supp: the centres of the spheres around a node lie in a plane, so the node has an axis."""
 
-from ...arrays import FloatArray, dot
+from ...arrays import FloatArray, dot, gather
 from ...solvers.blocks import Block
 from .centers import (
     center_line_forms,
@@ -34,15 +34,15 @@ def residuals(setting: Setting, unknowns: Unknowns) -> FloatArray:
     ----------
     Meshes with Spherical Faces, Sec. 4.1.
     """
-    lines = center_lines(setting, unknowns)[setting.spoke_edges]
-    return dot(lines, unknowns.normals[setting.spoke_nodes])
+    lines = gather(center_lines(setting, unknowns), setting.spoke_edges)
+    return dot(lines, gather(unknowns.normals, setting.spoke_nodes))
 
 
 def jacobian(setting: Setting, unknowns: Unknowns) -> tuple[FloatArray, ...]:
     """Derivatives by the rows of the two faces, (S, 5), and by the dual normal, (S, 3)."""
-    axes = unknowns.normals[setting.spoke_nodes]
+    axes = gather(unknowns.normals, setting.spoke_nodes)
     first, second = center_line_gradients(setting, unknowns, setting.spoke_edges, axes)
-    return first, second, center_lines(setting, unknowns)[setting.spoke_edges]
+    return first, second, gather(center_lines(setting, unknowns), setting.spoke_edges)
 
 
 def second_derivatives(
@@ -50,7 +50,7 @@ def second_derivatives(
 ) -> SecondDerivatives:
     """Second derivatives of the residuals, each times its multiplier: D·n is trilinear."""
     edges, weights = setting.spoke_edges, multipliers[:, None]
-    axes = weights * unknowns.normals[setting.spoke_nodes]
+    axes = weights * gather(unknowns.normals, setting.spoke_nodes)
     first, second = center_line_jacobians(setting, unknowns, edges)
     return {
         (0, 1): center_line_forms(setting, edges, axes),

@@ -20,7 +20,7 @@ class HexagonPattern(NamedTuple):
     report: PatternReport
 
 
-@node(version="2")
+@node(version="3")
 def hexagon_pattern(
     mesh: Mesh | Surface,
     edge_length: EdgeLength,

@@ -64,7 +64,7 @@ def quad_pattern(
         guides; or lines end at them as they come.
     density : float
         From 0, edges of one length, to 1: edges as the radius of curvature, at most 1.6 times
-        longer or shorter. Panels are about as many.
+        longer or shorter, with up to a fifth fewer panels.
     insist : bool
         Whether nodes are made free of torsion even where the surface is all but a sphere, or
         lines leave the lines of curvature on more than 5 % of its area; without, such a net is

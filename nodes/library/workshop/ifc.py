@@ -10,7 +10,7 @@ from ...graphs.node import node
 from ...graphs.ports import Units, WritePath
 
 
-@node
+@node(version="2")
 def write_ifc(
     panels: Panels | None = None,
     beams: Beams | None = None,
@@ -18,7 +18,7 @@ def write_ifc(
     units: Units = "m",
     ifc_units: Literal["mm", "m"] = "mm",
     shapes: Literal["both", "exact", "triangles"] = "both",
-    spheres: Literal["rational", "spherical"] = "rational",
+    spheres: Literal["polynomial", "rational", "spherical"] = "polynomial",
     title: str = "Spherical panels",
 ) -> str:
     """Write panels and beams to an IFC4 file: a curtain wall of plates and members.
@@ -36,9 +36,10 @@ def write_ifc(
         Unit of length of the file; areas and volumes are in metres.
     shapes : {"both", "exact", "triangles"}
         Exact solids with triangles beside them as ``Body-Fallback``, or one of the two.
-    spheres : {"rational", "spherical"}
-        How exact solids have their spheres: as rational patches, or as spherical surfaces,
-        which fewer programs read.
+    spheres : {"polynomial", "rational", "spherical"}
+        How exact solids have their spheres: as polynomials, within a billionth of the size of a
+        panel and read as they are; as rational patches, exact, of which IfcOpenShell drops the
+        weights; or as spherical surfaces, which few programs read.
     title : str
         Name of the project: GlobalIds are made of it and of the ids of the parts.
 

@@ -153,5 +153,6 @@ def vase() -> Graph:
     mesh = graph.add("vase_mesh", "mesh", n_around=10, n_across=5)
     fit = graph.add("fit_spheres", "fit", mesh=mesh)
     few = graph.add("cluster_radii", "few", sphere_mesh=fit, k=moulds)
-    graph.add("panels", "panels", sphere_mesh=few.sphere_mesh, labels=few.labels)
+    given = {"sphere_mesh": few.sphere_mesh, "labels": few.labels}
+    graph.add("panels", "panels", thickness=0.02, **given)
     return graph

@@ -11,7 +11,12 @@ from spheremesh import Mesh
 from spheremesh.kernel.arrays import FloatArray, dot, norm
 from spheremesh.kernel.errors import InputError
 from spheremesh.kernel.hexagons.dual_sphere_mesh import dual_sphere_mesh
-from spheremesh.kernel.hexagons.evolution import Evolution, descend, evolve_spheres
+from spheremesh.kernel.hexagons.evolution import (
+    Evolution,
+    descend,
+    evolve_best,
+    evolve_spheres,
+)
 from spheremesh.kernel.hexagons.face_shapes import face_shapes
 from spheremesh.kernel.hexagons.ortho_energy import axis_deviations, ortho_residuals
 from spheremesh.kernel.hexagons.tangent_offsets import (
@@ -23,6 +28,7 @@ from spheremesh.kernel.hexagons.tangent_offsets import (
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.spheres.incidence import evaluate, normals
 from spheremesh.kernel.spheres.rows import center_radius
+from spheremesh.kernel.surfaces.triangulated import triangulated_surface
 
 Grids = dict[str, Any]
 BOUND = np.radians(15.0)
@@ -227,3 +233,13 @@ def test_bad_input_is_named(ball: Mesh, octahedron: Mesh) -> None:
     lonely = Mesh(np.vstack([octahedron.vertices, [[9, 9, 9]]]), octahedron.faces)
     with pytest.raises(InputError, match=r"vertices \[6\] have no normal"):
         evolve_spheres(lonely)
+
+
+def test_law_f3_a_looser_bound_never_gives_smaller_spheres() -> None:
+    mesh, _ = triangulated_surface("waves", 0.2)
+    shares: list[float] = []
+    for bound in np.radians([3.0, 5.0, 12.0, 20.0]):
+        found = evolve_best(mesh, bound, "plus")
+        assert not found.converged or found.axis_angles.max() <= bound + np.radians(0.5)
+        shares.append(float((found.offsets / found.radii).mean()))
+    assert shares == sorted(shares)

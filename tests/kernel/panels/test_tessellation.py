@@ -87,7 +87,7 @@ def closed_torus(thickness: float = 0.0) -> Panels:
     )[0]
 
 
-def test_law_rims_neighbours_are_closed_to_the_bit() -> None:
+def test_neighbours_are_closed_to_the_bit() -> None:
     """However fine each of them is."""
     panels = closed_torus()
     finer = np.random.default_rng(3).choice([0.05, 0.01, 0.002], panels.n_panels)
@@ -104,7 +104,9 @@ def test_law_rims_neighbours_are_closed_to_the_bit() -> None:
     seed=st.integers(0, 99),
 )
 @settings(max_examples=4)
-def test_law_rims_wherever_a_net_is(turn: float, size: float, away: float, seed: int) -> None:
+def test_neighbours_are_closed_wherever_a_net_is(
+    turn: float, size: float, away: float, seed: int
+) -> None:
     """Turned, scaled, moved, renumbered: between spheres that touch no triangles gape."""
     net = torus_net(24, 10, 3.0, 1.0)
     spin = np.array(

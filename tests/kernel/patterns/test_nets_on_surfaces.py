@@ -10,9 +10,12 @@ from spheremesh.kernel.arrays import norm, unit
 from spheremesh.kernel.congruences.curvature_spheres import sphere_congruence
 from spheremesh.kernel.meshes.mesh import mean_edge_length
 from spheremesh.kernel.patterns.curved_refinement import refined
-from spheremesh.kernel.patterns.held_nets import FARTHEST_NODE, held_nets
+from spheremesh.kernel.patterns.held_nets import (
+    FARTHEST_NODE,
+    held_nets,
+    without_loose_corners,
+)
 from spheremesh.kernel.patterns.net_flaws import judge_net
-from spheremesh.kernel.patterns.rim_repair import without_loose_corners
 from spheremesh.kernel.remesh.pipeline import remesh
 from spheremesh.kernel.remesh.planar.conditions import (
     NetState,

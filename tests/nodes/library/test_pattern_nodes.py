@@ -9,6 +9,7 @@ import pytest
 
 from spheremesh import Mesh
 from spheremesh.kernel.errors import InputError
+from spheremesh.kernel.patterns.dual_patterns import hexagon_tries, smoothest_within
 from spheremesh.kernel.remesh.planar.node_planarity import measure_nodes
 from spheremesh.nodes import (
     NodeWarning,
@@ -107,16 +108,17 @@ def test_triangles_are_smooth_and_as_large_as_asked_for() -> None:
     assert panels(net).report["rejected"] == []
 
 
-@pytest.mark.filterwarnings("ignore:.*planes are smoother")
 def test_hexagons_are_convex_within_their_bound_and_smoother_with_looser_ones() -> None:
-    surface, means = ellipsoid_mesh(24, 12), []
+    tries, means = hexagon_tries(ellipsoid_mesh(24, 12), 0.27, 9, "drop"), list[float]()
     for bound in (5, 9):
-        report = hexagon_pattern(surface, 0.27, max_axis_angle=bound).report
-        assert (report["status"], report["convex_share"]) == ("usable", 1.0)
-        assert report["rejected"] == {"panels": 0, "beams": 0}
-        assert report["edges"]["min"] >= 0.1
-        assert report["node_axis_deg"]["max"] <= bound + 0.1
-        means.append(report["angles_deg"]["spheres"])
+        best = smoothest_within(tries, bound)
+        judgement = best.judgement
+        assert judgement is not None
+        assert (judgement.is_usable, judgement.convex_share) == (True, 1.0)
+        assert judgement.rejected_panels == judgement.rejected_beams == 0
+        assert judgement.shortest >= 0.1
+        assert np.degrees(judgement.lean_max) <= bound + 0.1
+        means.append(judgement.angle)
     assert means[1] < means[0]
 
 

@@ -12,10 +12,11 @@ import pytest
 
 from spheremesh.fabrication.schedules.columns import beam_columns, panel_columns
 from spheremesh.kernel.panels.cutting import cut_panels
+from spheremesh.kernel.parts.colors import mould_color
 from spheremesh.kernel.parts.findings import Finding
 from spheremesh.kernel.parts.records import select_parts
 from spheremesh.kernel.sphere_meshes.fit import fit_spheres
-from spheremesh.kernel.surfaces.circular_nets import ellipsoid_net, vase_net
+from spheremesh.kernel.surfaces.circular_nets import ellipsoid_net, roof_net, vase_net
 from spheremesh.nodes import beams as cut_beams
 from spheremesh.nodes import bisector_support
 from spheremesh.viewer.camera import SAMPLES, stand_at
@@ -323,16 +324,63 @@ def test_beams_and_nodes_are_picked_where_panels_are_hidden(page: Page) -> None:
     assert page.inner_text("#card").count("Nodes")
 
 
-def test_every_colour_and_light_draws_another_picture(page: Page) -> None:
-    seen = set()
+def test_every_colour_says_something_else_of_the_panels(page: Page) -> None:
+    """What is measured runs along the scale from its least to its largest value."""
+    seen = {}
     for mode in page.evaluate("window.spheremesh.modes.map(m => m.key)"):
         page.select_option("#color", mode)
-        seen.add(picture(page).tobytes())
-    assert len(seen) >= 5
+        colors = page.evaluate("[...window.spheremesh.view.colorData.slice(0, 4 * 71)]")
+        seen[mode] = np.array(colors).reshape(71, 4)[:, :3]
+        values = page.evaluate("window.spheremesh.mode.values ?? []")
+        if len(set(values)) > 1:
+            known = np.array(values, float)
+            assert tuple(seen[mode][np.nanargmin(known)].tolist()) == mould_color(0, 2), mode
+            assert tuple(seen[mode][np.nanargmax(known)].tolist()) == mould_color(1, 2), mode
+    assert list(seen) == [
+        "mould", "radius", "angle", "tilt", "area", "planarity", "finding", "none",
+    ]  # fmt: skip
+    assert len({colors.tobytes() for colors in seen.values()}) == len(seen)
+
+
+def test_every_light_draws_another_picture(page: Page) -> None:
+    seen = set()
     for light in range(3):
         page.evaluate(f"window.spheremesh.set({{color: 'none', shading: {light}}})")
         seen.add(picture(page).tobytes())
-    assert len(seen) >= 8
+    assert len(seen) == 3
+
+
+def test_what_is_wrong_stands_on_the_page(page: Page) -> None:
+    """Which panels are bad, and why, without a search: from the list, or from the title."""
+    words = page.inner_text("#faults")
+    assert "What is wrong: 1 part with errors, 1 part with notes" in words
+    assert words.index("P0000 a step of 9 mm </script>") < words.index("P0001 a corner of 12")
+    page.click("#faults [data-part='1']")
+    assert selected(page) == "P0001"
+    assert "P102 a corner of 12 degrees" in page.inner_text("#card .findings")
+    page.click("#title button")
+    assert page.evaluate("window.spheremesh.state.color") == "finding"
+    assert page.evaluate("window.spheremesh.left()") == [0]
+
+
+def test_a_card_names_mould_and_neighbours_and_leads_there(page: Page) -> None:
+    page.evaluate("window.spheremesh.select(30)")
+    rows = dict(
+        page.evaluate(
+            "[...document.querySelectorAll('#card dl div')].map(d => [...d.children].map("
+            "c => c.textContent))"
+        )
+    )
+    mould, around = page.evaluate(
+        "(({panels: p, ids}) => [p.mould[30], p.neighbors[30].map(j => ids[j])])"
+        "(window.spheremesh.model)"
+    )
+    assert rows["Mould"] == str(mould)
+    assert sorted(rows["Neighbours"].split()) == sorted(around)
+    page.click(f"#card dl [data-part]:has-text('{around[0]}')")
+    assert selected(page) == around[0]
+    page.click("#card .mould")
+    assert page.evaluate("window.spheremesh.left().length") == 24
 
 
 def test_findings_are_red_and_amber(page: Page) -> None:
@@ -396,6 +444,17 @@ def test_keys_step_through_panels_and_turn_the_model(page: Page) -> None:
     assert page.evaluate("window.spheremesh.view.camera.position.toArray()") != eye
     page.keyboard.press("Escape")
     assert not page.is_visible("#card")
+    for key, there in (("t", "#table"), ("m", "[data-value=on][aria-pressed=true]")):
+        assert not page.is_visible(there)
+        page.keyboard.press(key)
+        assert page.is_visible(there)
+        page.keyboard.press(key)
+    page.keyboard.press("f")
+    assert page.evaluate("window.spheremesh.view.fitted") == page.evaluate(
+        "window.spheremesh.home"
+    )
+    page.keyboard.press("/")
+    assert page.evaluate("document.activeElement.type") == "search"
 
 
 def test_sections_hide_what_is_beyond_them(page: Page) -> None:
@@ -405,6 +464,36 @@ def test_sections_hide_what_is_beyond_them(page: Page) -> None:
     # From the side of the viewer all is cut away.
     page.evaluate("window.spheremesh.set({axis: 'y', depth: 1})")
     assert page.evaluate(f"window.spheremesh.view.pick({middle})") == -1
+
+
+def test_parts_drawn_apart_are_picked_where_they_are(page: Page) -> None:
+    page.evaluate("window.spheremesh.set({explode: 0.8, hidden: new Set(['beams', 'nodes'])})")
+    found = page.evaluate(
+        """() => { const v = window.spheremesh.view; let right = 0, asked = 0;
+        for (let i = 0; i < 71; i += 5) { const c = v.shapes.centers[i], n = v.shapes.lifts[i];
+          const e = v.camera.position.toArray(), at = c.map((x, k) => 1.32 * x + 0.056 * n[k]);
+          if (n.reduce((s, x, k) => s + x * (e[k] - at[k]), 0) < 0.5) continue;
+          asked++; if (v.pick(...v.project(at)) === i) right++; } return [right, asked]; }"""
+    )
+    assert found[0] == found[1] > 2
+
+
+@pytest.mark.long
+def test_walls_of_many_panels_come_with_a_section(browser: Browser, tmp_path: Path) -> None:
+    made, _ = cut_panels(fit_spheres(roof_net(40, 60, 60.0)), thickness=0.1)
+    path = tmp_path / "view.html"
+    about = PageTexts("roof", panel_columns(made, "m"), beam_columns(None, None, "m"))
+    path.write_text(page_text(made, None, about), encoding="utf-8")
+    page = browser.new_page(viewport=SIZE)
+    page.goto(path.as_uri())
+    page.wait_for_selector("html[data-ready]", state="attached", timeout=60_000)
+    assert page.evaluate("window.spheremesh.shapes.walls.size") == 0
+    page.evaluate("window.spheremesh.set({axis: 'y', depth: 0.5})")
+    cut = picture(page)
+    assert page.evaluate("window.spheremesh.shapes.walls.size") > 4 * 2000
+    page.evaluate("window.spheremesh.view.meshes.walls.material.visible = false")
+    assert (picture(page) != cut).any(axis=2).sum() > 20
+    page.close()
 
 
 def test_flat_panels_break_the_reflections_that_spheres_carry(page: Page) -> None:

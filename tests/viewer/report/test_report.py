@@ -106,17 +106,36 @@ def test_names_stay_in_their_place(made: tuple[Panels, Any]) -> None:
 
 def test_what_is_wrong_is_sorted_and_counted(made: tuple[Panels, Any]) -> None:
     rejected = [{"id": f"P{i:04d}", "code": "P101", "reason": "too thin"} for i in range(20)]
-    errors = [{"code": "P201", "id": "P0050", "message": "a step", "size": 9.0}]
+    # The audit says of what is rejected that it cannot be made: no error more.
+    errors = [
+        {"code": "P101", "id": "P0003", "message": "cannot be made", "size": None},
+        {"code": "P201", "id": "P0050", "message": "a step of 7 mm", "size": 7.0},
+        {"code": "P201", "id": "P0051", "message": "a step of 9 mm", "size": 9.0},
+        {"code": "B201", "id": "B0001", "message": "twisted", "size": 1.0},
+    ]
     report = made[1] | {
         "panels": {"written": 52, "rejected": rejected},
+        "beams": {"written": 30, "rejected": []},
         "audit": {"counts": {}, "errors": errors, "notes": []},
         "buildable": False,
     }
     text = report_text(made[0], facts(report))
     words = read(text).words
-    assert "20 parts cannot be made; 1 errors" in words
+    assert "72 panels: 20 cannot be made, 2 more with errors; 30 beams: 1 with errors." in words
+    assert "2 parts, worst P0051: a step of 9 mm" in words
+    assert "20 of these panels cannot be made" in words
     assert "P0011 and 8 more" in words
     assert words.index("P101") < words.index("P201")
+    assert words.count("P0003") == 1
+
+
+def test_sharp_edges_are_told_apart(made: tuple[Panels, Any]) -> None:
+    assert "stay sharp" not in read(report_text(made[0], facts(made[1]))).words
+    for count, said in ((1, "One edge stays sharp"), (3, "3 edges stay sharp")):
+        creases = {"angle_deg": 40.0, "count": count, "max_deg": 57.9, "edges": []}
+        words = read(report_text(made[0], facts(made[1] | {"creases": creases}))).words
+        assert said in words
+        assert "57.9°" in words
 
 
 def test_sheets_are_counted_where_pieces_are_nested(made: tuple[Panels, Any]) -> None:

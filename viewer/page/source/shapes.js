@@ -71,7 +71,7 @@ function addPanels(shapes, head, arrays, at) {
     if (inner) {
       const other = inner[arrays.inner_kinds[f]];
       const under = addFace(soup, other, arrays.inner_points, arrays.inner_light, i, face, INNER);
-      const touches = head.panels.neighbors[f].map((j) => head.tight === true && j !== null);
+      const touches = Array.from(own.steps, (_, e) => head.tight === true && head.panels.neighbors[f][e] !== null);
       addWalls(shapes, soup, rim, under, f, touches.map((yes) => !yes));
       shapes.touching.push([rim, under, f, touches]);
       i += other.points;
