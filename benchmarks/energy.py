@@ -1,33 +1,20 @@
-"""Time to solution of energy (6), and general solvers on the same energy beside it.
+"""Time to solution of energy (6).
 
-    python benchmarks/energy.py [large] [moving] [scipy]
+    python benchmarks/energy.py [large] [moving]
 
 The whole job with a support, vertices fixed (or with ``moving`` within 0.02 edges), on 5,000
-faces, with ``large`` on 50,000 too. With ``scipy`` the energy without multipliers is minimised
-by Newton's method, by the same steps without second derivatives (a factorising
-Levenberg-Marquardt), by L-BFGS and by scipy's least_squares, all on 1,600 faces, in one run.
-Seconds are CPU seconds of this machine now; what counts are the ratios.
+faces, with ``large`` on 50,000 too. Seconds are CPU seconds of this machine now; what counts is
+the exponent. General solvers on the same energy stand in the tables (tables/run.py).
 """
 
 import resource
 import sys
 import time
-from contextlib import suppress
 
 import numpy as np
-from scipy.sparse import csr_array
 
 from spheremesh import Mesh
-from spheremesh.kernel.arrays import FloatArray
 from spheremesh.kernel.optimization.angle_minimization import minimize_angles
-from spheremesh.kernel.optimization.descent.freedom import Freedom, moved, vertex_freedom
-from spheremesh.kernel.optimization.descent.multipliers import descend_energy
-from spheremesh.kernel.optimization.descent.problem import EnergyProblem, energy_problem
-from spheremesh.kernel.optimization.energies.setting import (
-    Unknowns,
-    energy_setting,
-    first_unknowns,
-)
 from spheremesh.kernel.optimization.energies.table import EnergyWeights
 from spheremesh.kernel.optimization.whole_energy import Conditions, optimize_spheres
 from spheremesh.kernel.sphere_meshes.fit import fit_spheres
@@ -62,101 +49,6 @@ def whole_job(size: int, tolerance: float) -> tuple[int, float]:
     return mesh.n_faces, seconds
 
 
-def same_energy(size: int) -> None:
-    """Newton's method, without second derivatives, L-BFGS and least_squares, to one energy."""
-    mesh = surface(size)
-    start = first_unknowns(minimize_angles(fit_spheres(mesh))[0])
-    setting = energy_setting(mesh, np.ones(len(mesh.topology.edge_corners)))
-    freedom = Freedom(0.0, vertex_freedom(mesh, "free", "free"), np.zeros(mesh.n_faces, bool))
-    problem = energy_problem(setting, freedom, FULL)
-    best, first = np.inf, 0.0
-    for name, is_exact in (("Newton", True), ("Levenberg-Marquardt, factorising", False)):
-        began = time.process_time()
-        found = descend_energy(problem, start, 500, 1e-12, is_exact=is_exact)
-        seconds = time.process_time() - began
-        energy = float(found.history[-1].sum())
-        best, first = min(best, energy), first or seconds
-        print(
-            f"{name}: energy {energy:.10g}, {found.iterations} steps, {seconds:.1f} s, "
-            f"{seconds / first:.2g} times Newton's method",
-            flush=True,
-        )
-    general_solvers(problem, start, best, first)
-
-
-def jacobian(problem: EnergyProblem, unknowns: Unknowns) -> csr_array:
-    """By the unknowns as they stand: a change of length of a row is nothing to first order."""
-    rows, columns, values, first = [], [], [], 0
-    layout = problem.layout
-    for term, weight in zip(problem.terms, problem.weights, strict=True):
-        tables = term.jacobian(problem.setting, unknowns)
-        for block, table in zip(term.blocks(problem.setting), tables, strict=True):
-            if layout.counts[block.group]:
-                width = table.shape[1]
-                start = layout.starts[block.group] + width * block.ids[:, None]
-                rows.append(np.repeat(first + np.arange(len(table)), width))
-                columns.append((start + np.arange(width)).ravel())
-                values.append(weight * table.ravel())
-        first += len(tables[0])
-    places = np.concatenate(rows), np.concatenate(columns)
-    return csr_array((np.concatenate(values), places), shape=(first, int(layout.starts[-1])))
-
-
-def general_solvers(problem: EnergyProblem, start: Unknowns, aim: float, newton: float) -> None:
-    """Solvers of scipy to the same energy, each for two minutes at most.
-
-    Seconds are beside those of Newton's method.
-    """
-    from scipy.optimize import least_squares, minimize
-
-    split = start.spheres.size
-    none = np.zeros((0, 3))
-
-    def _unknowns(x: FloatArray) -> Unknowns:
-        free = Unknowns(x[:split].reshape(-1, 5), start.displacements, x[split:].reshape(-1, 3))
-        return moved(problem.freedom, free, (0 * free.spheres, none, 0 * free.normals))
-
-    def _residuals(x: FloatArray) -> FloatArray:
-        nonlocal least
-        found = _unknowns(x)
-        parts = [
-            weight * term.residuals(problem.setting, found)
-            for term, weight in zip(problem.terms, problem.weights, strict=True)
-        ]
-        residuals = np.concatenate(parts)
-        least = min(least, float(residuals @ residuals))
-        if least <= aim * (1 + 1e-6) or time.process_time() - began > 120:
-            raise StopIteration
-        return residuals
-
-    def _jacobian(x: FloatArray) -> csr_array:
-        return jacobian(problem, _unknowns(x))
-
-    def _function(x: FloatArray) -> tuple[float, FloatArray]:
-        residuals = _residuals(x)
-        return float(residuals @ residuals), 2 * (_jacobian(x).T @ residuals)
-
-    x = np.concatenate([start.spheres.ravel(), start.normals.ravel()])
-    options = {"maxiter": 10**6, "maxfun": 10**6, "ftol": 0, "gtol": 0}
-    jobs = {
-        "L-BFGS": lambda: minimize(_function, x, jac=True, method="L-BFGS-B", options=options),
-        "least_squares (trf, lsmr)": lambda: least_squares(
-            _residuals, x, _jacobian, tr_solver="lsmr", ftol=1e-15, xtol=1e-15, gtol=1e-15
-        ),
-    }
-    for name, job in jobs.items():
-        began, least = time.process_time(), np.inf
-        with suppress(StopIteration):
-            job()
-        off = least / aim - 1
-        seconds = time.process_time() - began
-        print(
-            f"scipy {name}: energy {least:.10g}, {off:.1e} above, {seconds:.1f} s, "
-            f"{seconds / newton:.2g} times Newton's method",
-            flush=True,
-        )
-
-
 def main(options: list[str]) -> None:
     """Print the figures."""
     tolerance = 0.02 if "moving" in options else 0.0
@@ -166,8 +58,6 @@ def main(options: list[str]) -> None:
         more, longer = whole_job(224, tolerance)
         exponent = np.log(longer / seconds) / np.log(more / faces)
         print(f"exponent of the seconds: {exponent:.2f}")
-    if "scipy" in options:
-        same_energy(40)
 
 
 if __name__ == "__main__":

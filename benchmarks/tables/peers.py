@@ -12,6 +12,7 @@ from contextlib import suppress
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.optimize import least_squares, minimize
 from scipy.sparse import csc_array, csr_array, eye_array
 from scipy.sparse.linalg import splu
 
@@ -102,8 +103,6 @@ class _Watch:
 
 
 def _lbfgs(watch: _Watch) -> None:
-    from scipy.optimize import minimize
-
     def _energy(x: FloatArray) -> tuple[float, FloatArray]:
         found = watch.ending_residuals(x)
         return float(found @ found), 2 * (watch.jacobian(x).T @ found)
@@ -113,8 +112,6 @@ def _lbfgs(watch: _Watch) -> None:
 
 
 def _least_squares(watch: _Watch) -> None:
-    from scipy.optimize import least_squares
-
     least_squares(
         watch.ending_residuals, watch.problem.start, watch.jacobian, tr_solver="lsmr",
         ftol=1e-15, xtol=1e-15, gtol=1e-15, max_nfev=10**6,

@@ -6,7 +6,7 @@ from math import cos, sin
 from typing import Any
 
 import numpy as np
-from energy import FULL, jacobian, surface
+from energy import FULL, surface
 from measure import Table, exponent, measured
 from peers import REACHED, SOLVERS, LocalSum, Reached, SquareSum, reach
 from scipy.sparse import (
@@ -185,6 +185,24 @@ def _of_unit(
     tables /= lengths[:, None, None]
     count = np.arange(len(rows) + 1)
     return bsr_array((tables, count[:-1], count), shape=(rows.size, rows.size))
+
+
+def jacobian(problem: EnergyProblem, unknowns: Unknowns) -> csr_array:
+    """By the unknowns as they stand: a change of length of a row is nothing to first order."""
+    rows, columns, values, first = [], [], [], 0
+    layout = problem.layout
+    for term, weight in zip(problem.terms, problem.weights, strict=True):
+        tables = term.jacobian(problem.setting, unknowns)
+        for block, table in zip(term.blocks(problem.setting), tables, strict=True):
+            if layout.counts[block.group]:
+                width = table.shape[1]
+                start = layout.starts[block.group] + width * block.ids[:, None]
+                rows.append(np.repeat(first + np.arange(len(table)), width))
+                columns.append((start + np.arange(width)).ravel())
+                values.append(weight * table.ravel())
+        first += len(tables[0])
+    places = np.concatenate(rows), np.concatenate(columns)
+    return csr_array((np.concatenate(values), places), shape=(first, int(layout.starts[-1])))
 
 
 def our_energy(size: int) -> tuple[int, float, float]:

@@ -84,7 +84,8 @@ def circle_charts(
         ids, ids[:, None], curvatures, 0 * n_axes, frames, uv, bulges, uv[:, 0]
     )
     hull = trim_control_points(charts, 2)
-    hull = (hull[..., :2] / hull[..., 2:]).reshape(len(ids), -1, 2)
+    count = int(np.prod(hull.shape[1:-1]))  # none of no panels either
+    hull = (hull[..., :2] / hull[..., 2:]).reshape(len(ids), count, 2)
     # On a domain symmetric about the origin the middle isocurves are great circles: by them
     # Rhino recognises the sphere.
     return replace(charts, reaches=(1 + _MARGIN) * np.abs(hull).max(1))

@@ -210,6 +210,16 @@ def _blob(session: Session, environ: Environ) -> Reply:
     return Reply(200, data, "application/octet-stream", keeping)
 
 
+def _receive(session: Session, environ: Environ) -> Reply:
+    kind = str(environ.get("CONTENT_TYPE", "")).partition(";")[0].strip().lower()
+    if kind != "application/octet-stream":
+        raise RefusedError(415, "a file needs the content type application/octet-stream")
+    data = environ["wsgi.input"].read(MOST_BYTES + 1)
+    if len(data) > MOST_BYTES:
+        raise RefusedError(413, too_large(MOST_BYTES))
+    return _json(session.receive(_word(environ, "name"), data))
+
+
 def _told(
     answer: Callable[[Session, Mapping[str, Any]], Any],
 ) -> Callable[[Session, Environ], Reply]:
@@ -229,6 +239,7 @@ _ROUTES: Final[dict[str, tuple[str, Callable[[Session, Environ], Reply]]]] = {
     "run": ("POST", _told(lambda s, body: s.run([str(x) for x in body.get("targets", [])]))),
     "cancel": ("POST", _told(lambda s, body: s.cancel(int(body.get("run", 0))))),
     "export": ("POST", _told(lambda s, body: s.export(str(body.get("folder", "")), body))),
+    "receive": ("POST", _receive),
     "open": ("POST", _told(lambda session, body: session.open(body))),
     "save": ("POST", _told(lambda s, body: s.save_as(str(body.get("file", ""))))),
     "revert": ("POST", _told(lambda s, body: s.revert(str(body.get("version", ""))))),

@@ -119,6 +119,7 @@ class Document:
                 "undo": len(self._past),
                 "redo": len(self._future),
                 "file": self.path.name if self.path else "",
+                "is_new": self._is_untouched(),
                 "fault": self.save_fault,
                 "graph": content_of(self._now, {}),
             }
@@ -144,6 +145,10 @@ class Document:
         """Earlier versions of the file, the latest first."""
         folder = self._history_folder()
         return sorted(folder.glob("*.json"), reverse=True) if folder else []
+
+    def _is_untouched(self) -> bool:
+        """Whether there is no file yet: a template is written with its first edit."""
+        return not self._past and self.path is not None and not self.path.exists()
 
     def _history_folder(self) -> Path | None:
         return None if self.path is None else self.path.with_suffix(HISTORY)

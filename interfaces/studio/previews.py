@@ -29,13 +29,13 @@ from .scenes import (
     Colors,
     Scene,
     beams_scene,
+    counted,
     edge_scene,
     lines_scene,
     mesh_polygons,
     mesh_scene,
     packed_scene,
     panels_scene,
-    point_stars,
     row_scene,
     vertex_scene,
 )
@@ -44,6 +44,8 @@ MOST_ROWS: Final = 400
 """Rows of a table, and numbers of a list, that are sent."""
 MOST_IN_ROW: Final = 8
 MOST_TEXT: Final = 20_000
+
+_PICTURES: Final = {".png": "image/png", ".svg": "image/svg+xml"}
 
 Carriers = Sequence[Mesh | SphereMesh | Panels]
 
@@ -76,11 +78,27 @@ def preview(value: Value, carriers: Carriers = (), name: str = "", unit: str = "
     return _words(value)
 
 
-def preview_node(port: Port, n_carriers: int) -> Node:
-    """The node that makes the preview of an output: its results are kept as all others are."""
+def file_preview(file: Path) -> bytes:
+    """What is shown of a file that was written: a picture, or its text."""
+    if file.suffix.lower() in _PICTURES:
+        head = {"kind": "picture", "type": _PICTURES[file.suffix.lower()], "name": file.name}
+        return pack_arrays(head, {"data": np.frombuffer(file.read_bytes(), np.uint8)})
+    with file.open(encoding="utf-8", errors="replace") as lines:
+        return pack_arrays({"kind": "text", "text": lines.read(MOST_TEXT)}, {})
+
+
+def preview_node(port: Port, n_carriers: int, written: Path | None = None) -> Node:
+    """The node that makes the preview of an output: its results are kept as all others are.
+
+    Of a step that writes a file into a folder the file is shown.
+    """
 
     def _preview(value: Value, **carriers: Value) -> NDArray[Any]:
-        data = preview(value, tuple(carriers.values()), port.name, port.unit)
+        data = (
+            file_preview(written / value)
+            if written is not None
+            else preview(value, tuple(carriers.values()), port.name, port.unit)
+        )
         return np.frombuffer(data, np.uint8)
 
     inputs = {"value": Port("value")} | {f"on_{i}": Port(f"on_{i}") for i in range(n_carriers)}
@@ -122,7 +140,7 @@ def _mesh(value: Mesh, _: Carriers) -> Scene:
 
 
 def _spheres(value: SphereMesh, _: Carriers) -> Scene:
-    return mesh_scene(value, f"{value.mesh.n_faces:,} spheres", [_radii(value)])
+    return mesh_scene(value, counted(value.mesh.n_faces, "sphere"), [_radii(value)])
 
 
 def _radii(value: SphereMesh) -> Colors:
@@ -135,7 +153,7 @@ def _surface(value: Surface, _: Carriers) -> Scene:
 
 
 def _beams(value: Beams, carriers: Carriers) -> Scene:
-    return beams_scene(value, _panels_of(carriers), f"{value.n_beams:,} beams")
+    return beams_scene(value, _panels_of(carriers), counted(value.n_beams, "beam"))
 
 
 def _annuli(value: Annuli, carriers: Carriers) -> Scene:
@@ -148,7 +166,7 @@ def _annuli(value: Annuli, carriers: Carriers) -> Scene:
 def _arcs(value: Arcs, carriers: Carriers) -> Scene:
     points = arc_points(value, np.linspace(-1, 1, 9))
     starts, ends = points[:, :-1].reshape(-1, 3), points[:, 1:].reshape(-1, 3)
-    return _lines(starts, ends, carriers, f"{len(points):,} arcs")
+    return _lines(starts, ends, carriers, counted(len(points), "arc"))
 
 
 def _lines(starts: FloatArray, ends: FloatArray, carriers: Carriers, words: str) -> Scene:
@@ -184,7 +202,7 @@ def _array_scene(array: NDArray[Any], carriers: Carriers, name: str, unit: str) 
     if array.ndim == 3 and array.shape[1:] == (2, 3) and len(array):
         return _lines(array[:, 0], array[:, 1], carriers, words)
     if array.ndim == 2 and array.shape[1] == 3 and len(array) and np.isfinite(array).all():
-        return _lines(*point_stars(array.astype(float)), carriers, words)
+        return _lines(*_point_stars(array.astype(float)), carriers, words)
     if array.ndim != 1:
         return None
     values = array.astype(np.int64) if array.dtype.kind in "biu" else array.astype(float)
@@ -214,6 +232,13 @@ def _colored(carrier: Mesh | SphereMesh | Panels, colors: Colors, words: str) ->
     if count == len(net.topology.edge_corners):
         return edge_scene(net, colors, words)
     return None
+
+
+def _point_stars(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Points as three short rods each: starts and ends (3 N, 3)."""
+    reach = 0.004 * (float(np.ptp(points, axis=0).max()) or 1.0) * np.eye(3)
+    starts = (points[:, None] - reach).reshape(-1, 3)
+    return starts, (points[:, None] + reach).reshape(-1, 3)
 
 
 def _numbers(array: NDArray[Any], name: str, unit: str) -> bytes:

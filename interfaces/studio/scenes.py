@@ -5,7 +5,7 @@ drawn face by face; values of faces, edges and vertices as pieces of faces, each
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -107,7 +107,6 @@ class Scene:
     words: str = ""
     edges: bool = True
     is_ghost: bool = False
-    facts: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
 
 def packed_scene(scene: Scene) -> bytes:
@@ -151,6 +150,9 @@ def _head(
 ) -> dict[str, Any]:  # fmt: skip
     low = (np.min([each.min(axis=0) for each in points], axis=0) - grid.center) / grid.size
     beams, nodes = scene.beams, scene.nodes
+    # Without neighbours every wall is drawn.
+    degrees: list[int] = [] if scene.panels is None else scene.panels.degrees.tolist()
+    alone = [[None] * degree for degree in degrees]
     return {
         "kind": "model",
         "words": scene.words,
@@ -161,7 +163,7 @@ def _head(
         "size": grid.size,
         "center": grid.center.tolist(),
         "ground": ground,
-        "panels": {"id": list(scene.ids)},
+        "panels": {"id": list(scene.ids), "neighbors": alone},
         "beams": {"id": list(beams.ids) if beams is not None else []},
         "beam_thickness": beams.thickness / grid.size if beams is not None else 0.0,
         "nodes": {"id": list(nodes.ids) if nodes is not None else []},
@@ -170,7 +172,6 @@ def _head(
         "colors": colors,
         "edges": scene.edges,
         "ghost": scene.is_ghost,
-        "facts": scene.facts,
     }
 
 
@@ -248,6 +249,11 @@ def _node_points(nodes: NodeCylinders) -> FloatArray:
     return np.concatenate([nodes.origins, ends])
 
 
+def counted(count: int, what: str) -> str:
+    """A number of things: "1 panel", "1,440 panels"."""
+    return f"{count:,} {what}{'' if count == 1 else 's'}"
+
+
 def panels_scene(panels: Panels) -> Scene:
     """Panels, coloured by mould and by size."""
     colors: list[Colors] = []
@@ -258,8 +264,9 @@ def panels_scene(panels: Panels) -> Scene:
         Colors("Radius", np.asarray(panel_radii(panels).radii, float)),
         Colors("Area", panel_areas(panels)),
     ]
-    words = f"{panels.n_panels:,} panels" + (f" · {len(moulds)} moulds" if len(moulds) else "")
-    return Scene(panels, colors=colors, ids=panels.ids, words=words)
+    words = [counted(panels.n_panels, "panel"), counted(len(moulds), "mould")]
+    said = " · ".join(words if len(moulds) else words[:1])
+    return Scene(panels, colors=colors, ids=panels.ids, words=said)
 
 
 def beams_scene(beams: Beams, panels: Panels | None, words: str) -> Scene:
@@ -353,13 +360,6 @@ def _pieces(
         corners.reshape(-1, 3), offsets, corners.mean(axis=1), outwards, np.zeros(count)
     )
     return Scene(polygons=polygons, colors=[colors], ids=ids, words=words, edges=False)
-
-
-def point_stars(points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Points as three short rods each: starts and ends (3 N, 3)."""
-    reach = 0.004 * (float(np.ptp(points, axis=0).max()) or 1.0) * np.eye(3)
-    starts = (points[:, None] - reach).reshape(-1, 3)
-    return starts, (points[:, None] + reach).reshape(-1, 3)
 
 
 def row_scene(meshes: Sequence[Mesh | SphereMesh], words: str) -> Scene:

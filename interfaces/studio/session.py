@@ -1,9 +1,11 @@
 """A studio: one graph, the pages that show it, and the process that runs it."""
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any, Final
 
+from ...fabrication.mesh_files.reader import SUFFIXES, read_mesh
+from ...kernel.meshes.mesh import mean_edge_length
 from ...nodes.graphs.errors import GraphError
 from ...nodes.graphs.specification.file import encode_graph
 from ...nodes.graphs.specification.specification import Specification
@@ -15,7 +17,7 @@ from .document import Document, opened
 from .folder import free_file, inside, listed
 from .operations import real_node
 from .runs import Runs
-from .templates import TEMPLATES, template_graph
+from .templates import TEMPLATES, Design, template_graph
 from .worker import Place
 
 UNTITLED: Final = "untitled.json"
@@ -52,6 +54,7 @@ class Session:
                 for name, each in TEMPLATES.items()
             ],
             "folder": self.folder.name,
+            "place": str(self.folder),
             "versions": [path.stem for path in self.document.versions()],
         }
 
@@ -126,7 +129,7 @@ class Session:
             name = str(what["template"])
             if name not in TEMPLATES:
                 raise GraphError(f"there is no template {name[:40]!r}")
-            graph = template_graph(name)
+            graph = template_graph(name, self._design(str(what.get("mesh") or "")))
             path = free_file(self.folder, f"{name}.json")
         else:
             graph = Specification()
@@ -134,6 +137,26 @@ class Session:
         self.document.replace(graph, path)
         self.channels.tell({"type": "opened", "rev": self.document.rev})
         return self.state()
+
+    def _design(self, name: str) -> Design:
+        """A mesh file of the folder as what a template begins with."""
+        if not name:
+            return Design()
+        path = inside(self.folder, name)
+        return Design(name, mean_edge_length(read_mesh(path)))
+
+    def receive(self, name: str, data: bytes) -> dict[str, Any]:
+        """Keep a mesh file that was dropped on the page; the name that it has in the folder."""
+        plain = PurePosixPath(name.replace("\\", "/")).name
+        if not plain.lower().endswith(SUFFIXES):
+            raise GraphError(
+                f"{plain[:80]!r} is no mesh file: take one that ends in {', '.join(SUFFIXES)}"
+            )
+        path = inside(self.folder, plain)
+        if not path.is_file() or path.read_bytes() != data:
+            path = free_file(self.folder, plain)
+            path.write_bytes(data)
+        return {"file": path.name}
 
     def save_as(self, file: str) -> dict[str, Any]:
         """Save under a name in the folder, and go on there; without one, save where it is."""
@@ -159,8 +182,9 @@ class Session:
         return self.state()
 
     def files(self, ending: str) -> list[str]:
-        """Names of files in the folder."""
-        return listed(self.folder, (ending.lower(),) if ending else ())
+        """Names of files in the folder: all, those of an ending, or those of meshes."""
+        endings = SUFFIXES if ending == "mesh" else (ending.lower(),) if ending else ()
+        return listed(self.folder, endings)
 
     def code(self) -> str:
         """The graph as Python code."""

@@ -164,7 +164,8 @@ def _show_one(graph: Graph, target: str, order: Told, context: Context) -> None:
     copy = graph.copy()
     name = f"{PREVIEW}{wire.step.name}_{wire.port.name}"
     inputs = {f"on_{i}": each for i, each in enumerate(carriers)}
-    copy.add(preview_node(wire.port, len(carriers)), name, value=wire, **inputs)
+    written = context.scratch if wire.step.node.is_writer else None
+    copy.add(preview_node(wire.port, len(carriers), written), name, value=wire, **inputs)
 
     def _note(event: Event) -> None:
         if not event.step.startswith(PREVIEW):

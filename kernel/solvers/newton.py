@@ -100,16 +100,16 @@ class _Step(NamedTuple):
 
     def chord(self, taken: _Taken[State], gradient: FloatArray) -> "_Step | None":
         """A step by the factors of this one, where they serve as well as new ones would."""
-        if taken.part != 1 or self.shift > LEAST_SHIFT:
+        if not (self.serves_again and taken.part == 1):
             return None
-        found = _chord(self.solve, gradient, is_exact=self.is_exact)
+        found = _chord(self.solve, gradient)
         return found if 0 <= found.decrement <= CHORD * self.decrement else None
 
 
-def _chord(solve: Solver, gradient: FloatArray, *, is_exact: bool) -> _Step:
+def _chord(solve: Solver, gradient: FloatArray) -> _Step:
     step = solve(-gradient)
     decrement = -float(dot(gradient, step))
-    return _Step(LEAST_SHIFT, solve, step, decrement, is_exact, is_chord=True)
+    return _Step(LEAST_SHIFT, solve, step, decrement, is_exact=True, is_chord=True)
 
 
 class _Trust(NamedTuple):
@@ -134,26 +134,15 @@ class _Trust(NamedTuple):
         """A factorisation that is refused costs as much as a step: wait before the next."""
         if found.is_exact:
             return _Trust(self.shift)
-        nearer = self.nearer(found)
-        if nearer is not self:
-            return nearer
+        if found.decrement < self.refused_at / 4 and self.wait:
+            return self._replace(wait=0)
         if self.wait:
             return self._replace(wait=self.wait - 1)
         wait = min(2**self.refusals, LONGEST_WAIT)
         return _Trust(self.shift, self.refusals + 1, wait, found.decrement)
 
-    def nearer(self, found: _Step) -> "_Trust":
-        """No more waiting where much less is left than when the Hessian was refused."""
-        is_nearer = self.wait and found.decrement < self.refused_at / 4
-        return self._replace(wait=0) if is_nearer else self
-
     def adapted(self, found: _Step, part: float, agreement: float) -> "_Trust":
-        """Less shift where a step kept what it promised, more where it did not.
-
-        What steps by old factors keep says nothing of new ones.
-        """
-        if found.is_chord:
-            return self
+        """Less shift where a step kept what it promised, more where it did not."""
         shift = found.shift
         if agreement > 0.75 and part >= 1:
             shift = max(shift / 8, LEAST_SHIFT)
@@ -198,7 +187,7 @@ def newton(
     """
     state, history = start, [problem.energies(start)]
     trust, model = _Trust(), problem.model(start)
-    found = None if last is None else _chord(last, model.gradient, is_exact=True)
+    found = None if last is None else _chord(last, model.gradient)
     escapes, lowest, is_refused = 0, -np.inf, False
     status: Status = "exhausted"
     iteration = 0
@@ -235,24 +224,8 @@ def newton(
         state, model = taken.state, problem.model(taken.state)
         history.append(taken.terms)
         trust = trust.adapted(found, taken.part, taken.agreement)
-        found, trust = _again(found, taken, model.gradient, trust, is_exact=is_exact)
+        found = found.chord(taken, model.gradient)
     return NewtonDescent(state, status, np.array(history), iteration, lowest, last)
-
-
-def _again(
-    found: _Step,
-    taken: _Taken[State],
-    gradient: FloatArray,
-    trust: _Trust,
-    *,
-    is_exact: bool,
-) -> tuple[_Step | None, _Trust]:
-    """The next step by the factors of the last, if they serve."""
-    again = found.chord(taken, gradient)
-    if again is None or again.is_exact or not is_exact:
-        return again, trust
-    # The convex part leads best anew; but so near to rest the Hessian may be definite.
-    return None, trust.nearer(again)
 
 
 def _rounding(energy: float) -> float:

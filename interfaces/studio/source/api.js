@@ -24,6 +24,11 @@ export const post = async (name, body = {}) => answered(await fetch(`/studio/${n
   method: "POST", headers: headers({ "Content-Type": "application/json" }), body: JSON.stringify(body),
 }));
 
+/** Put a file into the folder; the name that it has there. */
+export const send = async (file) => answered(await fetch(`/studio/receive?name=${encodeURIComponent(file.name)}`, {
+  method: "POST", headers: headers({ "Content-Type": "application/octet-stream" }), body: file,
+}));
+
 /** The bytes of a picture; the browser keeps them by their digest. */
 export async function blob(digest) {
   const response = await fetch(`/studio/blob/${digest}`, { headers: headers() });

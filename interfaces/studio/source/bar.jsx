@@ -12,14 +12,14 @@ const ICONS = {
 const Icon = ({ name }) => <svg viewBox="0 0 16 17" width="16" height="16" aria-hidden="true"><path d={ICONS[name]} fill="none" stroke="currentColor" strokeWidth="1.5" strokeLinecap="round" strokeLinejoin="round" /></svg>;
 
 export function Bar() {
-  const view = useStudio((s) => ({ title: s.doc.graph.title, file: s.doc.file, fault: s.doc.fault, undo: s.doc.undo, redo: s.doc.redo, running: s.running, online: s.online, units: s.doc.graph.units }));
+  const view = useStudio((s) => ({ title: s.doc.graph.title, file: s.doc.file, isNew: s.doc.is_new, fault: s.doc.fault, undo: s.doc.undo, redo: s.doc.redo, running: s.running, online: s.online, units: s.doc.graph.units }));
   const middle = () => canvasActions.current?.middle() ?? { x: 0, y: 0 };
   return (
     <header className="bar">
       <svg className="mark" viewBox="0 0 32 20" aria-hidden="true"><path d="M2 19a14 14 0 0 1 28 0z" fill="#c4530f" /><path d="M16 5v14M7 10l3.5 9M25 10l-3.5 9" stroke="#fff" strokeWidth="1.4" /></svg>
       <div className="title">
         <TextField label="title of the graph" value={view.title} placeholder="Untitled graph" onChange={(text) => edit([{ op: "title", text }])} />
-        <small title={view.fault}>{view.fault ? <b>{view.fault}</b> : view.file ? `${view.file}, saved` : "not saved yet"}</small>
+        <small title={view.fault}>{view.fault ? <b>{view.fault}</b> : view.file ? (view.isNew ? `to be saved as ${view.file}` : `${view.file}, saved`) : "not saved yet"}</small>
       </div>
       <div className="buttons" role="toolbar" aria-label="graph">
         <button onClick={() => set({ dialog: { kind: "palette", at: middle() } })} title="add a step (A, or double-click the canvas)"><Icon name="add" /><span>Step</span></button>

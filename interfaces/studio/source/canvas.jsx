@@ -5,12 +5,13 @@ import { useCallback, useEffect, useMemo, useRef, useState } from "react";
 import { copied, pasted } from "./clipboard.js";
 import { given, layout, placesOf, sizeOf, whyNot, wiresOf } from "./graph.js";
 import { keyPressed } from "./keys.js";
-import { bestOutput, edit, now, open, set, show, useStudio } from "./store.js";
-import { GroupNode, SliderNode, StepNode } from "./step.jsx";
+import { Empty } from "./start.jsx";
+import { bestOutput, edit, now, set, show, useStudio } from "./store.js";
+import { GroupNode, SliderNode, Sliders, StepNode } from "./step.jsx";
 
 const NODE_TYPES = { step: StepNode, slider: SliderNode, group: GroupNode };
-/** Below this zoom nobody reads fields. */
-const FAR = 0.3;
+/** Below these zooms sliders are too small for a hand, nobody reads fields, nobody reads names. */
+const SMALL = 0.75, FAR = 0.3, FARTHER = 0.12;
 const PADDING = { top: 44, side: 18, bottom: 18 };
 
 /** Nodes as the graph has them; what the canvas knows of them, such as their sizes, is kept. */
@@ -60,6 +61,7 @@ function Flow() {
   const doc = useStudio((s) => s.doc), fit = useStudio((s) => s.fit), refusal = useStudio((s) => s.refusal), expanded = useStudio((s) => s.expanded);
   const [nodes, setNodes] = useState([]);
   const [picked, setPicked] = useState(new Set());
+  const [isSmall, setSmall] = useState(false);
   const flow = useReactFlow(), held = useRef(null), moving = useRef(null), fitted = useRef(-1), box = useRef(null);
   useEffect(() => { setNodes((before) => nodesOf(now(), before)); }, [doc, expanded]);
   const edges = useMemo(() => edgesOf(now()).map((edge) => (picked.has(edge.id) ? { ...edge, selected: true } : edge)), [doc, picked]);
@@ -156,7 +158,7 @@ function Flow() {
     };
     const context = { flow, middle, picked: () => picked, selectAll: () => setNodes((before) => before.map((each) => ({ ...each, selected: true }))),
       select: (ids) => { set({ selected: ids }); setNodes((before) => before.map((each) => ({ ...each, selected: ids.includes(each.id) }))); },
-      tidy: () => tidy(flow) };
+      tidy: () => tidy(flow), reveal: (node) => reveal(node, box.current, flow) };
     canvasActions.current = context;
     const press = (event) => keyPressed(event, context);
     const copy = (event) => copied(event), paste = (event) => pasted(event, middle());
@@ -172,10 +174,12 @@ function Flow() {
     };
   }, [picked]);
 
-  /** Far away only names are read, and only they are drawn; what moves is one picture. */
-  const onMove = useCallback((_, { zoom }) => box.current?.classList.toggle("far", zoom < FAR), []);
-  const onMoveStart = useCallback(() => box.current?.classList.add("moving"), []);
-  const onMoveEnd = useCallback(() => box.current?.classList.remove("moving"), []);
+  /** Far away only names are read, and only they are drawn. */
+  const onMove = useCallback((_, { zoom }) => {
+    box.current?.classList.toggle("far", zoom < FAR);
+    box.current?.classList.toggle("farther", zoom < FARTHER);
+    setSmall(zoom < SMALL);
+  }, []);
 
   return (
     <div className="canvas" ref={box} onDoubleClick={openPalette} data-nodes={nodes.length}>
@@ -183,12 +187,13 @@ function Flow() {
         isValidConnection={isValid} onConnect={onConnect} onConnectStart={onConnectStart} onConnectEnd={onConnectEnd}
         onClickConnectStart={onConnectStart} onClickConnectEnd={onConnectEnd} onReconnect={onReconnect}
         onNodeDragStart={onDragStart} onNodeDrag={onDrag} onNodeDragStop={onDragStop} onSelectionDragStop={(event, dragged) => onDragStop(event, null, dragged)}
-        onMove={onMove} onMoveStart={onMoveStart} onMoveEnd={onMoveEnd} onNodeClick={onNodeClick} deleteKeyCode={null} zoomOnDoubleClick={false} minZoom={0.08} maxZoom={2} connectionRadius={26}
+        onMove={onMove} onNodeClick={onNodeClick} deleteKeyCode={null} zoomOnDoubleClick={false} minZoom={0.08} maxZoom={2} connectionRadius={26}
         selectionKeyCode="Shift" multiSelectionKeyCode={["Shift", "Meta", "Control"]} nodeDragThreshold={3} elevateNodesOnSelect={false}
         ariaLabelConfig={{ "node.a11yDescription.default": "Enter selects, arrows move, C connects, Delete removes." }}
         proOptions={{ hideAttribution: true }} fitView fitViewOptions={{ padding: 0.08, maxZoom: 1 }}>
         <Background variant={BackgroundVariant.Dots} gap={22} size={1.1} color="#d9dce1" />
         {refusal ? <Panel position="bottom-center"><div id="refusal" role="alert">{refusal}</div></Panel> : null}
+        {isSmall ? <Panel position="bottom-left"><Sliders /></Panel> : null}
         {!nodes.length ? <Panel position="top-center"><Empty /></Panel> : null}
       </ReactFlow>
     </div>
@@ -198,23 +203,15 @@ function Flow() {
 /** What keys of the canvas act on. */
 export const canvasActions = { current: null };
 
-function Empty() {
-  const templates = useStudio((s) => s.templates);
-  return (
-    <div className="empty">
-      <h2>Begin with a roof</h2>
-      <div className="cards"><TemplateCards templates={templates} /></div>
-      <p>or double-click to add a step, or open a file.</p>
-    </div>
-  );
-}
-
-export function TemplateCards({ templates }) {
-  return templates.map((each) => (
-    <button key={each.name} className="card" onClick={() => { open({ template: each.name }); set({ dialog: null }); }}>
-      <b>{each.title}</b><span>{each.summary}</span>
-    </button>
-  ));
+/** Move the canvas until all of a node is seen, if it is not. */
+function reveal(node, box, flow) {
+  const inner = node.getBoundingClientRect(), outer = box.getBoundingClientRect(), { x, y, zoom } = flow.getViewport();
+  // On a narrow canvas the list of sliders takes the lower part.
+  const list = box.querySelector(".sliders")?.getBoundingClientRect();
+  const low = list && list.width > outer.width / 2 ? list.top : outer.bottom;
+  const off = (low, high, first, last) => (low < first ? first - low : Math.min(0, Math.max(last - high, first - low)));
+  const dx = off(inner.left, inner.right, outer.left + 16, outer.right - 16), dy = off(inner.top, inner.bottom, outer.top + 16, low - 16);
+  if (dx || dy) flow.setViewport({ x: x + dx, y: y + dy, zoom }, { duration: 200 });
 }
 
 function withGroups(nodes) {

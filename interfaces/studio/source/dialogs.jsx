@@ -1,12 +1,12 @@
-// Windows over the page: open, export, rename, comment, keys.
+// Windows over the page: open, rename, comment, save, keys.
 
 import { useEffect, useRef, useState } from "react";
 import { get } from "./api.js";
-import { TemplateCards } from "./canvas.jsx";
+import { Export } from "./export.jsx";
 import { KEYS } from "./keys.js";
 import { Connect, Palette } from "./palette.jsx";
-import { edit, exportFiles, guarded, now, open, revert, saveAs, set, toast, useStudio } from "./store.js";
-import { savePicture } from "./view.jsx";
+import { Templates } from "./start.jsx";
+import { edit, guarded, now, open, revert, saveAs, set, useStudio } from "./store.js";
 
 const TITLES = { palette: "Add a step", connect: "Connect", open: "Open", export: "Export", rename: "Rename", comment: "Comment", keys: "Keys", save: "Save as" };
 
@@ -47,54 +47,20 @@ function Window({ dialog, close }) {
 }
 
 function Open({ close }) {
-  const view = useStudio((s) => ({ templates: s.templates, versions: s.versions, folder: s.folder, file: s.doc.file }));
+  const view = useStudio((s) => ({ versions: s.versions, place: s.place, file: s.doc.file }));
   const [files, setFiles] = useState([]);
   useEffect(() => { guarded(get("files?ending=.json").then(setFiles)); }, []);
   return (
     <>
       <h2>Open</h2>
-      <h3>Start from a template</h3>
-      <div className="cards"><TemplateCards templates={view.templates} /><button className="card" onClick={() => { open({}); close(); }}><b>Empty graph</b><span>Double-click the canvas to add steps.</span></button></div>
-      <h3>Graphs in {view.folder}</h3>
+      <h3>A new roof</h3>
+      <Templates />
+      <p><button className="link" onClick={() => { open({}); close(); }}>An empty graph</button></p>
+      <h3>Graphs in {view.place}</h3>
       <ul className="files">{files.map((each) => <li key={each}><button onClick={() => { open({ file: each }); close(); }} aria-current={each === view.file}>{each}</button></li>)}{!files.length ? <li className="quiet">none yet</li> : null}</ul>
       {view.versions.length ? <><h3>Earlier versions of {view.file}</h3><ul className="files">{view.versions.map((each) => <li key={each}><button onClick={() => { revert(each); close(); }}>{each}</button></li>)}</ul></> : null}
     </>
   );
-}
-
-function Export() {
-  const [folder, setFolder] = useState("out");
-  const [overwrite, setOverwrite] = useState(false);
-  const view = useStudio((s) => ({ exported: s.exported, root: s.folder, writers: Object.entries(s.doc.graph.steps).filter(([, entry]) => s.catalogue.nodes[entry.node]?.writes).map(([name, entry]) => `${name}: ${entry.inputs.path ?? s.catalogue.nodes[entry.node].inputs.find((p) => p.writes)?.default ?? ""}`) }));
-  const { exported } = view;
-  const code = () => guarded(get("code").then(({ code: text }) => save(`${now().doc.graph.title || "graph"}.py`, text)));
-  return (
-    <>
-      <h2>Export</h2>
-      <h3>Files</h3>
-      {view.writers.length ? <p className="quiet">{view.writers.join(" · ")}</p> : <p className="quiet">No step writes a file yet. Add one: write step, write 3dm, write view, write schedule.</p>}
-      <form className="line" onSubmit={(event) => { event.preventDefault(); exportFiles(folder, overwrite); }}>
-        <label>{view.root}/<input value={folder} aria-label="folder" onChange={(event) => setFolder(event.target.value)} spellCheck={false} /></label>
-        <button className="primary" disabled={!view.writers.length || exported?.state === "running"}>Write files</button>
-      </form>
-      <label className="check"><input type="checkbox" checked={overwrite} onChange={(event) => setOverwrite(event.target.checked)} />also replace files that spheremesh did not write</label>
-      {exported ? <div className={`outcome is-${exported.state}`} role="status">{exported.state === "running" ? "Writing" : exported.state === "done" ? <><b>Written to {view.root}/{folder}</b><ul>{exported.text.split("\n").filter((each) => each && !each.startsWith(".")).map((each) => <li key={each}>{each}</li>)}</ul></> : exported.text || exported.state}</div> : null}
-      <h3>The graph and its picture</h3>
-      <div className="line">
-        <button onClick={code}>Python code</button>
-        <button onClick={() => { const { graph } = now().doc; save(`${graph.title || "graph"}.json`, `${JSON.stringify(graph, null, 2)}\n`); }}>Graph file</button>
-        <button onClick={() => { if (!savePicture()) toast("no picture is shown"); }}>Picture</button>
-      </div>
-    </>
-  );
-}
-
-function save(name, text) {
-  const link = document.createElement("a"), address = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
-  link.download = name;
-  link.href = address;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(address), 1000);
 }
 
 function Rename({ id, close }) {

@@ -104,7 +104,7 @@ export function PortField({ step, port, value, isGiven }) {
       <>
         {isBounded && typeof present === "number" ? <Range label={`${label}, slider`} value={present} min={port.min} max={port.max} whole={port.field === "whole"} onChange={give} /> : null}
         <NumberField label={label} value={present} whole={port.field === "whole"} min={port.min} max={port.max} unit={port.unit}
-          placeholder={present === null || present === undefined ? "auto" : ""} onChange={(next) => give(next)} onEnd={() => { gesture.current = ""; }} />
+          placeholder={present === null || present === undefined ? (port.required ? "needed" : "auto") : ""} onChange={(next) => give(next)} onEnd={() => { gesture.current = ""; }} />
       </>
     );
   }

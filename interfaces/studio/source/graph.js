@@ -60,6 +60,16 @@ export function placesOf(s) {
   return places;
 }
 
+/** A place for a new step near another: below what stands there already. */
+export function freePlace(s, [x, y]) {
+  const boxes = Object.entries(placesOf(s)).map(([id, at]) => [...at, ...sizeOf(s, id)]).sort((a, b) => a[1] - b[1]);
+  const height = 150;
+  for (const [left, top, w, h] of boxes) {
+    if (left < x + STEP_WIDTH + 16 && x < left + w + 16 && top < y + height && y < top + h + 16) y = top + h + 26;
+  }
+  return [Math.round(x), Math.round(y)];
+}
+
 /** Operations that place something, with the places of all others before: what was laid out stays so. */
 export function anchored(s, ops) {
   const { canvas } = s.doc.graph;
@@ -256,6 +266,13 @@ export function partners(s, end) {
   return found;
 }
 
+/** The steps of most roofs, in their order: what is shown before anything is searched for. */
+const USUAL = ["read_mesh", "roof_mesh", "fit_spheres", "minimize_angles", "cluster_radii", "panels", "bisector_support", "beams", "write_step", "write_3dm", "write_view", "render"];
+const usual = (node) => (USUAL.indexOf(node.name) + 1 || USUAL.length + 1);
+
+/** Words that people search by and no name has. */
+const otherWords = (node) => [node.writes ? "export save file" : "", node.inputs.some((port) => port.reads) ? "import open load file" : "", node.name === "cluster_radii" ? "moulds molds" : ""].join(" ");
+
 /** Nodes for the palette: by name and words, and by what fits the wire that is held. */
 export function searched(s, text, end) {
   const words = text.toLowerCase().split(/\s+/).filter(Boolean);
@@ -270,12 +287,12 @@ export function searched(s, text, end) {
       else if (name.startsWith(word)) score += 8;
       else if (name.includes(word) || node.name.includes(word)) score += 5;
       else if (node.category.includes(word)) score += 3;
-      else if (node.summary.toLowerCase().includes(word)) score += 2;
+      else if (`${node.summary.toLowerCase()} ${otherWords(node)}`.includes(word)) score += 2;
       else { score = -1; break; }
     }
     if (score >= 0) found.push({ node, port, score: score + (port?.required ? 1 : 0) });
   }
-  return found.sort((a, b) => b.score - a.score || a.node.category.localeCompare(b.node.category) || a.node.name.localeCompare(b.node.name));
+  return found.sort((a, b) => b.score - a.score || usual(a.node) - usual(b.node) || a.node.category.localeCompare(b.node.category) || a.node.name.localeCompare(b.node.name));
 }
 
 function fitting(s, node, end) {

@@ -1,6 +1,6 @@
 // The studio: a canvas on the left, what it makes on the right.
 
-import { useEffect, useRef, useState } from "react";
+import { Component, useEffect, useRef, useState } from "react";
 import { createRoot } from "react-dom/client";
 import { Bar } from "./bar.jsx";
 import { Canvas } from "./canvas.jsx";
@@ -57,6 +57,18 @@ function Toast({ text, kind }) {
   return <div className={`toast ${kind}`} role="alert">{text}<button aria-label="close" onClick={() => set({ toast: null })}>×</button></div>;
 }
 
+/** What goes wrong on the page is said there; the graph stands on the server. */
+class Guarded extends Component {
+  state = { fault: "" };
+
+  static getDerivedStateFromError(error) { return { fault: error.message }; }
+
+  render() {
+    if (!this.state.fault) return this.props.children;
+    return <p className="opening">Something went wrong on this page; your graph is kept. <button className="link" onClick={() => location.reload()}>Load the page again</button><br /><small>{this.state.fault}</small></p>;
+  }
+}
+
 window.studio = { now };
 begin();
-createRoot(document.getElementById("root")).render(<Studio />);
+createRoot(document.getElementById("root")).render(<Guarded><Studio /></Guarded>);

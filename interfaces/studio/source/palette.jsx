@@ -1,8 +1,9 @@
 // Lists to choose from: nodes to add, and ends to connect to.
 
 import { useEffect, useMemo, useRef, useState } from "react";
-import { anchored, given, partners, placesOf, searched, sources } from "./graph.js";
-import { described, edit, familyOf, now, set, useStudio } from "./store.js";
+import { canvasActions } from "./canvas.jsx";
+import { anchored, freePlace, given, partners, placesOf, searched, sources } from "./graph.js";
+import { bestOutput, described, edit, familyOf, now, set, show, useStudio } from "./store.js";
 
 /** A list under a search field: arrows choose, Enter takes. */
 export function Chooser({ label, placeholder, items, text, setText, onTake, children, foot }) {
@@ -40,7 +41,7 @@ export function Palette({ at, end }) {
     const s = now();
     let name = node.name, number = 2;
     while (name in s.doc.graph.steps) name = `${node.name}_${number++}`;
-    const place = [Math.round(at.x - (end?.input !== undefined ? 240 : 0)), Math.round(at.y - 20)];
+    const place = freePlace(s, [Math.round(at.x - (end?.input !== undefined ? 240 : 0)), Math.round(at.y - 20)]);
     const ops = [{ op: "add", node: node.name, name, at: place }];
     if (end?.output !== undefined) {
       const value = end.id.startsWith("p:") ? { param: end.id.slice(2) } : { wire: `${end.id.slice(2)}.${end.output}` };
@@ -52,7 +53,10 @@ export function Palette({ at, end }) {
     }
     set({ dialog: null });
     edit(anchored(s, ops)).then((ok) => {
-      if (ok) focusStep(name);
+      if (!ok) return;
+      focusStep(name);
+      const output = now().doc.facts[name]?.unfinished ? "" : bestOutput(now(), name);
+      if (output) show(output);
     });
   };
   const slider = () => {
@@ -79,11 +83,13 @@ export function Palette({ at, end }) {
   );
 }
 
-/** The focus on a step, as soon as it stands on the canvas. */
+/** The focus on a step, as soon as it stands on the canvas, and the canvas where it is seen. */
 function focusStep(name, tries = 60) {
   const node = document.querySelector(`.react-flow__node[data-id="s:${name}"]`);
-  if (node && getComputedStyle(node).visibility === "visible") node.focus({ preventScroll: true });
-  else if (tries) requestAnimationFrame(() => focusStep(name, tries - 1));
+  if (node && getComputedStyle(node).visibility === "visible") {
+    node.focus({ preventScroll: true });
+    canvasActions.current?.reveal(node);
+  } else if (tries) requestAnimationFrame(() => focusStep(name, tries - 1));
 }
 
 /** "Connect to …": every end that fits, for keys and for fingers; what is wired can be cut. */

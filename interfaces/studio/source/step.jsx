@@ -4,7 +4,7 @@ import { Handle, Position } from "@xyflow/react";
 import { memo, useRef, useState } from "react";
 import { newGesture, NumberField, PortField, Range, shortNumber } from "./fields.jsx";
 import { shownInputs, sources } from "./graph.js";
-import { described, edit, familyOf, pinsOf, set, show, useStudio } from "./store.js";
+import { described, edit, familyOf, isShowable, pinsOf, set, show, useStudio } from "./store.js";
 
 /** Seconds as people say them. */
 export function seconds(value) {
@@ -48,15 +48,16 @@ function Input({ step, port, entry, family, isTight }) {
   );
 }
 
-function Output({ step, port, family, isShown, isPinned, writes }) {
+function Output({ step, port, family, isShown, isPinned, isShowable, writes }) {
   const target = `${step}.${port.name}`;
   return (
     <div className={`row out${isShown ? " shown" : ""}`}>
-      {writes ? <span className="quiet">written on export</span> : (
+      {writes ? <span className="quiet">written on export</span> : null}
+      {isShowable ? (
         <button className="eye nodrag" aria-pressed={isShown} aria-label={`show ${target}`} title={port.help || "show it beside"} onClick={() => show(target)}>
           <Eye open={isShown || isPinned} />
         </button>
-      )}
+      ) : null}
       <button className="label nodrag" title={`${port.help || port.name}\nConnect to …`} tabIndex={-1}
         onClick={() => set({ dialog: { kind: "connect", end: { id: `s:${step}`, output: port.name } } })}>{port.name === "result" ? "" : port.name.replaceAll("_", " ")}</button>
       <Handle id={port.name} type="source" position={Position.Right} className={`port f-${family}`} title={port.help} />
@@ -73,7 +74,7 @@ export const StepNode = memo(({ data, selected }) => {
   const view = useStudio((s) => {
     const entry = s.doc?.graph.steps[name];
     if (!entry) return null;
-    return { entry, node: described(s, name), facts: s.doc.facts[name], state: s.steps[name], isOpen: s.expanded[name], comment: s.doc.graph.comments?.[name],
+    return { entry, node: described(s, name), facts: s.doc.facts[name], state: s.steps[name], isOpen: s.expanded[name], isShowable: isShowable(s, name), comment: s.doc.graph.comments?.[name],
       shown: s.shown.startsWith(`${name}.`) ? s.shown : "", pins: pinsOf(s.doc.graph).filter((pin) => pin.startsWith(`${name}.`)).join(" "), catalogue: s.catalogue };
   });
   if (!view) return null;
@@ -104,7 +105,7 @@ export const StepNode = memo(({ data, selected }) => {
           </button>
         ) : null}
         {outputs.map((port) => (
-          <Output key={port.name} step={name} port={port} family={familyOf(s, port)} writes={node?.writes}
+          <Output key={port.name} step={name} port={port} family={familyOf(s, port)} writes={node?.writes} isShowable={view.isShowable}
             isShown={shown === `${name}.${port.name}`} isPinned={pins.split(" ").includes(`${name}.${port.name}`)} />
         ))}
       </div>
@@ -147,6 +148,31 @@ export const SliderNode = memo(({ data, selected }) => {
     </div>
   );
 });
+
+/** The sliders once more, in a list beside a canvas on which they are small. */
+export function Sliders() {
+  const params = useStudio((s) => s.doc.graph.params);
+  const [isOpen, setOpen] = useState(true);
+  const gesture = useRef("");
+  const entries = Object.entries(params).filter(([, { value, choices }]) => typeof value === "number" && !choices);
+  if (!entries.length) return null;
+  return (
+    <section className="sliders nowheel nopan" aria-label="sliders">
+      <button aria-expanded={isOpen} onClick={() => setOpen(!isOpen)}>Sliders</button>
+      {isOpen ? entries.map(([name, { value, min, max }]) => {
+        const whole = [value, min ?? 0, max ?? 0].every(Number.isInteger);
+        const move = (next, held) => edit([{ op: "set", param: name, value: next }], held ?? gesture.current);
+        return (
+          <div key={name}>
+            <span>{name.replaceAll("_", " ")}</span>
+            <Range label={`${name} in the list, slider`} value={value} min={min ?? softMin(value)} max={max ?? softMax(value, min)} whole={whole} onChange={move} />
+            <NumberField label={`${name} in the list`} value={value} min={min} max={max} whole={whole} onChange={(next) => next !== null && move(next)} />
+          </div>
+        );
+      }) : null}
+    </section>
+  );
+}
 
 const softMin = (value) => (value < 0 ? 2 * value : 0);
 const softMax = (value, min) => Math.max(2 * Math.abs(value), (min ?? 0) + 10);

@@ -6,7 +6,7 @@ import { get, listen, post, Refusal } from "./api.js";
 let state = {
   ready: false, online: true, fatal: "", catalogue: null, doc: null, steps: {}, previews: {}, running: 0,
   runText: "", lastRun: null, shown: "", selected: [], expanded: {}, dialog: null, toast: null, refusal: "",
-  fit: 0, opening: 0, linked: true, templates: [], versions: [], folder: "", exported: null,
+  fit: 0, opening: 0, linked: true, swipe: null, templates: [], versions: [], folder: "", place: "", exported: null,
 };
 const listeners = new Set();
 
@@ -57,9 +57,9 @@ export const guarded = (promise) => promise.catch((error) => toast(error.message
 // ---- the graph -------------------------------------------------------------------------------
 
 function take(content) {
-  const { rev, undo, redo, file, fault, graph, facts } = content;
+  const { rev, undo, redo, file, is_new, fault, graph, facts } = content;
   if (state.doc && rev < state.doc.rev) return;
-  const doc = shared(state.doc, { rev, undo, redo, file, fault, graph, facts: facts ?? state.doc?.facts ?? {} });
+  const doc = shared(state.doc, { rev, undo, redo, file, is_new, fault, graph, facts: facts ?? state.doc?.facts ?? {} });
   const names = new Set(Object.keys(graph.steps));
   const steps = Object.fromEntries(Object.entries(state.steps).filter(([name]) => names.has(name)));
   const shown = names.has(state.shown.split(".")[0]) ? state.shown : "";
@@ -77,7 +77,7 @@ export async function load() {
 function opened(content) {
   // Nobody is told of what is half open.
   state = { ...state, doc: null, opening: state.opening + 1, steps: content.runs.steps, previews: content.runs.previews, running: content.runs.running,
-    templates: content.templates, versions: content.versions, folder: content.folder, selected: [], shown: "", expanded: {} };
+    templates: content.templates, versions: content.versions, folder: content.folder, place: content.place, swipe: null, selected: [], shown: "", expanded: {} };
   take(content);
   const pins = pinsOf(content.graph);
   set({ shown: pins.length ? "" : firstShown(content.graph), fit: state.fit + 1 });
@@ -140,10 +140,19 @@ export function described(s, name) {
 }
 export const familyOf = (s, port) => (port && port.type >= 0 ? s.catalogue.families[port.type] : "other");
 
+/** The file that a step writes. */
+export function fileOf(s, name) {
+  const given = s.doc.graph.steps[name]?.inputs.path;
+  return typeof given === "string" ? given : described(s, name)?.inputs.find((port) => port.writes)?.default ?? "";
+}
+
+/** Whether what a step makes can be looked at here: of files those that are pictures or tables. */
+export const isShowable = (s, name) => !described(s, name)?.writes || /\.(png|svg|csv)$/i.test(fileOf(s, name));
+
 /** The output that one wants to see first. */
 export function bestOutput(s, name) {
   const node = described(s, name);
-  if (!node || node.writes) return "";
+  if (!node || !isShowable(s, name)) return "";
   const rank = (port) => RANK[familyOf(s, port)] ?? 9;
   const ports = [...node.outputs].sort((a, b) => rank(a) - rank(b));
   return ports.length ? `${name}.${ports[0].name}` : "";
@@ -151,7 +160,7 @@ export function bestOutput(s, name) {
 
 function firstShown(graph) {
   const names = Object.keys(graph.steps).reverse();
-  const outputs = names.map((name) => bestOutput(state, name)).filter(Boolean);
+  const outputs = names.filter((name) => !described(state, name)?.writes).map((name) => bestOutput(state, name)).filter(Boolean);
   const rank = (output) => RANK[familyOf(state, described(state, output.split(".")[0]).outputs.find((p) => p.name === output.split(".")[1]))] ?? 9;
   return outputs.sort((a, b) => rank(a) - rank(b))[0] ?? "";
 }

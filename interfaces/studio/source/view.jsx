@@ -8,19 +8,36 @@ const viewer = () => (viewerModule ??= import("/studio/viewer.js"));
 const PLAIN = [226, 226, 222], GHOST = [236, 238, 240], BEAM = [166, 132, 98], NODE = [98, 102, 110], NONE = [190, 194, 199];
 const views = new Map();
 
-/** Views that look at models of about the same size follow each other. */
+/** Views that look at models of about the same size follow each other; two that are swiped look from one place. */
 function follow(leader) {
-  if (!now().linked || leader.following) return;
-  for (const view of views.values()) {
-    if (view === leader) continue;
+  if (leader.following) return;
+  const { linked, swipe } = now();
+  for (const [target, view] of views) {
+    const isSwiped = swipe?.includes(target) && swipe.includes(leader.shows);
+    // One that was made to fit its own place leads nobody.
+    if (view === leader || !(isSwiped || (linked && !leader.fitted))) continue;
     view.following = true;
     view.camera.position.copy(leader.camera.position);
     view.controls.target.copy(leader.controls.target);
+    if (isSwiped) for (const point of [view.camera.position, view.controls.target]) placed(point, leader.head, view.head);
     view.fitted = null;
     view.controls.update();
     view.draw();
     view.following = false;
   }
+}
+
+/** See all of a model from a direction, and so all that follow it. */
+function fitAll(leader, direction) {
+  const { linked, swipe } = now();
+  if (linked && !swipe) for (const view of views.values()) view.fit(direction ?? view.head.home);
+  else leader?.fit(direction ?? leader.head.home);
+}
+
+/** A point of one picture in the measures of another. */
+function placed(point, from, to) {
+  const moved = point.toArray().map((x, k) => (from.center[k] + from.size * x - to.center[k]) / to.size);
+  point.set(...moved);
 }
 
 /** Colours of parts by the values of a scene, and the legend that says so. */
@@ -56,6 +73,8 @@ export function ModelView({ data, target }) {
   const [chosen, setChosen] = useState(0);
   const [part, setPart] = useState(-1);
   const [fault, setFault] = useState("");
+  // Where flat panels end and spheres begin, if they are compared.
+  const [flat, setFlat] = useState(null);
   const { head, arrays } = data;
   // Beams are shown without the panels on them, which are there to be switched on.
   const [hidden, setHidden] = useState(() => (head.beams.id.length && head.ghost ? { panels: false } : {}));
@@ -76,6 +95,8 @@ export function ModelView({ data, target }) {
         return;
       }
       const made = view.current;
+      made.shows = target;
+      made.head = head;
       made.freeSides = () => ({ left: 0.94, right: 0.94, below: 0.88, above: 0.9 });
       made.controls.addEventListener("change", () => follow(made));
       views.set(target, made);
@@ -86,6 +107,8 @@ export function ModelView({ data, target }) {
     made.resize();
     if (!made.placed) { made.fit(head.home); made.placed = true; }
     made.head = head;
+    const partner = now().swipe?.find((each) => each !== target);
+    if (partner && now().swipe.includes(target) && views.has(partner)) follow(views.get(partner));
     setPart(-1);
     window.studioViews = views;
     window.studioDrawn = (window.studioDrawn ?? 0) + 1;
@@ -93,6 +116,11 @@ export function ModelView({ data, target }) {
   }, [parts, data]);
   useEffect(() => { if (colors && view.current) view.current.setColors(colors); }, [colors]);
   useEffect(() => { if (view.current) { Object.assign(view.current.visible, hidden); view.current.draw(); } }, [hidden]);
+  useEffect(() => {
+    if (!view.current) return;
+    Object.assign(view.current, { flat: flat === null ? "off" : "swipe", swipe: flat ?? 0.5 });
+    view.current.draw();
+  }, [flat, parts, data]);
   useEffect(() => {
     const watch = new ResizeObserver(() => view.current?.resize());
     watch.observe(stage.current);
@@ -115,6 +143,7 @@ export function ModelView({ data, target }) {
     event.stopPropagation();
   };
   const layers = [["panels", head.panels.id.length, head.ghost && !head.beams.id.length ? "mesh" : "panels"], ["beams", head.beams.id.length, "beams"], ["nodes", head.nodes.id.length, head.beams.id.length ? "nodes" : "lines"]].filter(([, count]) => count);
+  const isCurved = !head.ghost && head.panels.id.length > 0 && arrays.curvatures?.some((a) => a !== 0);
   return (
     <div className="model" ref={stage} data-target={target}>
       <canvas ref={canvas} tabIndex={0} aria-label={`${target}: ${head.words}. Arrow keys turn it, F shows all of it.`} onKeyDown={turn}
@@ -123,11 +152,13 @@ export function ModelView({ data, target }) {
       <div className="overlay words">{head.words}{part >= 0 ? <b>{partText(parts, head, arrays, part)}</b> : null}</div>
       <div className="overlay tools">
         {layers.length > 1 ? layers.map(([key, , name]) => (
-          <button key={key} aria-pressed={hidden[key] !== false} onClick={() => setHidden({ ...hidden, [key]: hidden[key] === false })}>{name}</button>
+          <button key={key} className="layer" aria-pressed={hidden[key] !== false} title={hidden[key] === false ? `show ${name}` : `hide ${name}`} onClick={() => setHidden({ ...hidden, [key]: hidden[key] === false })}>{name}</button>
         )) : null}
-        <button onClick={() => view.current?.fit(head.home)} aria-label="see all of it">Fit</button>
-        <button onClick={() => view.current?.fit([0, -0.001, 1])}>Top</button>
+        {isCurved ? <button aria-pressed={flat !== null} className="choice" title="left of the line every panel is flat" onClick={() => setFlat(flat === null ? 0.5 : null)}>Flat | spheres</button> : null}
+        <button onClick={() => fitAll(view.current, null)} aria-label="see all of it">Fit</button>
+        <button onClick={() => fitAll(view.current, [0, -0.001, 1])}>Top</button>
       </div>
+      {flat !== null ? <SwipeLine at={flat} setAt={setFlat} names={["flat", "spheres"]} /> : null}
       {head.colors.length ? <Legend colors={head.colors} chosen={mode} setChosen={setChosen} legend={legend} /> : null}
     </div>
   );
@@ -173,3 +204,28 @@ export const LinkButton = () => {
   const linked = useStudio((s) => s.linked);
   return <button aria-pressed={linked} title="views turn together" onClick={() => set({ linked: !linked })}>Turn together</button>;
 };
+
+/** The line between two pictures: dragged, or moved by arrows. */
+export function SwipeLine({ at, setAt, names }) {
+  const line = useRef(null);
+  const move = (share) => setAt(Math.min(0.98, Math.max(0.02, share)));
+  return (
+    <div className="swipeline" ref={line} style={{ left: `${100 * at}%` }} role="slider" tabIndex={0} aria-label={`between ${names.join(" and ")}`}
+      aria-valuemin={0} aria-valuemax={100} aria-valuenow={Math.round(100 * at)}
+      onPointerDown={(event) => event.currentTarget.setPointerCapture(event.pointerId)}
+      onPointerMove={(event) => {
+        if (!event.currentTarget.hasPointerCapture(event.pointerId)) return;
+        const box = line.current.parentElement.getBoundingClientRect();
+        move((event.clientX - box.left) / box.width);
+      }}
+      onKeyDown={(event) => {
+        const by = { ArrowLeft: -0.02, ArrowRight: 0.02 }[event.key];
+        if (!by) return;
+        event.preventDefault();
+        event.stopPropagation();
+        move(at + by);
+      }}>
+      <span>{names[0]}</span><span>{names[1]}</span>
+    </div>
+  );
+}

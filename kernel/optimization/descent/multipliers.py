@@ -169,14 +169,14 @@ def hold(
     stages: list[Stage] = []
     unknowns, objective = start, np.inf
     left = {name: _Left() for name in problem.hard}
-    number, is_settled, has_looked, last, lowest = 0, False, False, None, -np.inf
+    number, is_settled, last = 0, False, None
     while True:
         is_last = number >= len(bound_weights) - 1
         weight = bound_weights[min(number, len(bound_weights) - 1)]
         problem = replace(problem, bound_weight=weight)
         tolerance = max(AT_REST, FIRST_ROUND * STRICTER**number)
         # Saddles of multipliers that are still rough are none of the problem.
-        looks = not has_looked and (is_settled or (is_last and not problem.hard))
+        looks = is_settled or (is_last and not problem.hard)
         descent = descend_energy(
             problem, unknowns, max_iterations, tolerance, leaves_saddles=looks, last=last
         )
@@ -194,11 +194,8 @@ def hold(
         is_same = change <= SAME_OBJECTIVE * objective + LEAST_DECREMENT
         is_held = all(each.is_held for each in left.values())
         is_settled = is_last and is_held and (is_same or not problem.hard)
-        # Where nothing moves but digits, what was seen of the Hessian holds.
-        has_looked = looks or (has_looked and descent.iterations == 1)
-        lowest = descent.lowest if looks else lowest
-        if is_settled and has_looked:
-            return Held(unknowns, tuple(stages), lowest, is_held=True)
+        if is_settled and looks:
+            return Held(unknowns, tuple(stages), descent.lowest, is_held=True)
         is_stuck = not (is_last and is_held) and any(
             each.slow > (0 if is_used_up else SLOW_ROUNDS) for each in left.values()
         )

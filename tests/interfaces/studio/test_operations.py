@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from spheremesh.interfaces.studio.code import python_code
 from spheremesh.interfaces.studio.document import Document, StaleError, opened
 from spheremesh.interfaces.studio.operations import applied
-from spheremesh.interfaces.studio.templates import TEMPLATES, template_graph
+from spheremesh.interfaces.studio.templates import TEMPLATES, Design, template_graph
 from spheremesh.nodes import Graph, GraphError, each
 from spheremesh.nodes.graphs.specification.file import content_of, encode_graph
 from spheremesh.nodes.graphs.specification.specification import Specification, frozen
@@ -249,6 +249,25 @@ def _executed(text: str) -> Graph:
     names: dict[str, Value] = {"__name__": "made"}
     exec(compile(text, "made.py", "exec"), names)  # noqa: S102
     return names["graph"]
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+def test_templates_fit_a_mesh_of_ones_own(scale: float) -> None:
+    """Lengths are shares of its edges, whatever it is measured in."""
+    plain, other = (
+        {
+            name: (graph.values[name], param.port.min, param.port.max)
+            for name, param in graph.params.items()
+            if name != "moulds"
+        }
+        for graph in (
+            template_graph("beams", Design("a.obj", edge)) for edge in (1.3, 1.3 * scale)
+        )
+    )
+    for name, lengths in plain.items():
+        assert other[name] == pytest.approx([scale * length for length in lengths])
+    start = template_graph("quads", Design("a.obj", 2.0)).steps["mesh"]
+    assert (start.node.name, start.inputs["path"]) == ("read_mesh", "a.obj")
 
 
 @pytest.mark.parametrize("name", ["moulds", "angle", "study"])

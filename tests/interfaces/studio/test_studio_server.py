@@ -15,6 +15,9 @@ Studio = Any
 Value = Any
 
 
+BYTES = {"Content_Type": "application/octet-stream"}
+
+
 @pytest.mark.parametrize(
     ("status", "method", "path", "body", "headers", "message"),
     [
@@ -44,6 +47,14 @@ Value = Any
         (403, "POST", "/studio/save", {"file": "x\0y"}, {}, "can be no path"),
         (403, "POST", "/studio/export", {"folder": "../out"}, {}, "outside"),
         (403, "POST", "/studio/export", {"folder": "."}, {}, "outside"),
+        (401, "POST", "/studio/receive?name=a.obj", b"", {"Authorization": ""}, "address"),
+        (403, "POST", "/studio/receive?name=a.obj", b"", {"Origin": "null"}, "other pages"),
+        (415, "POST", "/studio/receive?name=a.obj", b"", {}, "octet-stream"),
+        (413, "POST", "/studio/receive?name=a.obj", b" " * 34_000_000, BYTES, "MB"),
+        (422, "POST", "/studio/receive?name=a.json", b"{}", BYTES, "no mesh file"),
+        (422, "POST", "/studio/receive?name=..", b"", BYTES, "no mesh file"),
+        (403, "POST", "/studio/open", {"template": "beams", "mesh": "../x.obj"}, {}, "outside"),
+        (422, "POST", "/studio/open", {"template": "beams", "mesh": "no.obj"}, {}, "no.obj"),
         (422, "POST", "/studio/open", {"file": "none.json"}, {}, "none.json"),
         (422, "POST", "/studio/open", {"template": "nothing"}, {}, "template"),
         (422, "POST", "/studio/revert", {"version": "../x"}, {}, "version"),
@@ -100,6 +111,32 @@ def test_paths_of_steps_stay_in_the_folder(studio: Studio, vase: Graph, path: st
     studio.run("other.result")
     fault = studio.event(lambda e: e["type"] == "fault")
     assert (fault["step"], "--files" in fault["text"]) == ("other", True)
+
+
+def test_a_mesh_that_is_dropped_stays_in_the_folder_and_replaces_nothing(
+    studio: Studio,
+) -> None:
+    def drop(name: str, data: bytes) -> tuple[int, Value]:
+        return studio.ask("POST", f"/studio/receive?name={name}", data, **BYTES)
+
+    assert drop("../../up/mine.obj", b"v 0 0 0") == (200, {"file": "mine.obj"})
+    assert drop("mine.obj", b"v 0 0 0") == (200, {"file": "mine.obj"})
+    assert drop("c:%5Cmine.obj", b"v 1 0 0") == (200, {"file": "mine 2.obj"})
+    assert (studio.folder / "mine.obj").read_bytes() == b"v 0 0 0"
+    assert "mine 2.obj" in studio.ask("GET", "/studio/files?ending=mesh")[1]
+    said = studio.ask("POST", "/studio/open", {"template": "moulds", "mesh": "mine.obj"})
+    assert said[0] == 422
+    assert "mine.obj" in said[1]["error"]
+
+
+def test_a_template_is_no_file_until_it_is_changed(studio: Studio) -> None:
+    _, said = studio.ask("POST", "/studio/open", {"template": "study"})
+    assert said["is_new"]
+    studio.edit({"op": "title", "text": "Mine"})
+    studio.session.document.save()
+    _, said = studio.ask("GET", "/studio/state")
+    assert not said["is_new"]
+    assert Path(said["place"], said["file"]).is_file()
 
 
 def test_an_edit_of_an_old_revision_is_told_the_present_one(
