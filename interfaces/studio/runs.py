@@ -191,8 +191,10 @@ class Runs:
             }  # fmt: skip
             self._previews.pop(told["target"], None)
         elif kind == "messages":
-            for step, state in self._states.items():
-                state["messages"] = told["messages"].get(step, state.get("messages", []))
+            if not is_present:
+                return  # of a result that is not shown any more
+            for step, texts in told["messages"].items():
+                self._states.setdefault(step, {})["messages"] = texts
         self._tell(told)
 
     def _keep(self, digest: str, data: bytes) -> None:

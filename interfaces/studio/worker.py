@@ -8,7 +8,7 @@ import os
 import tempfile
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
 from multiprocessing.connection import Connection
@@ -179,13 +179,25 @@ def _show_one(graph: Graph, target: str, order: Told, context: Context) -> None:
                 write_to=context.scratch,
             )  # fmt: skip
     finally:
-        said = {step: list(texts) for step, texts in copy.messages.items()}
-        context.tell(_said(order, {"type": "messages", "messages": said}))
+        _tell_messages(copy, [wire.step], order, context)
     data = array.tobytes()
     digest = xxhash.xxh3_128_hexdigest(data)
     context.tell(
         _said(order, {"type": "preview", "target": target, "digest": digest, "data": data})
     )
+
+
+def _tell_messages(
+    graph: Graph, targets: Sequence[Step], order: Told, context: Context
+) -> None:
+    """Tell what each step that was needed warns about, kept or made; an empty list for none."""
+    steps = {name for each in targets for name in _needed(graph.specification, each).steps}
+    said: dict[str, list[str]] = {name: [] for name in sorted(steps)}
+    for name, texts in graph.messages.items():
+        outer, _, inner = name.partition("/")
+        if outer in said:
+            said[outer] += [f"{inner}: {text}" if inner else text for text in texts]
+    context.tell(_said(order, {"type": "messages", "messages": said}))
 
 
 def _event(event: Event) -> Told:
@@ -240,10 +252,13 @@ def _export(graph: Graph, order: Told, context: Context) -> str:
 
     folder = context.files / order["folder"]
     with output_folder(folder, overwrite=bool(order.get("overwrite"))) as output:
-        graph.run(
-            *ready, on_event=_note, cancel=context.cancel, read_from=context.files,
-            write_to=output,
-        )  # fmt: skip
+        try:
+            graph.run(
+                *ready, on_event=_note, cancel=context.cancel, read_from=context.files,
+                write_to=output,
+            )  # fmt: skip
+        finally:
+            _tell_messages(graph, ready, order, context)
         files = sorted(
             path.relative_to(output.staging).as_posix()
             for path in output.staging.rglob("*")

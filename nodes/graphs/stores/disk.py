@@ -176,7 +176,9 @@ class DiskStore:
         if found or key in self._messages:
             return found or self._messages[key]
         content = self._content(key)
-        self._messages[key] = tuple(content["messages"]) if content else ()
+        if content is None:
+            return ()  # not made yet: another process may make it
+        self._messages[key] = tuple(content["messages"])
         return self._messages[key]
 
     def file_state(self, path: str) -> FileState:
