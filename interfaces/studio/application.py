@@ -239,6 +239,7 @@ _ROUTES: Final[dict[str, tuple[str, Callable[[Session, Environ], Reply]]]] = {
     "run": ("POST", _told(lambda s, body: s.run([str(x) for x in body.get("targets", [])]))),
     "cancel": ("POST", _told(lambda s, body: s.cancel(int(body.get("run", 0))))),
     "export": ("POST", _told(lambda s, body: s.export(str(body.get("folder", "")), body))),
+    "replaced": ("GET", lambda s, environ: _json(s.replaced(_word(environ, "folder")))),
     "receive": ("POST", _receive),
     "open": ("POST", _told(lambda session, body: session.open(body))),
     "save": ("POST", _told(lambda s, body: s.save_as(str(body.get("file", ""))))),

@@ -7,8 +7,10 @@ from typing import Any, Final
 from ...fabrication.mesh_files.reader import SUFFIXES, read_mesh
 from ...kernel.meshes.mesh import mean_edge_length
 from ...nodes.graphs.errors import GraphError
+from ...nodes.graphs.running.files import paths_of
 from ...nodes.graphs.specification.file import encode_graph
 from ...nodes.graphs.specification.specification import Specification
+from ...nodes.graphs.specification.wires import Param
 from ..hops.guard import RefusedError, check_paths
 from .catalogue import Catalogue, unknown_ports
 from .channels import Channels
@@ -118,6 +120,20 @@ class Session:
         name = path.relative_to(self.folder.resolve()).as_posix()
         overwrite = bool(options.get("overwrite"))
         return {"run": self.runs.run(text, rev, [], folder=name, overwrite=overwrite)}
+
+    def replaced(self, folder: str) -> list[str]:
+        """Names of the files in a folder in whose place an export would write."""
+        root = inside(self.folder, folder)
+        graph = self.document.specification
+        found: list[str] = []
+        for step in graph.steps.values():
+            node = real_node(step)
+            for port in () if node is None else node.file_inputs:
+                given = step.inputs.get(port.name, port.default)
+                given = graph.values.get(given.name) if isinstance(given, Param) else given
+                names = paths_of(given) if port.writes else []
+                found += [name for name in names if (root / name).is_file()]
+        return sorted(set(found))
 
     def open(self, what: Mapping[str, Any]) -> dict[str, Any]:
         """Open a file or a template, or begin anew."""

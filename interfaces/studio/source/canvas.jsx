@@ -62,7 +62,7 @@ function Flow() {
   const [nodes, setNodes] = useState([]);
   const [picked, setPicked] = useState(new Set());
   const [isSmall, setSmall] = useState(false);
-  const flow = useReactFlow(), held = useRef(null), moving = useRef(null), fitted = useRef(-1), box = useRef(null);
+  const flow = useReactFlow(), held = useRef(null), moving = useRef(null), forgetting = useRef(0), fitted = useRef(-1), box = useRef(null);
   useEffect(() => { setNodes((before) => nodesOf(now(), before)); }, [doc, expanded]);
   const edges = useMemo(() => edgesOf(now()).map((edge) => (picked.has(edge.id) ? { ...edge, selected: true } : edge)), [doc, picked]);
   useEffect(() => {
@@ -107,12 +107,14 @@ function Flow() {
   }, []);
   const onConnectStart = useCallback((_, { nodeId, handleId, handleType }) => {
     held.current = handleType === "source" ? { id: nodeId, output: handleId } : { id: nodeId, input: handleId };
+    clearTimeout(forgetting.current);
     set({ refusal: "" });
   }, []);
   const onConnectEnd = useCallback((event, wire) => {
     const end = held.current;
     held.current = null;
-    setTimeout(() => set({ refusal: "" }), wire?.toHandle && !wire.isValid ? 2600 : 0);
+    clearTimeout(forgetting.current);
+    forgetting.current = setTimeout(() => set({ refusal: "" }), wire?.toHandle && !wire.isValid ? 8000 : 0);
     if (!end || wire?.toHandle || wire?.toNode) return;
     const point = "changedTouches" in event ? event.changedTouches[0] : event;
     if (!box.current?.contains(document.elementFromPoint(point.clientX, point.clientY))) return;
@@ -192,7 +194,7 @@ function Flow() {
         ariaLabelConfig={{ "node.a11yDescription.default": "Enter selects, arrows move, C connects, Delete removes." }}
         proOptions={{ hideAttribution: true }} fitView fitViewOptions={{ padding: 0.08, maxZoom: 1 }}>
         <Background variant={BackgroundVariant.Dots} gap={22} size={1.1} color="#d9dce1" />
-        {refusal ? <Panel position="bottom-center"><div id="refusal" role="alert">{refusal}</div></Panel> : null}
+        {refusal ? <Panel position="top-center" className="above"><div id="refusal" role="alert">{refusal}</div></Panel> : null}
         {isSmall ? <Panel position="bottom-left"><Sliders /></Panel> : null}
         {!nodes.length ? <Panel position="top-center"><Empty /></Panel> : null}
       </ReactFlow>

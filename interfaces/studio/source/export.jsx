@@ -1,6 +1,6 @@
 // The window that hands over: files into a folder, the graph, its code, its picture.
 
-import { useState } from "react";
+import { useEffect, useState } from "react";
 import { get } from "./api.js";
 import { anchored, placesOf, sizeOf } from "./graph.js";
 import { described, edit, exportFiles, familyOf, fileOf, guarded, now, toast, useStudio } from "./store.js";
@@ -54,14 +54,30 @@ function addWriter([kind, step, path]) {
   edit(anchored(s, [{ op: "add", node: kind, name, inputs: { ...inputs, path }, at: placeFor(s) }]));
 }
 
+/** Every graph has a folder of its own, unless another one is chosen. */
+const usualFolder = ({ file, graph }) => `${(file || graph.title || "graph").replace(/\.json$/i, "").replace(/[:*?"<>|\\]+/g, " ").trim() || "graph"} files`;
+
+/** What there is already where the graph would write: asked for again after every change. */
+function useReplaced(folder, doc, state) {
+  const [replaced, setReplaced] = useState([]);
+  useEffect(() => {
+    let isLast = true;
+    const take = (names) => { if (isLast) setReplaced(names); };
+    const timer = setTimeout(() => get(`replaced?folder=${encodeURIComponent(folder)}`).then(take, () => take([])), 100);
+    return () => { isLast = false; clearTimeout(timer); };
+  }, [folder, doc, state]);
+  return replaced;
+}
+
 export function Export() {
-  const [folder, setFolder] = useState("out");
+  const [folder, setFolder] = useState(() => usualFolder(now().doc));
+  const [written, setWritten] = useState("");
   const [overwrite, setOverwrite] = useState(false);
   const { exported, place, doc, catalogue } = useStudio((s) => ({ exported: s.exported, place: s.place, doc: s.doc, catalogue: s.catalogue }));
   const s = now(), writers = Object.entries(doc.graph.steps).filter(([name]) => described(s, name)?.writes);
   const used = new Set(writers.map(([, entry]) => entry.node));
   const others = KINDS.filter(([node]) => !used.has(node) && inputsFor(s, catalogue.nodes[node]));
-  const isWriting = exported?.state === "running";
+  const isWriting = exported?.state === "running", replaced = useReplaced(folder, doc, exported?.state);
   const code = () => guarded(get("code").then(({ code: text }) => save(`${doc.graph.title || "graph"}.py`, text)));
   return (
     <>
@@ -77,12 +93,13 @@ export function Export() {
         </ul>
       ) : <p className="quiet">{others.length ? "Choose what is to be written:" : "There is nothing to write yet: make panels first."}</p>}
       {others.length ? <div className="chips">{others.map((each) => <button key={each[0]} title={each[2]} onClick={() => addWriter(each)}>+ {each[3]}</button>)}</div> : null}
-      <form className="line into" onSubmit={(event) => { event.preventDefault(); exportFiles(folder, overwrite); }}>
+      <form className="line into" onSubmit={(event) => { event.preventDefault(); setWritten(folder); exportFiles(folder, overwrite); }}>
         <label>into folder <input value={folder} aria-label="folder" onChange={(event) => setFolder(event.target.value)} spellCheck={false} /></label>
         <button className="primary" disabled={!writers.length || isWriting}>{isWriting ? "Writing …" : "Write files"}</button>
       </form>
+      {replaced.length && !(exported && written === folder) ? <p className="replaces" role="status" title={replaced.join("\n")}>replaces {replaced.length === 1 ? "1 file" : `${replaced.length} files`} written before: {replaced.slice(0, 4).join(", ")}{replaced.length > 4 ? ", …" : ""}</p> : null}
       <label className="check"><input type="checkbox" checked={overwrite} onChange={(event) => setOverwrite(event.target.checked)} />also replace files that spheremesh did not write</label>
-      {exported ? <Outcome exported={exported} where={`${place}/${folder}`} /> : null}
+      {exported ? <Outcome exported={exported} where={`${place}/${written}`} /> : null}
       <h3>The graph</h3>
       <div className="line">
         <button onClick={code}>Python code</button>

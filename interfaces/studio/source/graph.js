@@ -204,27 +204,30 @@ function ancestors(s, name) {
   return found;
 }
 
+/** An input or output as the canvas shows it: "panels · sphere mesh". */
+const labelOf = (step, port) => (port === "result" ? step : `${step} · ${port.replaceAll("_", " ")}`);
+
 /** Why an output or a slider cannot go into an input; empty if it can. */
 export function whyNot(s, source, output, target, input) {
   if (!target?.startsWith("s:") || !source) return "wires end at inputs";
   const to = target.slice(2), node = described(s, to);
   if (!node) return "";
   const port = portOf(node.inputs, input);
-  if (!port) return `${to} has no input ${input}`;
+  if (!port) return `${to} has no input ${input.replaceAll("_", " ")}`;
   if (source.startsWith("p:")) return whyNotSlider(s, source.slice(2), to, port);
   const from = source.slice(2), out = portOf(described(s, from)?.outputs, output);
   if (from === to || ancestors(s, from).has(to)) return `${from} needs ${to} already: that would be a circle`;
   if (!out || s.doc.facts[from]?.nesting) return "";
   if (s.catalogue.fits[out.type].has(port.type)) return "";
   const { types } = s.catalogue;
-  return `${from}.${output} is ${types[out.type]}; ${to}.${input} takes ${types[port.type]}`;
+  return `${labelOf(from, output)} is ${types[out.type]}; ${labelOf(to, input)} takes ${types[port.type]}`;
 }
 
 function whyNotSlider(s, name, to, port) {
   const { value } = s.doc.graph.params[name];
-  if (!port.field) return `${to}.${port.name} takes ${s.catalogue.types[port.type]}, no value of a slider`;
+  if (!port.field) return `${labelOf(to, port.name)} takes ${s.catalogue.types[port.type]}, no value of a slider`;
   const isNumber = typeof value === "number";
-  if (isNumber && !["number", "whole", "choice", "list"].includes(port.field)) return `slider ${name} is a number; ${to}.${port.name} takes ${s.catalogue.types[port.type]}`;
+  if (isNumber && !["number", "whole", "choice", "list"].includes(port.field)) return `slider ${name} is a number; ${labelOf(to, port.name)} takes ${s.catalogue.types[port.type]}`;
   return "";
 }
 

@@ -51,7 +51,7 @@ function Divider({ share, setShare }) {
 
 function Toast({ text, kind }) {
   useEffect(() => {
-    const timer = setTimeout(() => set({ toast: null }), 7000);
+    const timer = setTimeout(() => set({ toast: null }), 8000);
     return () => clearTimeout(timer);
   }, []);
   return <div className={`toast ${kind}`} role="alert">{text}<button aria-label="close" onClick={() => set({ toast: null })}>×</button></div>;

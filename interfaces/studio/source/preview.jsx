@@ -5,6 +5,7 @@ import { blob } from "./api.js";
 import { portOf } from "./graph.js";
 import { togglePin } from "./keys.js";
 import { described, familyOf, fileOf, pinsOf, set, show, useStudio } from "./store.js";
+import { unfinishedText } from "./step.jsx";
 import { Numbers, Table } from "./tables.jsx";
 import { LinkButton, ModelView, SwipeLine } from "./view.jsx";
 
@@ -15,6 +16,8 @@ const DRAWN = ["panels", "beams", "spheres", "mesh", "array"];
 const swipedNow = (s) => (s.swipe?.every((target) => shownNow(s).includes(target)) ? s.swipe : []);
 
 export function Preview() {
+  // What is shown of another graph begins anew, with a camera that fits.
+  const opening = useStudio((s) => s.opening);
   const targets = useStudio((s) => shownNow(s)), swiped = useStudio((s) => swipedNow(s));
   const drawn = useStudio((s) => shownNow(s).filter((target) => {
     const [step, port] = target.split(".");
@@ -24,8 +27,8 @@ export function Preview() {
   const others = targets.filter((target) => !swiped.includes(target)), count = others.length + (swiped.length ? 1 : 0);
   return (
     <section className={`preview tiles-${count}`} aria-label="preview">
-      {swiped.length ? <Swipe key={swiped.join()} targets={swiped} /> : null}
-      {others.map((target) => <Tile key={target} target={target} alone={targets.length === 1} />)}
+      {swiped.length ? <Swipe key={`${opening} ${swiped.join()}`} targets={swiped} /> : null}
+      {others.map((target) => <Tile key={`${opening} ${target}`} target={target} alone={targets.length === 1} />)}
       {targets.length > 1 && !swiped.length ? (
         <div className="links">
           {drawn.length > 1 ? <button title="one over the other, with a line between them" onClick={() => set({ swipe: drawn.slice(0, 2) })}>Swipe</button> : null}
@@ -53,7 +56,7 @@ function useOutput(target) {
       setData({ head, arrays, digest: preview.digest });
     }, (error) => setFault(error.message));
   }, [preview?.digest]);
-  const says = facts?.unfinished ? `${step} is not finished yet.` : state?.state === "failed" ? state.text : fault;
+  const says = facts?.unfinished ? `${step} is not finished yet: it ${unfinishedText(facts.unfinished, step)}.` : state?.state === "failed" ? state.text : fault;
   const isStale = Boolean(says) || (isRunning && ["running", "progress", "queued"].includes(state?.state));
   return { data, says, isStale, isRunning };
 }

@@ -87,7 +87,7 @@ export const StepNode = memo(({ data, selected }) => {
   const family = familyOf(s, outputs[0]);
   const said = state?.messages ?? [];
   return (
-    <div className={`step f-${family}${selected ? " selected" : ""}${node ? "" : " unknown"}${state ? ` is-${state.state}` : ""}${facts?.unfinished ? " unfinished" : ""}`} data-step={name}>
+    <div className={`step f-${family}${selected ? " selected" : ""}${node ? "" : " unknown"}${state?.state ? ` is-${state.state}` : ""}${facts?.unfinished ? " unfinished" : ""}`} data-step={name}>
       {comment ? <div className="comment" onDoubleClick={() => set({ dialog: { kind: "comment", step: name } })}>{comment}</div> : null}
       <header title={node?.summary}>
         <strong onDoubleClick={() => set({ dialog: { kind: "rename", id: `s:${name}` } })}>{name}</strong>
@@ -116,7 +116,7 @@ export const StepNode = memo(({ data, selected }) => {
 });
 
 /** "step 'x' (node y) misses its input 'mesh' (Mesh)" as it reads on the step itself. */
-const unfinishedText = (text, name) => text.replace(new RegExp(`^step '${name}'( \\(node \\w+\\))? `), "").replace(/^misses/, "needs");
+export const unfinishedText = (text, name) => text.replace(new RegExp(`^step '${name}'( \\(node \\w+\\))? `), "").replace(/^misses/, "needs");
 
 export const SliderNode = memo(({ data, selected }) => {
   const { name } = data;

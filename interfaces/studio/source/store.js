@@ -225,7 +225,7 @@ function takeHeard() {
     else if (event.type === "fault") steps = { ...steps, [event.step]: { ...steps[event.step], state: "failed", text: event.text } };
     else if (event.type === "messages") {
       steps = { ...steps };
-      for (const name of Object.keys(steps)) if (event.messages[name] || steps[name].messages?.length) steps[name] = { ...steps[name], messages: event.messages[name] ?? steps[name].messages };
+      for (const [name, messages] of Object.entries(event.messages)) steps[name] = { ...steps[name], messages };
     } else if (event.type === "preview") previews = { ...previews, [event.target]: event };
     else if (event.type === "run") {
       if (event.state === "running") { running = Math.max(running, event.run); runText = "running"; }

@@ -40,6 +40,16 @@ function placed(point, from, to) {
   point.set(...moved);
 }
 
+/** Whether a model is so much larger or smaller along some side that one has to look at it anew. */
+function isOtherSize(before, after) {
+  const sides = (head) => head.high.map((x, k) => head.size * Math.max(x - head.low[k], 0.1 * Math.max(...head.high)));
+  const old = sides(before);
+  return sides(after).some((side, k) => side > 2 * old[k] || old[k] > 2 * side);
+}
+
+/** Where a view looks from. */
+const directionOf = (view) => view.camera.position.clone().sub(view.controls.target).normalize().toArray();
+
 /** Colours of parts by the values of a scene, and the legend that says so. */
 export function colored({ pathColor, scaleOf, number }, head, arrays, chosen) {
   const panels = head.panels.id.length, beams = head.beams.id.length, count = panels + beams + head.nodes.id.length;
@@ -105,7 +115,9 @@ export function ModelView({ data, target }) {
     made.visible = { ...made.visible, edges: head.edges, ...hidden };
     made.setColors(colors);
     made.resize();
-    if (!made.placed) { made.fit(head.home); made.placed = true; }
+    if (!made.placed) made.fit(head.home);
+    else if (isOtherSize(made.head, head)) made.fit(directionOf(made));
+    made.placed = true;
     made.head = head;
     const partner = now().swipe?.find((each) => each !== target);
     if (partner && now().swipe.includes(target) && views.has(partner)) follow(views.get(partner));
@@ -168,7 +180,7 @@ function partText(parts, head, arrays, part) {
   const panels = head.panels.id.length, beams = head.beams.id.length;
   const name = part < panels ? head.panels.id[part] : part < panels + beams ? head.beams.id[part - panels] : head.nodes.id[part - panels - beams];
   if (part >= panels) return name ?? "";
-  const values = head.colors.map((mode, k) => `${mode.name.toLowerCase()} ${mode.kind === "kinds" ? arrays[`value_${k}`][part] : parts.number(arrays[`value_${k}`][part])}${mode.unit === "deg" ? "°" : ""}`);
+  const values = head.colors.map((mode, k) => `${mode.name.toLowerCase()} ${mode.kind === "kinds" ? arrays[`value_${k}`][part] : parts.number(arrays[`value_${k}`][part])}${mode.unit === "deg" ? "°" : mode.unit ? ` ${mode.unit}` : ""}`);
   return [name, ...values].join(" · ");
 }
 

@@ -106,9 +106,7 @@ def test_a_wire_is_drawn_and_a_wrong_one_refused_with_its_reason(
 ) -> None:
     drag(page, port(page, "s:mesh", "result"), port(page, "s:panels", "labels"))
     page.wait_for_selector("#refusal")
-    assert "mesh.result is Mesh; panels.labels takes labels of faces" in page.inner_text(
-        "#refusal"
-    )
+    assert "mesh is Mesh; panels · labels takes labels of faces" in page.inner_text("#refusal")
     page.mouse.up()
     assert graph(studio)["steps"]["panels"]["inputs"]["labels"] == {"wire": "few.labels"}
     drag(page, port(page, "s:fit", "result"), port(page, "s:panels", "sphere_mesh"))
@@ -328,10 +326,12 @@ def test_a_newcomer_gets_from_a_mesh_to_files(
         page.click(f"[aria-label='do not write {file}']")
     page.click(".chips >> text=+ picture")
     page.wait_for_selector(".writers >> text=picture.png")
+    folder = page.input_value("[aria-label=folder]")
+    assert folder.endswith(" files")
     page.click("text=Write files")
     page.wait_for_selector(".outcome.is-done")
     assert page.locator(".outcome li").all_inner_texts() == ["picture.png", "schedule.csv"]
-    assert (studio.folder / "out" / "picture.png").read_bytes()[1:4] == b"PNG"
+    assert (studio.folder / folder / "picture.png").read_bytes()[1:4] == b"PNG"
     page.keyboard.press("Escape")
     page.click(".step[data-step=picture] .eye")
     until(page, "document.querySelector('img.picture')?.naturalWidth === 1600")

@@ -47,6 +47,7 @@ BYTES = {"Content_Type": "application/octet-stream"}
         (403, "POST", "/studio/save", {"file": "x\0y"}, {}, "can be no path"),
         (403, "POST", "/studio/export", {"folder": "../out"}, {}, "outside"),
         (403, "POST", "/studio/export", {"folder": "."}, {}, "outside"),
+        (403, "GET", "/studio/replaced?folder=..", None, {}, "outside"),
         (401, "POST", "/studio/receive?name=a.obj", b"", {"Authorization": ""}, "address"),
         (403, "POST", "/studio/receive?name=a.obj", b"", {"Origin": "null"}, "other pages"),
         (415, "POST", "/studio/receive?name=a.obj", b"", {}, "octet-stream"),
@@ -174,6 +175,26 @@ def test_only_what_depends_on_a_slider_runs_and_going_back_costs_nothing(
     assert set(arrays["value_0"].tolist()) == {1, 2, 3}
 
 
+def test_warnings_are_those_of_the_result_that_is_shown(studio: Studio, vase: Graph) -> None:
+    """Made, kept or undone: a step says what its result was warned about, or nothing."""
+    studio.open(vase)
+    said: dict[int, list[str]] = {}
+    for moulds in (3, 12, 3, 12):
+        studio.edit({"op": "set", "param": "moulds", "value": moulds})
+        studio.run("panels.panels")
+        warned = studio.session.runs.state["steps"]["few"]["messages"]
+        assert warned == said.setdefault(moulds, warned)
+    assert said[3] == []
+    assert "of 12" in said[12][0]
+    studio.ask("POST", "/studio/undo", {})
+    studio.run("panels.panels")
+    assert studio.session.runs.state["steps"]["few"]["messages"] == []
+    studio.ask("POST", "/studio/redo", {})
+    studio.session.runs.forget()  # as after opening it again: only the picture is asked for
+    studio.run("panels.panels")
+    assert studio.session.runs.state["steps"]["few"]["messages"] == said[12]
+
+
 def test_a_fault_of_one_target_is_none_of_the_others(studio: Studio, vase: Graph) -> None:
     vase.add("read_mesh", "other", path="no.obj")
     studio.open(vase)
@@ -219,10 +240,13 @@ def test_files_are_exported_and_nothing_of_the_users_is_replaced(
     panels = vase.steps["panels"]
     vase.add("write_schedule", "table", panels=panels.panels, path="parts.csv")
     studio.open(vase)
+    assert studio.ask("GET", "/studio/replaced?folder=out") == (200, [])
     _, said = studio.ask("POST", "/studio/export", {"folder": "out"})
     ended = studio.ended(said["run"])
     assert (ended["state"], ended["text"]) == ("done", "parts.csv")
     assert (studio.folder / "out" / "parts.csv").read_text().count("\n") == 51
+    assert studio.ask("GET", "/studio/replaced?folder=out") == (200, ["parts.csv"])
+    assert studio.ask("GET", "/studio/replaced?folder=other") == (200, [])
     (studio.folder / "out" / "parts.csv").write_text("mine")
     _, said = studio.ask("POST", "/studio/export", {"folder": "out"})
     ended = studio.ended(said["run"])
