@@ -296,6 +296,7 @@ def test_distances_are_those_of_corners_and_points(page: Page) -> None:
     )
     assert ends[2] == pytest.approx(length, rel=1e-6)
     assert "mm" in page.text_content("#measure text")
+    assert page.inner_text("#hint").startswith("From corner ")
     far = page.evaluate(
         """() => { const p = window.spheremesh, v = p.view;
         const [i, [x, y]] = v.shapes.corners.map((c, i) => [i, v.project(v.shapes.centers[i])])
@@ -537,6 +538,13 @@ def test_parts_drawn_apart_are_picked_where_they_are(page: Page) -> None:
           asked++; if (v.pick(...v.project(at)) === i) right++; } return [right, asked]; }"""
     )
     assert found[0] == found[1] > 2
+
+
+def test_a_picture_is_saved(page: Page) -> None:
+    with page.expect_download() as saved:
+        page.click("#sharing [data-value=save]")
+    assert saved.value.suggested_filename == "script-b-Dächer.png"
+    assert saved.value.path().read_bytes()[:4] == b"\x89PNG"
 
 
 @pytest.mark.long
