@@ -526,6 +526,10 @@ def test_sections_hide_what_is_beyond_them(page: Page) -> None:
     # From the side of the viewer all is cut away.
     page.evaluate("window.spheremesh.set({axis: 'y', depth: 1})")
     assert page.evaluate(f"window.spheremesh.view.pick({middle})") == -1
+    # But what is asked for by its name is shown.
+    page.evaluate("window.spheremesh.set({hidden: new Set(['panels'])})")
+    page.evaluate("window.spheremesh.choose(40)")
+    assert page.evaluate(f"window.spheremesh.view.pick({middle})") == 40
 
 
 def test_parts_drawn_apart_are_picked_where_they_are(page: Page) -> None:

@@ -219,6 +219,9 @@ export class Page {
 
   /** Select a part by its name, and turn the model until it is seen. */
   choose(part) {
+    const hidden = new Set(this.state.hidden);
+    if (part < this.shapes.parts && hidden.delete("panels")) this.set({ hidden });
+    if (this.view?.isCut(part)) this.set({ axis: "" });
     this.view?.reveal(part);
     this.select(part);
   }
