@@ -296,6 +296,7 @@ def test_distances_are_those_of_corners_and_points(page: Page) -> None:
     )
     assert ends[2] == pytest.approx(length, rel=1e-6)
     assert "mm" in page.text_content("#measure text")
+    assert page.inner_text("#hint").startswith("From corner ")
     far = page.evaluate(
         """() => { const p = window.spheremesh, v = p.view;
         const [i, [x, y]] = v.shapes.corners.map((c, i) => [i, v.project(v.shapes.centers[i])])
@@ -525,6 +526,10 @@ def test_sections_hide_what_is_beyond_them(page: Page) -> None:
     # From the side of the viewer all is cut away.
     page.evaluate("window.spheremesh.set({axis: 'y', depth: 1})")
     assert page.evaluate(f"window.spheremesh.view.pick({middle})") == -1
+    # But what is asked for by its name is shown.
+    page.evaluate("window.spheremesh.set({hidden: new Set(['panels'])})")
+    page.evaluate("window.spheremesh.choose(40)")
+    assert page.evaluate(f"window.spheremesh.view.pick({middle})") == 40
 
 
 def test_parts_drawn_apart_are_picked_where_they_are(page: Page) -> None:
@@ -537,6 +542,13 @@ def test_parts_drawn_apart_are_picked_where_they_are(page: Page) -> None:
           asked++; if (v.pick(...v.project(at)) === i) right++; } return [right, asked]; }"""
     )
     assert found[0] == found[1] > 2
+
+
+def test_a_picture_is_saved(page: Page) -> None:
+    with page.expect_download() as saved:
+        page.click("#sharing [data-value=save]")
+    assert saved.value.suggested_filename == "script-b-Dächer.png"
+    assert saved.value.path().read_bytes()[:4] == b"\x89PNG"
 
 
 @pytest.mark.long

@@ -42,6 +42,7 @@ export function showAddress(page, text) {
   if (page.measure && ends.length % 3 === 0 && ends.every(Number.isFinite)) {
     page.setMeasuring(true);
     page.measure.points = [ends.slice(0, 3), ends.slice(3, 6)].filter((p) => p.length);
+    page.showHint();
   }
   const [axis, depth] = (words.get("cut") ?? "").split(" ");
   state.axis = ["x", "y", "z"].includes(axis) ? axis : "";

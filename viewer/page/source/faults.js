@@ -49,12 +49,11 @@ function counted(model, parts) {
   return plural(parts.size, kinds.size === 1 ? [...kinds][0] : "part");
 }
 
-/** All kinds of findings, the gravest and then the most frequent first; nothing without any. */
-export function faultsMarkup(model, filter) {
-  const kinds = faultKinds(model);
+/** All kinds of findings, of the one that is chosen the parts by name; nothing without any. */
+export function faultsMarkup(model, kinds, key) {
   if (!kinds.length) return "";
   const lines = kinds.map((kind) => {
-    const { title, code, severity, parts, worst } = kind, chosen = filter?.fault === kind.key;
+    const { title, code, severity, parts, worst } = kind, chosen = key === kind.key;
     const amount = amountOf(worst.message), advice = worst.message.split(": ").slice(1).join(": ");
     const name = `<button class="part" data-part="${worst.part}">${escapeText(model.ids[worst.part])}</button>`;
     const example = parts.size === 1 ? name : `${amount ? "worst" : "such as"} ${name}`;

@@ -2,6 +2,7 @@
 
 import { NAMED_VIEWS } from "./cameras.js";
 import { BINS } from "./colors.js";
+import { copyLink, savePicture } from "./sharing.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -44,6 +45,12 @@ function listenControls(page) {
     $("unknown").textContent = "";
   });
   $("search").addEventListener("change", () => page.find());
+  buttons("sharing", async (value) => {
+    $("shared").textContent = "";
+    if (value === "print") window.print();
+    else if (value === "save") savePicture(page, $("canvas"));
+    else $("shared").textContent = await copyLink(page) ? "Copied. Send the file too." : "This browser does not let the page copy: take the address from above, and send the file too.";
+  });
   $("listing").addEventListener("click", () => page.showTable($("table").hidden));
 }
 
@@ -57,6 +64,10 @@ function listenPicture(page) {
       page.tap(event.clientX - box.left, event.clientY - box.top);
     }
     down = null;
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    const box = canvas.getBoundingClientRect();
+    if (page.measure.on && !event.buttons) page.aim(event.clientX - box.left, event.clientY - box.top);
   });
   page.view.controls.addEventListener("end", () => page.writeAddress());
 }

@@ -6,7 +6,7 @@ import { colorModes, legendMarkup, partColors, passes, scaleOf } from "./colors.
 import { faultKinds, faultsMarkup } from "./faults.js";
 import { listen } from "./listeners.js";
 import { PartList } from "./list.js";
-import { locate, Measure } from "./measure.js";
+import { locate, Measure, nameOf } from "./measure.js";
 import { ERROR, findPart, kindOf, makeModel, REJECTED } from "./model.js";
 import { paint } from "./painter.js";
 import { buildShapes } from "./shapes.js";
@@ -21,6 +21,7 @@ export class Page {
     this.shapes = buildShapes(head, arrays);
     this.head = head;
     this.modes = colorModes(this.model);
+    this.faults = faultKinds(this.model);
     this.state = { color: this.modes[0].key, shading: 0, flat: "off", axis: "", depth: 0.5, explode: 0, part: -1, hidden: new Set(["axes"]) };
     this.filter = null;
     this.home = head.home;
@@ -73,8 +74,15 @@ export class Page {
   }
 
   fillFaults() {
-    $("faults").innerHTML = faultsMarkup(this.model, this.filter);
-    $("faults").hidden = !$("faults").innerHTML;
+    const chosen = this.filter?.fault, root = $("faults"), list = root.firstElementChild && root.querySelector("ul");
+    if (list && chosen === this.shownFault) return;
+    const top = list?.scrollTop ?? 0, focused = root.contains(document.activeElement) && document.activeElement.dataset.fault;
+    root.innerHTML = faultsMarkup(this.model, this.faults, chosen);
+    root.hidden = !this.faults.length;
+    this.shownFault = chosen;
+    // Whoever reads or types there stays there.
+    if (list) root.querySelector("ul").scrollTop = top;
+    if (focused) [...root.querySelectorAll("[data-fault]")].find((row) => row.dataset.fault === focused).focus();
   }
 
   fillLayers() {
@@ -97,8 +105,24 @@ export class Page {
       return;
     }
     this.measure.take(locate(this.view, x, y));
+    this.showHint();
     if (this.measure.distance !== null) $("spoken").textContent = this.measure.text().join("; ");
     this.writeAddress();
+  }
+
+  /** The corner that a click would take gets a ring. */
+  aim(x, y) {
+    cancelAnimationFrame(this.aiming);
+    this.aiming = requestAnimationFrame(() => this.measure.aim(locate(this.view, x, y)));
+  }
+
+  /** What is to be clicked next, and what was taken. */
+  showHint() {
+    const { on, points } = this.measure, names = points.map((p) => nameOf(this.shapes, this.model, p));
+    $("hint").hidden = !on;
+    $("hint").textContent = [
+      "Click the first corner or point", `From ${names[0]}: click the second corner or point`, `From ${names[0]} to ${names[1]}`,
+    ][points.length];
   }
 
   /** Parts that are drawn apart are not where they are: there is nothing to measure. */
@@ -107,6 +131,8 @@ export class Page {
     if (!this.measure.on) this.measure.points = [];
     $("measuring").firstElementChild.setAttribute("aria-pressed", String(this.measure.on));
     $("stage").classList.toggle("measuring", this.measure.on);
+    this.measure.aimed = null;
+    this.showHint();
     this.measure.draw();
     this.writeAddress();
   }
@@ -135,7 +161,7 @@ export class Page {
 
   /** Only the parts on which something of a kind was found; all again if they are chosen. */
   showFault(key) {
-    const kind = faultKinds(this.model).find((each) => each.key === key);
+    const kind = this.faults.find((each) => each.key === key);
     if (!kind || this.filter?.fault === key) this.filter = null;
     else {
       this.state.color = "finding";
@@ -193,6 +219,9 @@ export class Page {
 
   /** Select a part by its name, and turn the model until it is seen. */
   choose(part) {
+    const hidden = new Set(this.state.hidden);
+    if (part < this.shapes.parts && hidden.delete("panels")) this.set({ hidden });
+    if (this.view?.isCut(part)) this.set({ axis: "" });
     this.view?.reveal(part);
     this.select(part);
   }
@@ -207,7 +236,8 @@ export class Page {
     if (part >= 0) {
       $("card").innerHTML = cardMarkup(this.model, part);
       $("spoken").textContent = spoken(this.model, part);
-      $("card").scrollIntoView?.({ block: "nearest" });
+      // The card stands under the search.
+      $("search").scrollIntoView({ block: "nearest" });
     }
     this.view?.select(part);
     this.list.select(part);

@@ -5,7 +5,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { cameraThatFits, FIELD, sidewards } from "./cameras.js";
 import { ghostsOf, groundOf, linesOf, makeUniforms, meshGeometry, meshOf, surfaceTexture } from "./scene.js";
 import { addTouchingWalls, outward, sizeOf } from "./shapes.js";
-import { add, cross, length, scale, sub, unit } from "./vectors.js";
+import { add, cross, dot, length, scale, sub, unit } from "./vectors.js";
 
 const MANY = 2000;
 const AROUND = 2.6; // sizes of a part that are seen around it
@@ -149,13 +149,25 @@ export class View {
     this.draw();
   }
 
+  /** The middle of a part where it is drawn, apart from others or not. */
+  placeOf(part) {
+    const { centers, lifts } = this.shapes, moved = add(scale(centers[part], 0.4), lifts[part], 0.07);
+    return add(centers[part], moved, this.uniforms.explode.value);
+  }
+
+  /** Whether a section has taken the middle of a part away. */
+  isCut(part) {
+    const { cuts, plane } = this.uniforms;
+    return cuts.value && dot(this.placeOf(part), plane.value.toArray()) > plane.value.w;
+  }
+
   /** Look at a part from its outside, from where nothing hides it. */
   reveal(part) {
     const { shapes } = this, middle = shapes.centers[part], size = sizeOf(shapes, part) ?? this.edge / 2;
     // Nobody knows where it would be.
     if (part >= shapes.total && !shapes.outlines[part - shapes.total].length) return;
     this.fitted = null;
-    const moved = add(scale(middle, 0.4), shapes.lifts[part], 0.07), at = add(middle, moved, this.uniforms.explode.value);
+    const at = this.placeOf(part);
     const points = [0, 1, 2].flatMap((k) => [-1, 1].map((s) => at.map((c, j) => c + (j === k ? AROUND * s * size : 0))));
     const probes = [at, ...(shapes.corners[part] ?? []).map((c) => add(at, sub(c, middle), 0.6))];
     let best = null, most = -1;
