@@ -118,7 +118,7 @@ def _missing_neighbors(subject: PanelSubject) -> list[Finding]:
     names = neighbor_ids(panels)
     missing = np.array([name is None for name in names]) & (panels.neighbors >= 0)
     counts: IntArray = np.add.reduceat(missing.astype(np.int64), panels.offsets[:-1])
-    message = "{0:.0f} of its neighbours are missing"
+    message = "neighbours are missing, {0:.0f} of them"
     return subject.found("P202", counts.astype(np.float64), counts > 0, message)
 
 

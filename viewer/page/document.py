@@ -11,7 +11,7 @@ import html
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
-from typing import Any, Final, TypedDict
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,12 +23,12 @@ from ...kernel.errors import InputError
 from ...kernel.meshes.mesh import Mesh
 from ...kernel.panels.panels import Panels
 from ...kernel.parts.findings import Finding
-from ...kernel.parts.records import part_ids
 from ..light import sky_maps
 from .beams import beam_arrays, beam_points, node_arrays
 from .container import pack_arrays
 from .faces import Faces, cover, face_arrays, panel_faces
 from .grid import Grid, grid_about
+from .missing import missing_parts
 from .sky import GROUND, REACH, ground_openness, panel_openness, point_sky, point_spacing
 
 _BUNDLE: Final = "bundle"
@@ -38,12 +38,6 @@ _LEVEL: Final = 6
 """Of compression: what more would save is not worth its time."""
 
 Columns = Mapping[str, Sequence[Any]]
-
-
-class _Missing(TypedDict):
-    id: str
-    reason: str
-    corners: int
 
 
 @dataclass(frozen=True)
@@ -59,7 +53,8 @@ class PageTexts:
     findings : sequence of Finding
         What an audit found, by the names of parts.
     rejected : sequence of mapping
-        ``id``, ``code`` and ``reason`` of each panel that cannot be made.
+        ``id``, ``code`` and ``reason`` of each panel that cannot be made; others are
+        known by what an audit found of them.
     millimeters : float
         Of a model unit.
     """
@@ -116,9 +111,10 @@ def page_data(
     if nodes is not None:
         arrays |= node_arrays(nodes, grid)
     ground = _add_light(arrays, faces, points, grid)
-    missing = _missing(panels, mesh, texts.rejected)
-    outlines = [np.zeros((0, 3)), *(corners for _, corners in missing)]
-    arrays["missing"] = grid.steps(np.concatenate(outlines))
+    known = {*texts.panels["id"], *texts.beams["id"], *(nodes.ids if nodes is not None else ())}
+    absent = [found for found in texts.findings if found.id not in known]
+    missing, outlines = missing_parts(panels, mesh, texts.rejected, absent)
+    arrays["missing"] = grid.steps(outlines)
     low = (np.min([each.min(axis=0) for each in points], axis=0) - grid.center) / grid.size
     nothing: Columns = dict.fromkeys(texts.panels, ())
     head: dict[str, Any] = {
@@ -135,8 +131,8 @@ def page_data(
         "beam_thickness": beams.thickness / grid.size if beams is not None else 0.0,
         "nodes": _node_texts(nodes, texts.millimeters),
         "node_radius": nodes.radius / grid.size if nodes is not None else 0.0,
-        "findings": [[f.code, f.id, f.severity, f.message] for f in texts.findings],
-        "missing": [words for words, _ in missing],
+        "findings": [[f.code, f.id, f.severity, f.message, f.size] for f in texts.findings],
+        "missing": missing,
     }
     return pack_arrays(head, arrays)
 
@@ -162,31 +158,6 @@ def _add_light(
     middle = (np.array([*(low + high)[:2] / 2, low[2]]) - grid.center) / grid.size
     size = REACH * float((high - low).max()) / grid.size
     return {"points": GROUND, "size": size, "middle": middle.tolist()}
-
-
-def _missing(
-    panels: Panels | None, mesh: Mesh | None, rejected: Sequence[Mapping[str, str]]
-) -> list[tuple[_Missing, FloatArray]]:
-    """Names, reasons and corners of faces without a panel, and whatever else was rejected."""
-    reasons = {part["id"]: part["reason"] for part in rejected}
-    found: list[tuple[_Missing, FloatArray]] = []
-    if mesh is not None and panels is not None:
-        if int(panels.face_ids.max(initial=-1)) >= mesh.n_faces:
-            raise InputError(
-                f"the reference has {mesh.n_faces} faces, too few for the panels: give the "
-                "mesh that they were cut from"
-            )
-        names = part_ids("P", mesh.n_faces)
-        absent: list[int] = np.setdiff1d(np.arange(mesh.n_faces), panels.face_ids).tolist()
-        for face in absent:
-            corners = mesh.vertices[mesh.faces[face]]
-            reason = reasons.pop(names[face], "cannot be made")
-            found.append(
-                ({"id": names[face], "reason": reason, "corners": len(corners)}, corners)
-            )
-    nowhere = np.zeros((0, 3))
-    found += [(_Missing(id=i, reason=r, corners=0), nowhere) for i, r in reasons.items()]
-    return found
 
 
 def _asset(name: str) -> str:

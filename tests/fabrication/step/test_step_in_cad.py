@@ -1,6 +1,8 @@
 """STEP files as CAD programs take them: sound for Boolean operations, and named."""
 
 import re
+import subprocess
+import sys
 from functools import cache
 from pathlib import Path
 from typing import TypeVar
@@ -182,20 +184,25 @@ def support() -> Beams:
     return some(beams, 6)
 
 
+LABELS = """
+import sys
+import gmsh
+
+gmsh.initialize()
+gmsh.option.setNumber("General.Terminal", 0)
+gmsh.model.occ.importShapes(sys.argv[1])
+gmsh.model.occ.synchronize()
+print(*(gmsh.model.getEntityName(*each) for each in gmsh.model.getEntities(3)), sep="\\n")
+"""
+
+
 def labels(path: Path) -> set[str]:
-    """Names of solids in gmsh."""
-    gmsh = pytest.importorskip("gmsh", reason="gmsh")
-    # It would leave Ctrl+C without a handler for all tests that follow.
-    gmsh.initialize(interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.model.occ.importShapes(str(path))
-        gmsh.model.occ.synchronize()
-        found = [gmsh.model.getEntityName(*each) for each in gmsh.model.getEntities(3)]
-    finally:
-        gmsh.finalize()
+    """Names of solids in gmsh, in a process of its own: it changes how signals are handled."""
+    pytest.importorskip("gmsh", reason="gmsh")
+    command = [sys.executable, "-c", LABELS, str(path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
     # Behind a name are the layers.
-    return {name.rsplit("/", 1)[-1].partition(" & ")[0] for name in found}
+    return {name.rsplit("/", 1)[-1].partition(" & ")[0] for name in done.stdout.splitlines()}
 
 
 def test_gmsh_names_every_part(tmp_path: Path) -> None:

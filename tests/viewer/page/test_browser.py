@@ -38,6 +38,7 @@ FLAGS = [
 ]
 SIZE = {"width": 780, "height": 300}
 MISSING = 17
+MISSING_BEAM = 10
 
 Page = Any
 Browser = Any
@@ -52,9 +53,12 @@ def write_page(folder: Path) -> Path:
     carried = cut_beams(
         bisector_support(spheres, depth=0.1).annuli, thickness=0.02, node_radius=0.05
     ).beams
+    carried = select_parts(carried, np.arange(carried.n_beams) != MISSING_BEAM)
     found = [
         Finding("P201", "P0000", "a step of 9 mm </script>"),
+        Finding("P201", "P0002", "a step of 11 mm, more than 5: thinner", 11.0),
         Finding("P102", "P0001", "a corner of 12 degrees", severity="note"),
+        Finding("B101", "B0010", "cannot be made: its ends cross"),
     ]
     columns = panel_columns(made, "m"), beam_columns(carried, made, "m")
     about = PageTexts('</script><b>"Dächer"', *columns, found)
@@ -131,9 +135,8 @@ def selected(page: Page) -> str:
 def test_title_and_summary_are_shown_as_text(page: Page) -> None:
     assert page.inner_text("h1") == '</script><b>"Dächer"'
     assert page.inner_text("#title p") == (
-        "71 panels · 156 beams · 3 moulds · 1 part with errors · 1 missing"
+        "72 panels: 1 missing, 2 with errors; 156 beams: 1 missing; 3 moulds"
     )
-    assert "P0017" in page.inner_text("#missing")
 
 
 def test_picking_finds_the_part_that_is_seen(page: Page) -> None:
@@ -293,6 +296,7 @@ def test_distances_are_those_of_corners_and_points(page: Page) -> None:
     )
     assert ends[2] == pytest.approx(length, rel=1e-6)
     assert "mm" in page.text_content("#measure text")
+    assert page.inner_text("#hint").startswith("From corner ")
     far = page.evaluate(
         """() => { const p = window.spheremesh, v = p.view;
         const [i, [x, y]] = v.shapes.corners.map((c, i) => [i, v.project(v.shapes.centers[i])])
@@ -315,7 +319,7 @@ def test_distances_are_those_of_corners_and_points(page: Page) -> None:
 def test_beams_and_nodes_are_picked_where_panels_are_hidden(page: Page) -> None:
     page.evaluate("window.spheremesh.set({hidden: new Set(['panels'])})")
     found = page.evaluate(
-        """() => { const p = window.spheremesh, v = p.view, n = 71 + 156; let right = 0;
+        """() => { const p = window.spheremesh, v = p.view, n = 71 + 155; let right = 0;
         for (let i = 71; i < n; i += 4) { const [x, y] = v.project(v.shapes.centers[i]);
           if (v.pick(x, y) === i) right++; } return right; }"""
     )
@@ -351,16 +355,65 @@ def test_every_light_draws_another_picture(page: Page) -> None:
 
 
 def test_what_is_wrong_stands_on_the_page(page: Page) -> None:
-    """Which panels are bad, and why, without a search: from the list, or from the title."""
-    words = page.inner_text("#faults")
-    assert "What is wrong: 1 part with errors, 1 part with notes" in words
-    assert words.index("P0000 a step of 9 mm </script>") < words.index("P0001 a corner of 12")
+    """Which parts are bad, and why, by kind: the gravest first, then the most frequent."""
+    rows = page.evaluate(
+        "[...document.querySelectorAll('#faults li')].map("
+        "line => line.innerText.replace(/\\s+/g, ' '))"
+    )
+    assert rows == [
+        "cannot be made: 1 panel P0017 (P100)",
+        "its ends cross: 1 beam B0010 (B101)",
+        "a step </script>: 1 panel P0000: 9 mm (P201)",
+        "a step: 1 panel P0002: 11 mm, more than 5. thinner (P201)",
+        "a corner: 1 panel P0001: 12 degrees (P102)",
+    ]
     page.click("#faults [data-part='1']")
     assert selected(page) == "P0001"
-    assert "P102 a corner of 12 degrees" in page.inner_text("#card .findings")
-    page.click("#title button")
+    assert "a corner of 12 degrees (P102)" in page.inner_text("#card .findings")
+    page.click("#faults .row:has-text('a corner')")
+    assert page.evaluate("window.spheremesh.left()") == [1]
+    assert page.locator("#faults .names button").count() == 1
+    page.click("#faults .row:has-text('a corner')")
+    assert page.evaluate("window.spheremesh.filter") is None
+    page.click("#title button[data-worst=error]")
     assert page.evaluate("window.spheremesh.state.color") == "finding"
-    assert page.evaluate("window.spheremesh.left()") == [0]
+    assert page.evaluate("window.spheremesh.left()") == [0, 2]
+
+
+def test_missing_parts_are_shown_where_they_would_be(page: Page) -> None:
+    """By a click on how many are missing, by search, and from the cards beside."""
+    calm = picture(page)
+    page.click("#title button[data-worst=rejected]")
+    assert selected(page) == "P0017"
+    assert "cannot be made" in page.inner_text("#card .findings")
+    beside = page.inner_text("#card dl div").split()[1:]
+    assert len(beside) == 3
+    at = page.evaluate(
+        "(({view: v, model: m}) => v.project(v.shapes.centers[m.made]))(window.spheremesh)"
+    )
+    assert abs(at[0] - calm.shape[1] / 2) < 40
+    assert abs(at[1] - calm.shape[0] / 2) < 60
+    page.evaluate("window.spheremesh.set({}, true)")
+    ghost = picture(page)
+    page.evaluate("window.spheremesh.view.ghosts.missing.material.visible = false")
+    assert (ghost != picture(page)).any(axis=2).mean() > 0.02
+    page.evaluate("window.spheremesh.view.ghosts.missing.material.visible = true")
+    page.click(f"#card [data-part]:has-text('{beside[0]}')")
+    assert selected(page) == beside[0]
+    assert "P0017 (missing)" in page.inner_text("#card .edges")
+    for name in ("b10", "P0017"):
+        page.fill("#search input", name)
+        page.press("#search input", "Enter")
+        assert page.inner_text("#card .badge") == "missing"
+        page.evaluate("window.spheremesh.view.drawNow()")
+        assert page.evaluate("window.spheremesh.view.ghosts.missing.visible")
+    page.fill("#search input", "B9999")
+    page.press("#search input", "Enter")
+    assert page.inner_text("#unknown") == "No part B9999"
+    assert not page.is_visible("#card")
+    page.evaluate("window.spheremesh.set({color: 'mould'})")
+    page.evaluate("window.spheremesh.view.fit(window.spheremesh.home)")
+    assert (picture(page) == calm).all()
 
 
 def test_a_card_names_mould_and_neighbours_and_leads_there(page: Page) -> None:
@@ -385,7 +438,7 @@ def test_a_card_names_mould_and_neighbours_and_leads_there(page: Page) -> None:
 
 def test_findings_are_red_and_amber(page: Page) -> None:
     page.select_option("#color", "finding")
-    assert page.inner_text("#scale .kind[data-kind=error] em") == "1"
+    assert page.inner_text("#scale .kind[data-kind=error] em") == "2"
     assert page.inner_text("#scale .kind[data-kind=note] em") == "1"
     colors = page.evaluate("[...window.spheremesh.view.colorData.slice(0, 12)]")
     assert colors[:3] == [206, 58, 44]
@@ -398,7 +451,7 @@ def test_legend_filters_moulds_and_ranges(page: Page) -> None:
     page.click("#scale .kind[data-kind='2']")
     assert page.evaluate("window.spheremesh.left().length") == 24
     page.click("#all")
-    assert page.evaluate("window.spheremesh.left().length") == 71 + 156 + 84
+    assert page.evaluate("window.spheremesh.left().length") == 72 + 156 + 84
     page.select_option("#color", "area")
     box = page.locator("#scale svg").bounding_box()
     page.mouse.move(box["x"] + 5, box["y"] + 20)
@@ -422,12 +475,21 @@ def test_search_takes_names_as_people_type_them(page: Page) -> None:
 
 
 def test_what_is_found_is_turned_to_the_viewer(page: Page) -> None:
+    """Also from within a saddle: in the middle, large, with nothing before it."""
     for part in (5, 29, 50, 70):
         page.evaluate(f"window.spheremesh.choose({part})")
         at = page.evaluate(
             f"window.spheremesh.view.project(window.spheremesh.view.shapes.centers[{part}])"
         )
         assert page.evaluate(f"window.spheremesh.view.pick({at[0]}, {at[1]})") == part
+        width, height, reach = page.evaluate(
+            f"""() => {{ const v = window.spheremesh.view, b = v.canvas.parentElement;
+            const at = v.shapes.corners[{part}].map((c) => v.project(c)[1]);
+            return [b.clientWidth, b.clientHeight, Math.max(...at) - Math.min(...at)]; }}"""
+        )
+        assert abs(at[0] - width / 2) < width / 10
+        assert abs(at[1] - height / 2) < height / 5
+        assert reach > height / 10
 
 
 def test_keys_step_through_panels_and_turn_the_model(page: Page) -> None:
@@ -464,6 +526,10 @@ def test_sections_hide_what_is_beyond_them(page: Page) -> None:
     # From the side of the viewer all is cut away.
     page.evaluate("window.spheremesh.set({axis: 'y', depth: 1})")
     assert page.evaluate(f"window.spheremesh.view.pick({middle})") == -1
+    # But what is asked for by its name is shown.
+    page.evaluate("window.spheremesh.set({hidden: new Set(['panels'])})")
+    page.evaluate("window.spheremesh.choose(40)")
+    assert page.evaluate(f"window.spheremesh.view.pick({middle})") == 40
 
 
 def test_parts_drawn_apart_are_picked_where_they_are(page: Page) -> None:
@@ -476,6 +542,13 @@ def test_parts_drawn_apart_are_picked_where_they_are(page: Page) -> None:
           asked++; if (v.pick(...v.project(at)) === i) right++; } return [right, asked]; }"""
     )
     assert found[0] == found[1] > 2
+
+
+def test_a_picture_is_saved(page: Page) -> None:
+    with page.expect_download() as saved:
+        page.click("#sharing [data-value=save]")
+    assert saved.value.suggested_filename == "script-b-Dächer.png"
+    assert saved.value.path().read_bytes()[:4] == b"\x89PNG"
 
 
 @pytest.mark.long

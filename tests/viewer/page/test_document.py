@@ -98,7 +98,7 @@ def test_names_cannot_leave_their_place() -> None:
     assert page.count("<script") == 3
     head, _ = model_of(page)
     assert head["title"] == title
-    assert head["findings"] == [["P201", made.ids[0], "error", "</script><b>'\""]]
+    assert head["findings"] == [["P201", made.ids[0], "error", "</script><b>'\"", None]]
 
 
 def test_equal_models_give_equal_pages() -> None:
@@ -169,13 +169,29 @@ def test_missing_panels_are_outlined_and_named() -> None:
     keep = np.ones(made.n_panels, bool)
     keep[[3, 40]] = False
     left = select_parts(made, keep)
-    about = texts(left, rejected=[{"id": "P0003", "code": "P100", "reason": "crosses itself"}])
-    head, arrays = unpack_arrays(page_data(left, None, about, net))
-    assert head["missing"] == [
-        {"id": "P0003", "reason": "crosses itself", "corners": 4},
-        {"id": "P0040", "reason": "cannot be made", "corners": 4},
+    rejected = [{"id": "P0003", "code": "P100", "reason": "crosses itself"}]
+    found = [
+        Finding("P100", "P0003", "cannot be made: crosses itself"),
+        Finding("B101", "B0007", "cannot be made: its ends cross"),
     ]
-    assert arrays["missing"].shape == (8, 3)
+    about = texts(left, rejected=rejected, findings=found)
+    head, arrays = unpack_arrays(page_data(left, None, about, net))
+    missing = {part["id"]: part for part in head["missing"]}
+    assert {name: (m["code"], m["reason"], m["corners"]) for name, m in missing.items()} == {
+        "P0003": ("P100", "crosses itself", 4),
+        "P0040": ("P100", "cannot be made", 4),
+        "B0007": ("B101", "its ends cross", 2),
+    }
+    assert arrays["missing"].shape == (10, 3)
+    # Beside it are the panels that miss it, each along one edge.
+    for name in ("P0003", "P0040"):
+        edges = missing[name]["edges"]
+        assert {left.ids[row] for row, _ in edges} == set(missing[name]["beside"])
+        for row, edge in edges:
+            neighbor = left.neighbors[left.offsets[row] + edge]
+            assert name == f"P{neighbor:04d}"
+    sides = net.topology.edge_faces[7]
+    assert missing["B0007"]["beside"] == [f"P{face:04d}" for face in sides if face >= 0]
 
 
 def test_planes_and_few_panels_make_pages() -> None:

@@ -19,6 +19,7 @@ export function addressOf({ state, view, model, modes, filter, measure }) {
   if (state.explode) words.set("apart", state.explode);
   if (state.part >= 0) words.set("part", model.ids[state.part]);
   if (filter?.kinds) words.set("only", [...filter.kinds].join(" "));
+  if (filter?.fault) words.set("fault", filter.fault);
   if (filter?.range) words.set("only", filter.range.map((v) => v.toFixed(4)).join(" "));
   if (view) {
     const places = [...view.camera.position.toArray(), ...view.controls.target.toArray()];
@@ -41,12 +42,14 @@ export function showAddress(page, text) {
   if (page.measure && ends.length % 3 === 0 && ends.every(Number.isFinite)) {
     page.setMeasuring(true);
     page.measure.points = [ends.slice(0, 3), ends.slice(3, 6)].filter((p) => p.length);
+    page.showHint();
   }
   const [axis, depth] = (words.get("cut") ?? "").split(" ");
   state.axis = ["x", "y", "z"].includes(axis) ? axis : "";
   state.depth = within(Number(depth), 0.5);
   state.explode = within(Number(words.get("apart")), 0);
   page.filter = filterOf(page.mode, words.get("only"));
+  if (words.has("fault")) page.showFault(words.get("fault"));
   const eye = numbers("eye");
   if (view && eye.length === 6 && eye.every(Number.isFinite)) {
     view.camera.position.set(...eye.slice(0, 3));

@@ -33,6 +33,21 @@ export function cameraThatFits(points, direction, aspect, sides) {
   return [eye, add(eye, axes[2], (near + far) / 2 - distance)];
 }
 
+/** A direction, and those that lean from it by a sixth and a third of a half turn. */
+export function sidewards(direction) {
+  const [right, up, back] = viewAxes(direction), found = [keptUpright(back)];
+  for (const lean of [30, 60].map((a) => (a * Math.PI) / 180)) {
+    for (let k = 0; k < 6; k++) {
+      const turn = (k * Math.PI) / 3, side = add(right.map((r) => r * Math.cos(turn)), up, Math.sin(turn));
+      found.push(keptUpright(add(back.map((b) => b * Math.cos(lean)), side, Math.sin(lean))));
+    }
+  }
+  return found;
+}
+
+/** The controls turn about the upright axis: nobody looks quite along it. */
+const keptUpright = ([x, y, z]) => (Math.hypot(x, y) < 0.001 ? [x, y - 0.001, z] : [x, y, z]);
+
 function viewAxes(direction) {
   const back = unit(direction);
   const upright = Math.abs(back[2]) < 0.9999 ? [0, 0, 1] : [0, 1, 0];

@@ -1,10 +1,11 @@
 // The card of a part: what it is, who its neighbours are, what was found on it.
 
+import { kindOf, SEVERITIES } from "./model.js";
 import { escapeText, number, plural } from "./text.js";
 
 const link = (model, i) => (i === null || i < 0
   ? '<span class="none">rim</span>'
-  : `<button class="part" data-part="${i}">${escapeText(model.ids[i])}</button>`);
+  : `<button class="part" data-part="${i}">${escapeText(model.ids[i])}</button>${i >= model.made ? " (missing)" : ""}`);
 
 const row = (name, value) => `<div><dt>${name}</dt><dd>${value}</dd></div>`;
 
@@ -13,21 +14,22 @@ export function cardMarkup(model, part) {
   const head = `<header><h2>${escapeText(model.ids[part])}</h2>${badge(model, part)}`
     + '<button class="close" aria-label="Close">×</button></header>';
   let body;
-  if (part < panels) body = panelRows(model, part);
+  if (part >= model.made) body = missingRows(model, part);
+  else if (part < panels) body = panelRows(model, part);
   else if (part < panels + beams) body = beamRows(model, part - panels);
   else body = row("Node", `radius ${number(model.nodes.radius_mm)} mm`);
   return `${head}${findings(model, part)}<dl>${body}</dl>`;
 }
 
 function badge(model, part) {
-  const worst = model.worst[part];
-  return worst ? `<span class="badge ${worst === 2 ? "error" : "note"}">${worst === 2 ? "error" : "note"}</span>` : "";
+  const worst = SEVERITIES[model.worst[part]];
+  return worst ? `<span class="badge ${worst}">${worst === "rejected" ? "missing" : worst}</span>` : "";
 }
 
 function findings(model, part) {
   const found = model.findings[part] ?? [];
   if (!found.length) return "";
-  return `<ul class="findings">${found.map((f) => `<li class="${f.severity}"><b>${escapeText(f.code)}</b> ${escapeText(f.message)}</li>`).join("")}</ul>`;
+  return `<ul class="findings">${found.map((f) => `<li class="${f.severity}">${f.severity === "rejected" ? "cannot be made: " : ""}${escapeText(f.message)} <em>(${escapeText(f.code)})</em></li>`).join("")}</ul>`;
 }
 
 function panelRows(model, i) {
@@ -49,6 +51,13 @@ function panelRows(model, i) {
     + `</dl><table class="edges"><thead><tr><th>Edge</th><th>Length mm</th><th>Rise mm</th><th>Angle °</th><th>Neighbour</th></tr></thead><tbody>${edges}</tbody></table><dl>`;
 }
 
+function missingRows(model, part) {
+  const { beside } = model.missing[part - model.made];
+  const around = beside.map((id) => model.places.get(id)).filter((i) => i !== undefined);
+  const name = kindOf(model, part) === "beam" ? "Panels" : "Neighbours";
+  return row(name, around.map((i) => link(model, i)).join(" ") || "not known");
+}
+
 function beamRows(model, b) {
   const beams = model.beams;
   return row("Length", `${number(beams.length_mm[b])} mm`)
@@ -63,10 +72,11 @@ function beamRows(model, b) {
 export function spoken(model, part) {
   const panels = model.panels.id.length, found = model.findings[part] ?? [];
   const name = model.ids[part];
+  if (part >= model.made) return `${name} cannot be made: ${found[0].message}.`;
   if (part >= panels) return `${name}. ${plural(found.length, "finding")}.`;
   const p = model.panels;
   const mould = p.mould[part] === null ? "" : ` Mould ${p.mould[part]}.`;
   const radius = p.radius_mm[part] === null ? "plane" : `radius ${number(p.radius_mm[part])} mm`;
-  const next = p.neighbors[part].filter((i) => i >= 0).map((i) => model.ids[i]).join(", ");
+  const next = p.neighbors[part].filter((i) => i !== null).map((i) => model.ids[i]).join(", ");
   return `Panel ${name}.${mould} ${radius}. Neighbours ${next}. ${plural(found.length, "finding")}.`;
 }

@@ -3,7 +3,7 @@
 import { escapeText, number } from "./text.js";
 
 const PLAIN = [226, 226, 222], BEAM = [150, 122, 96], NODE = [98, 102, 110];
-const GOOD = [214, 219, 222], NOTE = [232, 164, 38], ERROR = [206, 58, 44];
+const GOOD = [214, 219, 222], NOTE = [232, 164, 38], ERROR = [206, 58, 44], MISSING = [122, 16, 30];
 const UNLABELLED = [178, 182, 187];
 
 /** The path through OKLab of `kernel/parts/colors.py`: dark blue, green, pale sand. */
@@ -59,8 +59,10 @@ function mouldKinds({ panels, moulds }) {
   return kinds;
 }
 
-function findingKinds({ worst }) {
+function findingKinds({ worst, missing }) {
+  const rejected = { key: "rejected", name: "missing", note: "cannot be made", color: MISSING, has: (i) => worst[i] === 3, all: true };
   return [
+    ...(missing.length ? [rejected] : []),
     { key: "error", name: "errors", note: "", color: ERROR, has: (i) => worst[i] === 2, all: true },
     { key: "note", name: "notes", note: "", color: NOTE, has: (i) => worst[i] === 1, all: true },
     { key: "good", name: "nothing found", note: "", color: GOOD, has: (i) => worst[i] === 0, all: true },
@@ -106,6 +108,7 @@ export function partColors(mode, filter, model, size) {
 /** Whether a part is among those that are chosen in the legend. */
 export function passes(mode, filter, i, panels, scale = mode.values ? scaleOf(mode) : null) {
   if (!filter) return true;
+  if (filter.parts) return filter.parts.has(i);
   if (filter.kinds) return (mode.kinds ?? []).some((k) => filter.kinds.has(k.key) && (i < panels || k.all) && k.has(i));
   if (i >= panels) return false;
   const share = scale.share(mode.values[i]);
@@ -119,8 +122,8 @@ export function legendMarkup(mode, filter, model) {
   return (mode.kinds ?? []).map((kind) => {
     let count = 0;
     for (let i = 0; i < total; i++) count += kind.has(i) ? 1 : 0;
-    const on = !filter || filter.kinds.has(kind.key);
-    return `<button class="kind" data-kind="${kind.key}" aria-pressed="${Boolean(filter) && on}" ${on ? "" : 'data-off=""'}>`
+    const on = !filter?.kinds || filter.kinds.has(kind.key);
+    return `<button class="kind" data-kind="${kind.key}" aria-pressed="${Boolean(filter?.kinds) && on}" ${on ? "" : 'data-off=""'}>`
       + `<i style="background:${css(kind.color)}"></i><b>${escapeText(kind.name)}</b>`
       + `<span>${escapeText(kind.note)}</span><em>${count}</em></button>`;
   }).join("");
@@ -135,7 +138,7 @@ function histogramMarkup(mode, filter) {
     if (share !== null) bins[Math.min(BINS - 1, Math.floor(share * BINS))]++;
   }
   const most = Math.max(...bins, 1);
-  const [from, to] = filter ? filter.range : [0, 1];
+  const [from, to] = filter?.range ?? [0, 1];
   const bars = bins.map((count, k) => {
     const middle = (k + 0.5) / BINS, h = count ? Math.max(2, (62 * count) / most) : 0;
     const dim = middle < from || middle > to ? 0.25 : 1;

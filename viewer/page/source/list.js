@@ -1,5 +1,6 @@
 // The table of parts: real rows, sorted by a click, in step with the picture.
 
+import { SEVERITIES } from "./model.js";
 import { escapeText, number } from "./text.js";
 
 const PAGE = 200;
@@ -12,15 +13,16 @@ const COLUMNS = [
   ["Angle °", (m, i) => of(m, i, "angle_deg"), number],
   ["Off plane mm", (m, i) => of(m, i, "planarity_mm"), number],
   ["Neighbours", (m, i) => next(m, i), (v) => escapeText(v)],
-  ["Findings", (m, i) => (m.findings[i] ?? []).map((f) => `${f.code} ${f.message}`).join("; "), (v) => escapeText(v)],
+  ["Findings", (m, i) => (m.findings[i] ?? []).map((f) => `${f.severity === "rejected" ? "cannot be made: " : ""}${f.message} (${f.code})`).join("; "), (v) => escapeText(v)],
 ];
 
 const of = (model, i, key) => (i < model.panels.id.length ? model.panels[key][i] : null);
 
 function next(model, i) {
   const p = model.panels.id.length, b = i - p;
+  if (i >= model.made) return model.missing[i - model.made].beside.join(" ");
   const ids = i < p ? model.panels.neighbors[i] : b < model.beams.id.length ? model.beams.panels[b] : [];
-  return ids.filter((k) => k >= 0).map((k) => model.ids[k]).join(" ");
+  return ids.filter((k) => k !== null).map((k) => model.ids[k]).join(" ");
 }
 
 export class PartList {
@@ -102,7 +104,7 @@ export class PartList {
         const text = write(value(model, i), model);
         return k ? `<td>${text}</td>` : `<th scope="row">${text}</th>`;
       }).join("");
-      const worst = model.worst[i] === 2 ? "error" : model.worst[i] === 1 ? "note" : "";
+      const worst = SEVERITIES[model.worst[i]];
       return `<tr tabindex="0" data-part="${i}" class="${worst}"${i === this.selected ? ' aria-selected="true"' : ""}>${cells}</tr>`;
     }).join("");
     const last = Math.min(parts.length, first + PAGE);

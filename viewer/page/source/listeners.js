@@ -2,6 +2,7 @@
 
 import { NAMED_VIEWS } from "./cameras.js";
 import { BINS } from "./colors.js";
+import { copyLink, savePicture } from "./sharing.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -39,8 +40,17 @@ function listenControls(page) {
   });
   $("all").addEventListener("click", () => { page.filter = null; page.refresh(); });
   $("search").addEventListener("submit", (event) => { event.preventDefault(); page.find(); });
-  $("search").addEventListener("input", () => $("search").querySelector("input").classList.remove("unknown"));
+  $("search").addEventListener("input", () => {
+    $("search").querySelector("input").classList.remove("unknown");
+    $("unknown").textContent = "";
+  });
   $("search").addEventListener("change", () => page.find());
+  buttons("sharing", async (value) => {
+    $("shared").textContent = "";
+    if (value === "print") window.print();
+    else if (value === "save") savePicture(page, $("canvas"));
+    else $("shared").textContent = await copyLink(page) ? "Copied. Send the file too." : "This browser does not let the page copy: take the address from above, and send the file too.";
+  });
   $("listing").addEventListener("click", () => page.showTable($("table").hidden));
 }
 
@@ -54,6 +64,10 @@ function listenPicture(page) {
       page.tap(event.clientX - box.left, event.clientY - box.top);
     }
     down = null;
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    const box = canvas.getBoundingClientRect();
+    if (page.measure.on && !event.buttons) page.aim(event.clientX - box.left, event.clientY - box.top);
   });
   page.view.controls.addEventListener("end", () => page.writeAddress());
 }
@@ -108,15 +122,14 @@ function listenCard(page) {
     else if (mould) page.showKinds("mould", mould.dataset.mould);
   });
   $("faults").addEventListener("click", (event) => {
-    const part = event.target.closest("[data-part]"), more = event.target.closest("[data-more]");
+    const part = event.target.closest("[data-part]"), row = event.target.closest("[data-fault]");
     if (part) page.choose(Number(part.dataset.part));
-    else if (more) {
-      page.showKinds("finding", "error", "note");
-      page.showTable(true);
-    }
+    else if (row) page.showFault(row.dataset.fault);
+    else if (event.target.closest("[data-more]")) page.showTable(true);
   });
   $("title").addEventListener("click", (event) => {
-    if (event.target.closest("button")) page.showKinds("finding", "error");
+    const button = event.target.closest("button");
+    if (button) page.showWorst(button.dataset.worst, button.dataset.of);
   });
 }
 

@@ -3,11 +3,11 @@
 import { addressOf, LAYERS, showAddress } from "./address.js";
 import { cardMarkup, spoken } from "./card.js";
 import { colorModes, legendMarkup, partColors, passes, scaleOf } from "./colors.js";
-import { faultsMarkup, missingMarkup } from "./faults.js";
+import { faultKinds, faultsMarkup } from "./faults.js";
 import { listen } from "./listeners.js";
 import { PartList } from "./list.js";
-import { locate, Measure } from "./measure.js";
-import { findPart, makeModel } from "./model.js";
+import { locate, Measure, nameOf } from "./measure.js";
+import { ERROR, findPart, kindOf, makeModel, REJECTED } from "./model.js";
 import { paint } from "./painter.js";
 import { buildShapes } from "./shapes.js";
 import { escapeText, number, plural } from "./text.js";
@@ -21,6 +21,7 @@ export class Page {
     this.shapes = buildShapes(head, arrays);
     this.head = head;
     this.modes = colorModes(this.model);
+    this.faults = faultKinds(this.model);
     this.state = { color: this.modes[0].key, shading: 0, flat: "off", axis: "", depth: 0.5, explode: 0, part: -1, hidden: new Set(["axes"]) };
     this.filter = null;
     this.home = head.home;
@@ -43,7 +44,6 @@ export class Page {
     $("title").querySelector("p").innerHTML = this.summary();
     $("color").innerHTML = this.modes.map((m) => `<option value="${m.key}">${escapeText(m.name)}</option>`).join("");
     if (model.count <= 3000) $("names").innerHTML = model.ids.map((id) => `<option value="${escapeText(id)}">`).join("");
-    this.fillFaults();
     this.fillLayers();
     listen(this);
     $("app").classList.remove("loading");
@@ -59,20 +59,30 @@ export class Page {
   }
 
   summary() {
-    const { model } = this, worst = [...model.worst], errors = worst.filter((w) => w === 2).length;
-    const texts = [plural(model.panels.id.length, "panel")];
-    if (model.beams.id.length) texts.push(plural(model.beams.id.length, "beam"));
+    const { model } = this, texts = [];
+    for (const kind of ["panel", "beam"]) {
+      const all = model.ids.map((_, i) => i).filter((i) => kindOf(model, i) === kind);
+      if (!all.length) continue;
+      const wrong = [["rejected", REJECTED, "missing"], ["error", ERROR, "with errors"]].map(([key, worst, words]) => {
+        const count = all.filter((i) => model.worst[i] === worst).length;
+        return count && `<button data-worst="${key}" data-of="${kind}">${number(count)} ${words}</button>`;
+      }).filter(Boolean);
+      texts.push(plural(all.length, kind) + (wrong.length ? `: ${wrong.join(", ")}` : ""));
+    }
     if (model.moulds.length) texts.push(plural(model.moulds.length, "mould"));
-    if (errors) texts.push(`<button>${plural(errors, "part")} with errors</button>`);
-    if (model.missing.length) texts.push(`<b>${number(model.missing.length)} missing</b>`);
-    return texts.join(" · ");
+    return texts.join("; ");
   }
 
   fillFaults() {
-    $("missing").hidden = this.model.missing.length === 0;
-    $("missing").innerHTML = missingMarkup(this.model);
-    $("faults").innerHTML = faultsMarkup(this.model);
-    $("faults").hidden = !$("faults").innerHTML;
+    const chosen = this.filter?.fault, root = $("faults"), list = root.firstElementChild && root.querySelector("ul");
+    if (list && chosen === this.shownFault) return;
+    const top = list?.scrollTop ?? 0, focused = root.contains(document.activeElement) && document.activeElement.dataset.fault;
+    root.innerHTML = faultsMarkup(this.model, this.faults, chosen);
+    root.hidden = !this.faults.length;
+    this.shownFault = chosen;
+    // Whoever reads or types there stays there.
+    if (list) root.querySelector("ul").scrollTop = top;
+    if (focused) [...root.querySelectorAll("[data-fault]")].find((row) => row.dataset.fault === focused).focus();
   }
 
   fillLayers() {
@@ -95,8 +105,24 @@ export class Page {
       return;
     }
     this.measure.take(locate(this.view, x, y));
+    this.showHint();
     if (this.measure.distance !== null) $("spoken").textContent = this.measure.text().join("; ");
     this.writeAddress();
+  }
+
+  /** The corner that a click would take gets a ring. */
+  aim(x, y) {
+    cancelAnimationFrame(this.aiming);
+    this.aiming = requestAnimationFrame(() => this.measure.aim(locate(this.view, x, y)));
+  }
+
+  /** What is to be clicked next, and what was taken. */
+  showHint() {
+    const { on, points } = this.measure, names = points.map((p) => nameOf(this.shapes, this.model, p));
+    $("hint").hidden = !on;
+    $("hint").textContent = [
+      "Click the first corner or point", `From ${names[0]}: click the second corner or point`, `From ${names[0]} to ${names[1]}`,
+    ][points.length];
   }
 
   /** Parts that are drawn apart are not where they are: there is nothing to measure. */
@@ -105,6 +131,8 @@ export class Page {
     if (!this.measure.on) this.measure.points = [];
     $("measuring").firstElementChild.setAttribute("aria-pressed", String(this.measure.on));
     $("stage").classList.toggle("measuring", this.measure.on);
+    this.measure.aimed = null;
+    this.showHint();
     this.measure.draw();
     this.writeAddress();
   }
@@ -131,6 +159,27 @@ export class Page {
     this.refresh();
   }
 
+  /** Only the parts on which something of a kind was found; all again if they are chosen. */
+  showFault(key) {
+    const kind = this.faults.find((each) => each.key === key);
+    if (!kind || this.filter?.fault === key) this.filter = null;
+    else {
+      this.state.color = "finding";
+      this.filter = { fault: key, parts: kind.parts };
+    }
+    this.refresh();
+  }
+
+  /** Only panels, or beams, that are missing or have errors; of missing ones the first is shown. */
+  showWorst(key, kind) {
+    const worst = key === "rejected" ? REJECTED : ERROR, parts = new Set();
+    this.model.worst.forEach((w, i) => { if (w === worst && kindOf(this.model, i) === kind) parts.add(i); });
+    this.state.color = "finding";
+    this.filter = { parts };
+    this.refresh();
+    if (worst === REJECTED) this.choose(Math.min(...parts));
+  }
+
   /** The next panel among those that the filter leaves. */
   step(by) {
     const left = this.left().filter((i) => i < this.model.panels.id.length).sort((a, b) => a - b);
@@ -151,9 +200,15 @@ export class Page {
     const input = $("search").querySelector("input");
     if (!input.value.trim()) return;
     const part = findPart(this.model, input.value);
-    input.classList.toggle("unknown", part < 0);
-    if (part >= 0) this.choose(part);
-    else $("spoken").textContent = `There is no part ${input.value}.`;
+    if (part >= 0) {
+      this.choose(part);
+      return;
+    }
+    const text = input.value.trim();
+    this.select(-1);
+    input.value = text;
+    input.classList.add("unknown");
+    $("unknown").textContent = `No part ${text}`;
   }
 
   set(changes, clear = false) {
@@ -164,16 +219,25 @@ export class Page {
 
   /** Select a part by its name, and turn the model until it is seen. */
   choose(part) {
+    const hidden = new Set(this.state.hidden);
+    if (part < this.shapes.parts && hidden.delete("panels")) this.set({ hidden });
+    if (this.view?.isCut(part)) this.set({ axis: "" });
     this.view?.reveal(part);
     this.select(part);
   }
 
   select(part) {
     this.state.part = part;
+    const input = $("search").querySelector("input");
+    input.value = part < 0 ? "" : this.model.ids[part];
+    input.classList.remove("unknown");
+    $("unknown").textContent = "";
     $("card").hidden = part < 0;
     if (part >= 0) {
       $("card").innerHTML = cardMarkup(this.model, part);
       $("spoken").textContent = spoken(this.model, part);
+      // The card stands under the search.
+      $("search").scrollIntoView({ block: "nearest" });
     }
     this.view?.select(part);
     this.list.select(part);
@@ -194,6 +258,7 @@ export class Page {
     $("color").value = state.color;
     $("scale").innerHTML = legendMarkup(mode, this.filter, this.model);
     $("all").hidden = !this.filter;
+    this.fillFaults();
     for (const id of ["shading", "flat", "axis"]) {
       for (const button of $(id).children) button.setAttribute("aria-pressed", String(button.dataset.value === String(state[id])));
     }
@@ -229,6 +294,7 @@ export class Page {
     view.flat = state.flat;
     $("divider").hidden = state.flat !== "swipe";
     if (state.flat === "swipe") this.moveDivider(view.swipe);
+    uniforms.marked.value = Boolean(this.filter);
     view.setColors(colors);
   }
 

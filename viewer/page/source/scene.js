@@ -4,9 +4,11 @@ import {
   BufferAttribute, BufferGeometry, DataTexture, DoubleSide, FloatType, FrontSide, GLSL3, LinearFilter, LineSegments,
   Mesh, NearestFilter, PlaneGeometry, RawShaderMaterial, RedFormat, RGBAFormat, UnsignedByteType, Vector3, Vector4,
 } from "three";
-import { GROUND_FRAGMENT, GROUND_VERTEX, LINE_FRAGMENT, LINE_VERTEX, MESH_FRAGMENT, MESH_VERTEX } from "./shaders.js";
+import {
+  GHOST_FRAGMENT, GROUND_FRAGMENT, GROUND_VERTEX, LINE_FRAGMENT, LINE_VERTEX, MESH_FRAGMENT, MESH_VERTEX, THROUGH_FRAGMENT,
+} from "./shaders.js";
 import { Lines } from "./soup.js";
-import { add, scale } from "./vectors.js";
+import { add, cross, length, scale, sub, unit } from "./vectors.js";
 
 const PULL = 4e-6; // of lines before the surfaces that they lie on, in depth
 const INK = [0.13, 0.15, 0.18, 0.5];
@@ -57,7 +59,7 @@ export function makeUniforms(shapes, colors) {
     surfaces: { value: surfaceTexture(shapes) },
     shifts: { value: table(shiftTexels(shapes), 1024, rows) },
     colors: { value: texture(colors, 1024, rows, RGBAFormat, UnsignedByteType, NearestFilter) },
-    shading: { value: 0 }, selected: { value: -1 }, picking: { value: 0 },
+    shading: { value: 0 }, selected: { value: -1 }, marked: { value: false }, picking: { value: 0 },
     cuts: { value: false }, explode: { value: 0 },
     eye: { value: new Vector3() }, right: { value: new Vector3(1, 0, 0) },
     back: { value: new Vector3(0, 1, 0) }, sun: { value: new Vector3(0, 0, 1) },
@@ -93,7 +95,7 @@ export function linesOf(shapes, uniforms) {
 function outlines(shapes) {
   const lines = new Lines();
   shapes.outlines.forEach((outline, i) => {
-    if (!outline.length) return;
+    if (outline.length < 3) return;
     const middle = shapes.centers[shapes.total + i];
     const corners = outline.map((p) => add(p, add(middle, p, -1), 0.06));
     const part = shapes.total + i, half = Math.floor(corners.length / 2);
@@ -101,6 +103,48 @@ function outlines(shapes) {
     corners.slice(0, half).forEach((p, k) => lines.add(p, corners[k + half], part));
   });
   return lines;
+}
+
+/** What is drawn over everything: missing parts that were asked for, and what lies under others. */
+export function ghostsOf(shapes, meshes, thickness, uniforms) {
+  const material = (vertexShader, fragmentShader, more = {}) => new RawShaderMaterial({
+    vertexShader, fragmentShader, glslVersion: GLSL3, transparent: true, depthTest: false, depthWrite: false,
+    side: DoubleSide, uniforms: { ...uniforms, ...more },
+  });
+  const red = { ink: { value: new Vector4(0.80, 0.10, 0.12, 0.5) }, pull: { value: 0 } };
+  const through = material(MESH_VERTEX, THROUGH_FRAGMENT);
+  return {
+    missing: new Mesh(lineGeometry(ghosts(shapes, thickness)), material(LINE_VERTEX, GHOST_FRAGMENT, red)),
+    beams: new Mesh(meshes.beams.geometry, through), nodes: new Mesh(meshes.nodes.geometry, through),
+  };
+}
+
+/** Triangles of missing parts, three ends each: faces with a broad rim, and bars along edges. */
+function ghosts(shapes, thickness) {
+  const found = new Lines();
+  const triangle = (part, ...points) => { for (const p of points) found.end(p[0], p[1], p[2], part); };
+  shapes.outlines.forEach((outline, i) => {
+    const part = shapes.total + i, middle = shapes.centers[part];
+    if (outline.length === 2) addBar(triangle, part, outline, thickness);
+    else outline.forEach((p, k) => {
+      const q = outline[(k + 1) % outline.length], [r, s] = [p, q].map((c) => add(c, sub(middle, c), 0.07));
+      triangle(part, p, q, middle);
+      triangle(part, p, q, s);
+      triangle(part, p, s, r);
+    });
+  });
+  return found;
+}
+
+/** Two bands that cross along an edge: it is seen from everywhere. */
+function addBar(triangle, part, [p, q], thickness) {
+  const along = sub(q, p), x = unit(along), u = unit(cross(x, Math.abs(x[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0]));
+  const half = Math.max(thickness / 2, 0.05 * length(along));
+  for (const side of [u, cross(x, u)]) {
+    const [a, b, c, d] = [add(p, side, half), add(p, side, -half), add(q, side, -half), add(q, side, half)];
+    triangle(part, a, b, c);
+    triangle(part, a, c, d);
+  }
 }
 
 /** The plane that the model stands on, with its shadow. */

@@ -130,6 +130,27 @@ void main() {
   pixel = vec4(ink.rgb, ink.a * ghost);
 }`;
 
+// Parts that are missing, once they are asked for: nothing hides them.
+export const GHOST_FRAGMENT = `${COMMON}
+in vec3 world; flat in int row;
+uniform sampler2D colors; uniform vec4 ink; uniform int selected; uniform bool marked;
+out vec4 pixel;
+void main() {
+  bool asked = marked && texelFetch(colors, ivec2(row % 1024, row / 1024), 0).a > 0.5;
+  if (row != selected && !asked) discard;
+  pixel = vec4(ink.rgb, row == selected ? ink.a : 0.6 * ink.a);
+}`;
+
+// The selected beam or node, through what lies over it.
+export const THROUGH_FRAGMENT = `${COMMON}
+flat in int row;
+uniform int selected;
+out vec4 pixel;
+void main() {
+  if (int(surfaceTexel(row, 1).w + 0.5) != selected) discard;
+  pixel = vec4(0.93, 0.43, 0.10, 0.45);
+}`;
+
 export const GROUND_VERTEX = `
 precision highp float;
 in vec3 position; in vec2 uv; uniform mat4 modelViewMatrix, projectionMatrix;

@@ -6,7 +6,7 @@
 
 import { addBeams, addNodes } from "./members.js";
 import { Lines, Soup, Surfaces } from "./soup.js";
-import { add, cross, scale, sub, unit } from "./vectors.js";
+import { add, cross, length, scale, sub, unit } from "./vectors.js";
 
 const STEPS = 1 << 20;
 export const OUTER = 0, INNER = 1, WALL = 2, BEAM = 3, NODE = 4;
@@ -38,6 +38,27 @@ export function buildShapes(head, arrays) {
     shapes.lifts.push([0, 0, 0]);
   }
   return shapes;
+}
+
+/** How far a panel, or a missing part, reaches from its middle; null for others. */
+export function sizeOf(shapes, part) {
+  const points = shapes.corners[part] ?? shapes.outlines[part - shapes.total];
+  return points ? Math.max(...points.map((p) => length(sub(p, shapes.centers[part])))) : null;
+}
+
+/** The direction from which a part is seen from outside: as the panels beside it, if it is none. */
+export function outward(shapes, part) {
+  const { parts, lifts, centers, outlines, total } = shapes;
+  if (part < parts) return lifts[part];
+  const middle = centers[part], outline = outlines[part - total] ?? [];
+  let n = [0, 0, 0];
+  outline.forEach((p, k) => { n = add(n, cross(sub(p, middle), sub(outline[(k + 1) % outline.length], middle))); });
+  // Faces go round as those of panels do.
+  if (length(n)) return unit(n);
+  const away = centers.slice(0, parts).map((c) => length(sub(c, middle)));
+  const near = away.map((_, i) => i).sort((i, j) => away[i] - away[j]).slice(0, 2);
+  const beside = near.reduce((sum, i) => add(sum, lifts[i]), [0, 0, 0]);
+  return unit(length(beside) ? beside : length(middle) ? middle : [0, -1, 0.5]);
 }
 
 /** The kinds of triangulated faces: points, triangles, and how many steps each edge has. */

@@ -2,12 +2,13 @@
 
 import { DoubleSide, FrontSide, PerspectiveCamera, Scene, Vector3, WebGLRenderer, WebGLRenderTarget } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { cameraThatFits, FIELD } from "./cameras.js";
-import { groundOf, linesOf, makeUniforms, meshGeometry, meshOf, surfaceTexture } from "./scene.js";
-import { addTouchingWalls } from "./shapes.js";
-import { add, cross, length, sub, unit } from "./vectors.js";
+import { cameraThatFits, FIELD, sidewards } from "./cameras.js";
+import { ghostsOf, groundOf, linesOf, makeUniforms, meshGeometry, meshOf, surfaceTexture } from "./scene.js";
+import { addTouchingWalls, outward, sizeOf } from "./shapes.js";
+import { add, cross, dot, length, scale, sub, unit } from "./vectors.js";
 
 const MANY = 2000;
+const AROUND = 2.6; // sizes of a part that are seen around it
 
 export class View {
   constructor(canvas, head, arrays, shapes) {
@@ -74,10 +75,11 @@ export class View {
     };
     this.lines = linesOf(shapes, uniforms);
     this.marked = this.lines.marked.material;
+    this.ghosts = ghostsOf(shapes, this.meshes, head.beam_thickness, uniforms);
     this.ground = groundOf(head, arrays);
     // In this order: what hides most comes first, and what it hides is not shaded.
     this.renderer.sortObjects = false;
-    for (const each of [this.ground, ...Object.values(this.meshes), ...Object.values(this.lines)]) {
+    for (const each of [this.ground, ...Object.values(this.meshes), ...Object.values(this.lines), ...Object.values(this.ghosts)]) {
       each.frustumCulled = false;
       this.scene.add(each);
     }
@@ -115,7 +117,11 @@ export class View {
   /** Look at the whole model from a direction. */
   fit(direction) {
     this.fitted = direction;
-    const points = this.shapes.corners.length ? this.shapes.corners.flat() : this.shapes.centers;
+    this.stand(this.shapes.corners.length ? this.shapes.corners.flat() : this.shapes.centers, direction);
+  }
+
+  /** Look at points from a direction, as near as they allow. */
+  stand(points, direction) {
     const [eye, target] = cameraThatFits(points, direction, this.camera.aspect, this.freeSides());
     this.camera.position.set(...eye);
     this.controls.target.set(...target);
@@ -143,16 +149,37 @@ export class View {
     this.draw();
   }
 
-  /** Turn until a part faces the viewer, if it does not yet. */
+  /** The middle of a part where it is drawn, apart from others or not. */
+  placeOf(part) {
+    const { centers, lifts } = this.shapes, moved = add(scale(centers[part], 0.4), lifts[part], 0.07);
+    return add(centers[part], moved, this.uniforms.explode.value);
+  }
+
+  /** Whether a section has taken the middle of a part away. */
+  isCut(part) {
+    const { cuts, plane } = this.uniforms;
+    return cuts.value && dot(this.placeOf(part), plane.value.toArray()) > plane.value.w;
+  }
+
+  /** Look at a part from its outside, from where nothing hides it. */
   reveal(part) {
-    const c = this.shapes.centers[part], [x, y] = this.project(c), { camera } = this;
-    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
-    const eye = camera.position.toArray(), n = this.shapes.lifts[part];
-    const inside = x > 0 && x < width && y > 0 && y < height;
-    const seen = inside && this.pick(x, y) === part;
-    if (seen) return;
-    const outwards = length(n) ? n : unit(sub(eye, c));
-    this.fit(add(outwards, [0, 0, Math.max(0.35, 0.25 - outwards[2])]));
+    const { shapes } = this, middle = shapes.centers[part], size = sizeOf(shapes, part) ?? this.edge / 2;
+    // Nobody knows where it would be.
+    if (part >= shapes.total && !shapes.outlines[part - shapes.total].length) return;
+    this.fitted = null;
+    const at = this.placeOf(part);
+    const points = [0, 1, 2].flatMap((k) => [-1, 1].map((s) => at.map((c, j) => c + (j === k ? AROUND * s * size : 0))));
+    const probes = [at, ...(shapes.corners[part] ?? []).map((c) => add(at, sub(c, middle), 0.6))];
+    let best = null, most = -1;
+    for (const direction of sidewards(outward(shapes, part))) {
+      this.stand(points, direction);
+      // What lies under panels, or is missing, is drawn through them.
+      if (part >= shapes.parts) return;
+      const seen = probes.filter((p) => this.pick(...this.project(p)) === part).length;
+      if (seen > most) [best, most] = [direction, seen];
+      if (seen === probes.length) return;
+    }
+    this.stand(points, best);
   }
 
   draw() {
@@ -211,6 +238,9 @@ export class View {
     lines.marked.visible = visible.panels && this.marked.uniforms.only.value >= 0 && !flat;
     lines.missing.visible = visible.missing;
     lines.axes.visible = visible.axes;
+    const { selected, marked } = this.uniforms, { parts, total } = this.shapes;
+    this.ghosts.missing.visible = selected.value >= total || marked.value;
+    this.ghosts.beams.visible = this.ghosts.nodes.visible = selected.value >= parts && selected.value < total;
     meshes.beams.visible = visible.beams;
     meshes.nodes.visible = visible.nodes;
     this.ground.visible = this.uniforms.explode.value === 0;
@@ -252,7 +282,7 @@ export class View {
     const flat = this.flat === "on" || (this.flat === "swipe" && x < this.swipe * width);
     this.light();
     this.show(flat);
-    for (const each of [this.ground, ...Object.values(this.lines)]) each.visible = false;
+    for (const each of [this.ground, ...Object.values(this.lines), ...Object.values(this.ghosts)]) each.visible = false;
     camera.setViewOffset(width, height, Math.floor(x), Math.floor(y), 1, 1);
     uniforms.picking.value = what;
     renderer.setScissorTest(false);
