@@ -81,10 +81,10 @@ def main(options: list[str]) -> None:
             for table in tables:
                 line = {**note, "name": name, **table._asdict()}
                 file.write(json.dumps(line) + "\n")
-    write_page()
+    PAGE.write_text(page(), encoding="utf-8")
 
 
-def write_page() -> None:
+def page() -> str:
     """The last figures of each table, from the history."""
     last: dict[str, dict[str, Any]] = {}
     for line in HISTORY.read_text(encoding="utf-8").splitlines():
@@ -102,7 +102,7 @@ def write_page() -> None:
             markdown(table._replace(columns=tuple(entry["columns"]), rows=entry["rows"]))
             + f"\n{entry['date']}, version {entry['version']}, {entry['machine']}.\n"
         )
-    PAGE.write_text("\n".join(parts), encoding="utf-8")
+    return "\n".join(parts)
 
 
 if __name__ == "__main__":
