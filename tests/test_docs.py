@@ -14,7 +14,7 @@ from spheremesh import nodes
 from spheremesh.nodes import NodeWarning
 
 ROOT = Path(__file__).parents[1]
-TABLES = {"gallery.md", "laws.md", "operations.md"}
+TABLES = {"benchmarks.md", "gallery.md", "laws.md", "operations.md"}
 """Pages without code."""
 PAGES = [
     ROOT / "README.md",
