@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import FloatArray, dot
-from ...solvers.block_patterns import PairKind, add_up, add_up_products, weighted
+from ...solvers.block_patterns import PairKind, add_up, weighted
 from ...solvers.block_systems import Blocks, factorize_system
 from ...solvers.factorization import Solver
 from ...solvers.minimization import Model
@@ -99,17 +99,16 @@ def _hessian(
         if is_exact:
             bent = term.second_derivatives(problem.setting, unknowns, firsts * values)
         for (i, j), addition in pattern.additions[number].items():
-            first, second = curvatures[:, None] * tables[i], tables[j]
+            first = curvatures[:, None] * tables[i]
+            table = first[:, :, None] * tables[j][:, None, :]
+            if (i, j) in bent:
+                table += bent[i, j]
             target = (
                 diagonal[addition.kind[0]] if addition.is_diagonal else mixed[addition.kind]
             )
-            target += add_up_products(addition.straight, first, second)
+            target += add_up(addition.straight, table)
             if addition.turned is not None:
-                target += add_up_products(addition.turned, second, first)
-            if (i, j) in bent:
-                target += add_up(addition.straight, bent[i, j])
-            if (i, j) in bent and addition.turned is not None:
-                target += add_up(addition.turned, bent[i, j].transpose(0, 2, 1))
+                target += add_up(addition.turned, table.transpose(0, 2, 1))
     blocks = Blocks(diagonal, mixed)
     _add_bound(problem, unknowns, blocks)
     _bend(problem, unknowns, slopes.gradients, blocks, is_exact=is_exact)
